@@ -1,0 +1,20 @@
+# What tests, examples and benchmarks share; users of the library get none of it.
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, RelWithDebInfo or Debug" FORCE)
+endif()
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+set(CMAKE_CXX_EXTENSIONS OFF)
+
+# No contraction to fused multiply-add: a policy file has the same bits from every compiler and machine.
+add_library(surefoot_own INTERFACE)
+target_link_libraries(surefoot_own INTERFACE surefoot::surefoot)
+target_compile_options(surefoot_own INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Werror -ffp-contract=off)
+
+if(SUREFOOT_TIDY)
+  find_program(SUREFOOT_CLANG_TIDY NAMES clang-tidy-19 clang-tidy)
+  if(SUREFOOT_CLANG_TIDY)
+    set(CMAKE_CXX_CLANG_TIDY ${SUREFOOT_CLANG_TIDY} --quiet)
+  else()
+    message(STATUS "surefoot: clang-tidy not found, building without it (package clang-tidy-19)")
+  endif()
+endif()

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# The ball approach from nothing to policies for the robot, on a bare Debian 12, within ten minutes after the build:
+# trains and tunes policies for both problems, then compares, draws and exports them. Ctrl-C ends it at any time.
+#   examples/run.sh [--paper]    --paper adds five minutes a problem with the solver's published settings
+# Results go to $SUREFOOT_RESULTS_DIR, by default results; the build to $SUREFOOT_BUILD_DIR, by default build/release.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source cmake/packages.sh
+require_packages "${build_packages[@]}" gnuplot-nox
+
+build=${SUREFOOT_BUILD_DIR:-build/release}
+results=${SUREFOOT_RESULTS_DIR:-results}
+cmake --preset release -B "$build" -D SUREFOOT_TESTS=OFF -D SUREFOOT_EXAMPLES=ON -D SUREFOOT_BENCHMARKS=OFF
+cmake --build "$build"
+
+step() {
+  echo
+  echo "== $*"
+  "$build/bin/sigmaban_approach" "$@"
+}
+
+for problem in ha anha; do
+  step train --problem $problem --budget 200 --seed 1 --out "$results/rfpi_$problem.policy"
+  if [[ ${1-} == --paper ]]; then
+    step train --problem $problem --budget 300 --seed 1 --preset paper --out "$results/paper_$problem.policy"
+  fi
+  step tune --problem $problem --budget 50 --seed 1 --out "$results/tuned_$problem.json"
+  step export --policy "$results/rfpi_$problem.policy" --out "$results/rfpi_$problem.c"
+done
+step trajectories --results "$results"
+step table --results "$results"
+echo
+echo "Policies, C files for the robot, pictures and table.json are in $results/"

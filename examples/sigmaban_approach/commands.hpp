@@ -1,0 +1,44 @@
+// The subcommands of the program. Each adds itself with its options; it runs when the command line names it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <string>
+
+#include "approach.hpp"
+#include "surefoot/core/error.hpp"
+
+namespace sigmaban {
+
+void add_train(CLI::App& program);
+void add_tune(CLI::App& program);
+void add_evaluate(CLI::App& program);
+void add_trajectories(CLI::App& program);
+void add_export(CLI::App& program);
+void add_table(CLI::App& program);
+
+/// A file or option that cannot be used, or a program that is missing; the message names it and the cure.
+struct UsageError : surefoot::Error {
+  using Error::Error;
+};
+
+/// Thrown after Ctrl-C, once everything worth keeping is on disk.
+struct Interrupted {};
+
+/// The option --problem ha|anha.
+inline void add_problem_option(CLI::App& command, std::string& problem) {
+  command.add_option("--problem", problem, "ha: holonomic approach; anha: almost non-holonomic approach")
+      ->required()
+      ->check(CLI::IsMember({"ha", "anha"}));
+}
+
+/// The option --threads.
+inline void add_threads_option(CLI::App& command, std::size_t& threads) {
+  command.add_option("--threads", threads, "0: as many as the machine has; results do not depend on it")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+}
+
+inline Approach problem_named(const std::string& name) { return name == "ha" ? Approach::ha() : Approach::anha(); }
+
+}  // namespace sigmaban

@@ -1,0 +1,69 @@
+// A smaller forest that does what a larger one does: one tree with linear leaves, grown where it pays most, learnt from
+// the larger policy's actions in the states that its runs visit.
+// Hinton, Vinyals, Dean: "Distilling the Knowledge in a Neural Network", 2015, applied to forests. With so many samples
+// one large tree beats many small ones of the same total size.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/problem.hpp"
+#include "surefoot/core/rng.hpp"
+#include "surefoot/forest/dataset.hpp"
+#include "surefoot/forest/extra_trees.hpp"
+#include "surefoot/solve/forest_policy.hpp"
+#include "surefoot/solve/visited_states.hpp"
+
+namespace sigmaban {
+
+struct DistillOptions {
+  int runs = 16'000;         // of the larger policy, from the problem's starts
+  int horizon = 50;          // [transitions] of each run
+  double exploration = 0.02;  // chance per step of a run to hold a random action for 1 to 3 steps
+  int min_leaf = 30;         // fewest states in a leaf
+};
+
+/// What the larger policy does where it goes: features in, actions out.
+template <surefoot::Problem P, surefoot::Executor E>
+surefoot::Dataset<surefoot::feature_dim<P>(), P::action_dim> demonstrations(const surefoot::ForestPolicy<P>& policy,
+                                                                            const DistillOptions& options,
+                                                                            const E& executor, std::uint64_t seed) {
+  using State = typename P::State;
+  constexpr int inputs = surefoot::feature_dim<P>();
+  const auto act = [&](std::span<const State> states) { return policy.act(states); };
+  const std::vector<State> states =
+      surefoot::visited_states(policy.problem(), act, static_cast<std::size_t>(options.runs), options.horizon,
+                               options.exploration, executor, surefoot::Rng(seed));
+  const auto count = static_cast<Eigen::Index>(states.size());
+  const std::vector<float> rows = surefoot::feature_rows<P>(policy.problem(), states);
+  surefoot::Dataset<inputs, P::action_dim> data;
+  data.inputs = Eigen::Map<const Eigen::Matrix<float, inputs, Eigen::Dynamic>>(rows.data(), inputs, count);
+  data.outputs.resize(P::action_dim, count);
+  constexpr std::size_t block = 4096;
+  executor.run((states.size() + block - 1) / block, [&](std::size_t job) {
+    const std::size_t first = job * block;
+    const auto part = std::span(states).subspan(first, std::min(block, states.size() - first));
+    const auto actions = policy.act(part);
+    for (std::size_t i = 0; i < actions.size(); ++i) data.outputs.col(static_cast<Eigen::Index>(first + i)) = actions[i];
+  }, {});
+  return data;
+}
+
+/// One tree of at most `leaves` leaves that imitates the demonstrations.
+template <surefoot::Problem P, surefoot::Executor E>
+surefoot::ForestPolicy<P> imitate(const P& problem,
+                                  const surefoot::Dataset<surefoot::feature_dim<P>(), P::action_dim>& demonstrations,
+                                  int leaves, const DistillOptions& options, const E& executor, std::uint64_t seed) {
+  surefoot::ExtraTreesOptions tree;
+  tree.trees = 1;
+  tree.max_leaves = leaves;
+  tree.min_leaf = options.min_leaf;
+  tree.threshold_rule = surefoot::ThresholdRule::balanced;
+  return {problem, surefoot::train_extra_trees<surefoot::LinearLeaf>(demonstrations, tree, executor, seed)};
+}
+
+}  // namespace sigmaban

@@ -1,0 +1,60 @@
+// `evaluate`: the mean cost of a policy.
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "any_policy.hpp"
+#include "commands.hpp"
+
+namespace sigmaban {
+namespace {
+
+struct Options {
+  std::string problem, policy;
+  int trials = 10'000;
+  std::uint64_t seed = evaluation_seed;
+  std::size_t threads = 0;
+  bool json = false;
+};
+
+void run(const Options& options) {
+  const Approach problem = problem_named(options.problem);
+  const AnyPolicy policy = load_any_policy(problem, options.policy);
+  const auto start = std::chrono::steady_clock::now();
+  const auto cost = mean_cost(problem, policy, options.trials, options.seed, surefoot::Threads(options.threads));
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  if (options.json) {
+    const nlohmann::ordered_json json{{"problem", options.problem}, {"policy", options.policy},
+                                      {"trials", options.trials},   {"seed", options.seed},
+                                      {"cost", cost.mean},          {"low", cost.low()},
+                                      {"high", cost.high()},        {"seconds", elapsed.count()}};
+    std::cout << json.dump(2) << '\n';
+  } else {
+    std::printf("%s, %s: cost %.3f +- %.3f (95 %%), %d trials of %d walk cycles in %.2f s\n", options.problem.c_str(),
+                options.policy.c_str(), cost.mean, cost.half_width(), options.trials, Approach::horizon,
+                elapsed.count());
+  }
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("evaluate", "Measure the mean cost of a policy");
+  add_problem_option(*command, options->problem);
+  command->add_option("--policy", options->policy, "winner2016, tuned, or a file written by train or tune")
+      ->required();
+  command->add_option("--trials", options->trials, "independent runs")
+      ->check(CLI::Range(2, 100'000'000))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "of starts and noise")->capture_default_str();
+  add_threads_option(*command, options->threads);
+  command->add_flag("--json", options->json, "print JSON");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace sigmaban

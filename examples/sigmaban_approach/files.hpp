@@ -1,0 +1,34 @@
+// Text files whose folder is made as needed.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <system_error>
+
+#include "commands.hpp"
+#include "surefoot/core/binary.hpp"
+
+namespace sigmaban {
+
+inline std::string read_text(const std::filesystem::path& path) {
+  const surefoot::Bytes bytes = surefoot::read_file(path);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// Makes the folder of `path` and throws UsageError if no file can be written there: better now than after the work.
+inline void prepare_output(const std::filesystem::path& path) {
+  std::error_code failed;
+  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failed);
+  const std::filesystem::path aside = path.string() + ".part";
+  const bool written = std::ofstream(aside, std::ios::binary).is_open() && !std::filesystem::is_directory(path);
+  std::filesystem::remove(aside, failed);
+  if (!written) throw UsageError(path.string() + ": cannot be written, choose a folder that you may write to");
+}
+
+inline void write_text(const std::filesystem::path& path, const std::string& text) {
+  prepare_output(path);
+  surefoot::write_file_atomically(path, text);
+}
+
+}  // namespace sigmaban

@@ -1,0 +1,65 @@
+// An axis-aligned box: the bounds of states, actions and search spaces.
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "surefoot/core/error.hpp"
+#include "surefoot/core/rng.hpp"
+#include "surefoot/core/vec.hpp"
+
+namespace surefoot {
+
+/// Closed box [low, high] in N dimensions, in the units of whatever it bounds. N may be Eigen::Dynamic.
+/// A box can only be built valid: finite bounds with low <= high in every dimension, else CoreError.
+template <int N>
+class Box {
+ public:
+  Box(Vec<N> low, Vec<N> high) : low_(std::move(low)), high_(std::move(high)) {
+    if (low_.size() != high_.size()) throw CoreError("Box: low and high must have the same size");
+    for (Eigen::Index i = 0; i < low_.size(); ++i) {
+      if (!std::isfinite(low_[i]) || !std::isfinite(high_[i]) || low_[i] > high_[i]) {
+        throw CoreError("Box: dimension " + std::to_string(i) + " must have finite bounds with low <= high, got [" +
+                        std::to_string(low_[i]) + ", " + std::to_string(high_[i]) + "]");
+      }
+    }
+  }
+
+  /// The box [-half, half].
+  static Box symmetric(const Vec<N>& half) { return Box(-half, half); }
+
+  const Vec<N>& low() const { return low_; }
+  const Vec<N>& high() const { return high_; }
+  Eigen::Index size() const { return low_.size(); }
+  Vec<N> width() const { return high_ - low_; }
+  Vec<N> center() const { return 0.5 * (low_ + high_); }
+
+  /// Whether the point lies inside, its faces included. False for a point with a NaN.
+  bool contains(const Vec<N>& point) const {
+    return (point.array() >= low_.array()).all() && (point.array() <= high_.array()).all();
+  }
+
+  /// The nearest point of the box.
+  Vec<N> clamp(const Vec<N>& point) const { return point.cwiseMax(low_).cwiseMin(high_); }
+
+  /// Maps [0,1]^N onto the box, and back (a dimension without width maps back to 0).
+  Vec<N> from_unit(const Vec<N>& unit) const { return low_ + unit.cwiseProduct(width()); }
+  Vec<N> to_unit(const Vec<N>& point) const {
+    Vec<N> unit = point - low_;
+    for (Eigen::Index i = 0; i < unit.size(); ++i) unit[i] = high_[i] > low_[i] ? unit[i] / (high_[i] - low_[i]) : 0.0;
+    return unit;
+  }
+
+  /// A uniform draw.
+  Vec<N> sample(Rng& rng) const {
+    Vec<N> point = low_;
+    for (Eigen::Index i = 0; i < point.size(); ++i) point[i] = rng.uniform(low_[i], high_[i]);
+    return point;
+  }
+
+ private:
+  Vec<N> low_;
+  Vec<N> high_;
+};
+
+}  // namespace surefoot

@@ -1,0 +1,117 @@
+// The descent of one input through many trees with AVX2: 8 trees per vector, 32 in flight, a node per gathered word,
+// and the input's keys in two registers. Chosen at run time; gives the same leaves as the portable loop.
+#pragma once
+
+#include "surefoot/forest/trees.hpp"
+
+#if defined(__x86_64__) && defined(__GNUC__)
+#define SUREFOOT_AVX2
+
+#include <immintrin.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace surefoot::detail {
+
+constexpr std::size_t avx2_slots = 16;  // keys that fit into two registers, the slot behind the last included
+
+/// Eight descents.
+struct Avx2Lanes {
+  __m256i place;  // index of each lane's node
+  __m256i key;    // its key, lanes in the order 0 1 4 5 2 3 6 7
+};
+
+// Sort keys are unsigned, AVX2 compares signed: both sides get their top bit flipped.
+struct Avx2Keys {
+  __m256i first;   // slots 0 to 7, flipped
+  __m256i second;  // slots 8 to 15, flipped
+};
+
+[[gnu::target("avx2"), gnu::always_inline]] inline __m256i load_words(const std::uint32_t* words) {
+  return _mm256_load_si256(reinterpret_cast<const __m256i*>(words));
+}
+[[gnu::target("avx2"), gnu::always_inline]] inline void store_words(__m256i value, std::uint32_t* words) {
+  _mm256_store_si256(reinterpret_cast<__m256i*>(words), value);
+}
+
+/// One step of 8 lanes; not zero if any moved.
+template <bool TwoRegisters>
+[[gnu::target("avx2"), gnu::always_inline]] inline __m256i step(const Node* nodes, const Avx2Keys& keys,
+                                                                Avx2Lanes& lanes) {
+  const auto* words = reinterpret_cast<const long long*>(nodes);
+  // The mask is hidden from the compiler, which would otherwise leave the gather waiting for its target's old value.
+  __m256i all = _mm256_set1_epi64x(-1);
+  asm("" : "+x"(all));
+  const __m256i zero = _mm256_setzero_si256();
+  const __m256 low = _mm256_castsi256_ps(
+      _mm256_mask_i32gather_epi64(zero, words, _mm256_castsi256_si128(lanes.place), all, sizeof(Node)));
+  const __m256 high = _mm256_castsi256_ps(
+      _mm256_mask_i32gather_epi64(zero, words, _mm256_extracti128_si256(lanes.place, 1), all, sizeof(Node)));
+  const __m256i link = _mm256_castps_si256(_mm256_shuffle_ps(low, high, 0x88));
+  lanes.key = _mm256_castps_si256(_mm256_shuffle_ps(low, high, 0xDD));
+  __m256i input = _mm256_permutevar8x32_epi32(keys.first, link);
+  if constexpr (TwoRegisters) {
+    const __m256i other = _mm256_permutevar8x32_epi32(keys.second, link);
+    input = _mm256_castps_si256(_mm256_blendv_ps(_mm256_castsi256_ps(input), _mm256_castsi256_ps(other),
+                                                 _mm256_castsi256_ps(_mm256_slli_epi32(link, 28))));
+  }
+  const __m256i flip = _mm256_set1_epi32(static_cast<int>(0x80000000U));
+  const __m256i greater = _mm256_cmpgt_epi32(input, _mm256_xor_si256(lanes.key, flip));  // -1 where true
+  const __m256i moved = _mm256_sub_epi32(_mm256_srli_epi32(link, 8), greater);
+  lanes.place = _mm256_add_epi32(lanes.place, _mm256_permute4x64_epi64(moved, 0xD8));  // back in order
+  return moved;
+}
+
+template <bool TwoRegisters>
+[[gnu::target("avx2")]] inline void find_leaves_avx2(const Node* nodes, std::span<const std::uint32_t> roots,
+                                                     const Avx2Keys& keys, std::uint32_t* payloads) {
+  constexpr std::size_t width = 8;
+  constexpr std::size_t block = 4 * width;
+  for (std::size_t tree = 0; tree < roots.size(); tree += block) {
+    const std::size_t count = std::min(block, roots.size() - tree);
+    alignas(32) std::array<std::uint32_t, block> buffer;
+    for (std::size_t i = 0; i < block; ++i) buffer[i] = roots[tree + std::min(i, count - 1)];
+    Avx2Lanes a{load_words(&buffer[0]), {}};
+    Avx2Lanes b{load_words(&buffer[width]), {}};
+    Avx2Lanes c{load_words(&buffer[2 * width]), {}};
+    Avx2Lanes d{load_words(&buffer[3 * width]), {}};
+    __m256i moved;
+    if (count > 2 * width) {
+      do {
+        moved = step<TwoRegisters>(nodes, keys, a) | step<TwoRegisters>(nodes, keys, b) |
+                step<TwoRegisters>(nodes, keys, c) | step<TwoRegisters>(nodes, keys, d);
+      } while (!_mm256_testz_si256(moved, moved));
+    } else {
+      do {
+        moved = step<TwoRegisters>(nodes, keys, a) | step<TwoRegisters>(nodes, keys, b);
+      } while (!_mm256_testz_si256(moved, moved));
+    }
+    store_words(_mm256_permute4x64_epi64(a.key, 0xD8), &buffer[0]);
+    store_words(_mm256_permute4x64_epi64(b.key, 0xD8), &buffer[width]);
+    store_words(_mm256_permute4x64_epi64(c.key, 0xD8), &buffer[2 * width]);
+    store_words(_mm256_permute4x64_epi64(d.key, 0xD8), &buffer[3 * width]);
+    std::copy_n(buffer.begin(), count, payloads + tree);
+  }
+}
+
+/// The payload of the leaf that one input, given by fewer than 16 sort keys, reaches in each tree.
+[[gnu::target("avx2")]] inline void find_leaves_avx2(const Node* nodes, std::span<const std::uint32_t> roots,
+                                                     std::span<const std::uint32_t> keys, std::uint32_t* payloads) {
+  alignas(32) std::array<std::uint32_t, avx2_slots> slots{};
+  std::copy(keys.begin(), keys.end(), slots.begin());
+  for (std::uint32_t& slot : slots) slot ^= 0x80000000U;
+  const Avx2Keys registers{load_words(&slots[0]), load_words(&slots[8])};
+  if (keys.size() < 8) {
+    find_leaves_avx2<false>(nodes, roots, registers, payloads);
+  } else {
+    find_leaves_avx2<true>(nodes, roots, registers, payloads);
+  }
+}
+
+}  // namespace surefoot::detail
+
+#endif

@@ -1,0 +1,43 @@
+// What can be chosen when a forest is trained.
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "surefoot/forest/error.hpp"
+
+namespace surefoot {
+
+/// How a candidate threshold is drawn.
+enum class ThresholdRule {
+  uniform,   // between the smallest and the largest value in the node, as in the paper
+  balanced,  // between the min_leaf-th smallest and the min_leaf-th largest value: never a child that is too small
+};
+
+struct ExtraTreesOptions {
+  int trees = 25;
+  int candidates = 0;      // K, inputs tried per split; 0: all
+  int min_leaf = 4;        // fewest samples in a leaf (n_min)
+  int max_depth = 0;       // splits from the root to any leaf; 0: no limit
+  int max_leaves = 0;      // per tree, grown best first; 0: no limit
+  bool bootstrap = false;  // each tree draws its samples with replacement
+  ThresholdRule threshold_rule = ThresholdRule::uniform;
+  bool model_score = true;  // linear leaves: score splits by affine fits, not by variance
+  double ridge = 1;         // linear leaves: see LeafOptions
+  bool clamp = true;        // linear leaves: see LeafOptions
+};
+
+/// Throws a ForestError that names the field and its range.
+inline void check(const ExtraTreesOptions& options) {
+  auto require = [](bool good, const char* what) {
+    if (!good) throw ForestError(std::string("ExtraTreesOptions: ") + what);
+  };
+  require(options.trees >= 1, "trees must be at least 1");
+  require(options.candidates >= 0, "candidates must be at least 1, or 0 for all inputs");
+  require(options.min_leaf >= 1, "min_leaf must be at least 1");
+  require(options.max_depth >= 0, "max_depth must be at least 1, or 0 for no limit");
+  require(options.max_leaves >= 0, "max_leaves must be at least 1, or 0 for no limit");
+  require(options.ridge >= 0 && std::isfinite(options.ridge), "ridge must be finite and at least 0");
+}
+
+}  // namespace surefoot

@@ -1,0 +1,132 @@
+// How decision trees lie in memory: 8-byte nodes in one flat array, made for branch-free descent.
+//
+// A node is (key, link). An inner node's key is its threshold as an integer that sorts like the float, its link the
+// input it tests (low 8 bits) and how many nodes further its children are (high 24 bits): the left child (x <=
+// threshold, or NaN), and next to it the right one. A leaf links to itself: distance 0, and its input is the slot
+// behind the last, whose key is 0 and so never greater. Hence one step is, for leaves too,
+//
+//   node += (link >> 8) + (input_key[link & 255] > key)
+//
+// and a leaf's key is free for its payload: the bits of its only parameter, or the number of its parameters' row.
+// Distances are relative, so trees can be moved and joined freely. A tree starts at a multiple of 8 nodes (one cache
+// line) with its root and an unused sibling.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "surefoot/forest/error.hpp"
+
+namespace surefoot {
+
+constexpr int max_forest_inputs = 255;
+
+/// An unsigned integer that sorts like the float; -0 counts as 0. NaN gives 0 (below everything).
+constexpr std::uint32_t sort_key(float value) {
+  if (value != value) return 0;
+  const auto bits = std::bit_cast<std::uint32_t>(value + 0.0F);
+  return (bits >> 31) != 0 ? ~bits : bits | 0x80000000U;
+}
+
+/// The float that a sort key came from.
+constexpr float from_sort_key(std::uint32_t key) {
+  return std::bit_cast<float>((key >> 31) != 0 ? key & 0x7FFFFFFFU : ~key);
+}
+
+class Node {
+ public:
+  static constexpr std::uint32_t max_distance = (1U << 24) - 2;
+
+  constexpr Node() = default;
+  constexpr Node(std::uint32_t key, std::uint32_t link) : bits_((std::uint64_t{key} << 32) | link) {}
+  static constexpr Node inner(int input, float threshold, std::uint32_t distance) {
+    return {sort_key(threshold), (distance << 8) | static_cast<std::uint32_t>(input)};
+  }
+  static constexpr Node leaf(int inputs, std::uint32_t payload) {
+    return {payload, static_cast<std::uint32_t>(inputs)};
+  }
+
+  constexpr std::uint32_t key() const { return static_cast<std::uint32_t>(bits_ >> 32); }
+  constexpr std::uint32_t link() const { return static_cast<std::uint32_t>(bits_); }
+  constexpr std::uint32_t distance() const { return link() >> 8; }
+  constexpr int input() const { return static_cast<int>(link() & 255U); }
+  constexpr bool is_leaf() const { return distance() == 0; }
+  constexpr float threshold() const { return from_sort_key(key()); }  // of an inner node
+  constexpr std::uint32_t payload() const { return key(); }           // of a leaf
+
+  /// How far to go from here; `wide_keys` are the inputs' sort keys shifted up by 32 bits. Comparing all 64 bits at
+  /// once compares the keys: on equal keys the link decides, which is never below 0.
+  constexpr std::size_t step(const std::uint64_t* wide_keys) const {
+    return static_cast<std::size_t>(distance()) + (bits_ < wide_keys[bits_ & 255U] ? 1U : 0U);
+  }
+
+  constexpr bool operator==(const Node&) const = default;
+
+ private:
+  std::uint64_t bits_ = 0;
+};
+static_assert(sizeof(Node) == 8);
+
+/// Allocates whole cache lines.
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t line{64};
+  CacheLineAllocator() = default;
+  template <class U>
+  explicit CacheLineAllocator(const CacheLineAllocator<U>&) {}
+  T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), line)); }
+  void deallocate(T* memory, std::size_t) { ::operator delete(memory, line); }
+  template <class U>
+  bool operator==(const CacheLineAllocator<U>&) const {
+    return true;
+  }
+};
+
+using NodeArray = std::vector<Node, CacheLineAllocator<Node>>;
+constexpr std::size_t nodes_per_line = 64 / sizeof(Node);
+
+/// The trees of a forest, sizes known at run time only; Forest is the typed shell around it.
+struct Trees {
+  int inputs = 0;
+  int outputs = 0;
+  std::size_t leaf_parameters = 0;  // floats per leaf; 1: kept in the leaf's node, `parameters` is empty
+  std::size_t leaves = 0;           // of all trees together
+  NodeArray nodes;
+  std::vector<std::uint32_t> roots;  // index of each tree's root in `nodes`
+  std::vector<float> parameters;     // leaf_parameters per leaf
+
+  bool inline_leaves() const { return leaf_parameters == 1; }
+
+  /// Adds the trees of another forest of the same shape behind these.
+  void append(const Trees& other) {
+    if (other.inputs != inputs || other.outputs != outputs || other.leaf_parameters != leaf_parameters) {
+      throw ForestError("forests to join must have the same inputs, outputs and leaves, got " + shape() + " and " +
+                        other.shape());
+    }
+    const std::size_t start = nodes.size();
+    if (start + other.nodes.size() > 0x7FFFFFFFU) throw ForestError("a forest can have at most 2^31 nodes");
+    nodes.insert(nodes.end(), other.nodes.begin(), other.nodes.end());
+    if (!inline_leaves()) {
+      for (std::size_t i = start; i < nodes.size(); ++i) {
+        if (nodes[i].is_leaf()) nodes[i] = Node::leaf(inputs, nodes[i].payload() + static_cast<std::uint32_t>(leaves));
+      }
+    }
+    for (const std::uint32_t root : other.roots) roots.push_back(root + static_cast<std::uint32_t>(start));
+    parameters.insert(parameters.end(), other.parameters.begin(), other.parameters.end());
+    leaves += other.leaves;
+  }
+
+  std::string shape() const {
+    return std::to_string(inputs) + " inputs, " + std::to_string(outputs) + " outputs, " +
+           std::to_string(leaf_parameters) + " numbers per leaf";
+  }
+
+  bool operator==(const Trees&) const = default;
+};
+
+}  // namespace surefoot

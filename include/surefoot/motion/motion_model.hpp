@@ -1,0 +1,56 @@
+// The concept of a motion model: what a walk cycle (or a control period of wheels) really does with its orders.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <string_view>
+
+#include "surefoot/core/box.hpp"
+#include "surefoot/core/vec.hpp"
+#include "surefoot/motion/pose2.hpp"
+
+namespace surefoot {
+
+/// What one parameter of a model is called, and where it may reasonably lie.
+struct ModelParameter {
+  std::string_view name, unit;
+  double low = 0, high = 0;  // in that unit
+};
+
+/// A motion model maps the ordered displacement of one cycle (x, y, turn) [m, m, rad] to the displacement that
+/// follows from it, in the frame before the cycle. Its parameters form a vector, so that calibration can search them.
+/// The smallest conforming struct:
+///
+///   struct Scale {
+///     static constexpr int parameter_count = 1;
+///     static std::array<surefoot::ModelParameter, 1> parameter_info() { return {{{"scale", "1", 0.5, 2.0}}}; }
+///     static Scale from_parameters(const surefoot::Vec<1>& p) { return {p[0]}; }
+///     surefoot::Vec<1> parameters() const { return surefoot::Vec<1>(scale); }
+///     surefoot::Pose2 displacement(const surefoot::Vec<3>& orders) const {
+///       return surefoot::Pose2::from_vec(scale * orders);
+///     }
+///     double scale = 1;
+///   };
+template <class M>
+concept MotionModel = requires(const M& model, const Vec<3>& orders, const Vec<M::parameter_count>& parameters) {
+  requires M::parameter_count > 0;
+  { M::parameter_info() } -> std::same_as<std::array<ModelParameter, std::size_t{M::parameter_count}>>;
+  { M::from_parameters(parameters) } -> std::same_as<M>;
+  { model.parameters() } -> std::same_as<Vec<M::parameter_count>>;
+  { model.displacement(orders) } -> std::same_as<Pose2>;
+};
+
+/// The ranges of all parameters of a model.
+template <MotionModel M>
+Box<M::parameter_count> parameter_box() {
+  Vec<M::parameter_count> low, high;
+  Eigen::Index i = 0;
+  for (const ModelParameter& parameter : M::parameter_info()) {
+    low[i] = parameter.low;
+    high[i++] = parameter.high;
+  }
+  return {low, high};
+}
+
+}  // namespace surefoot

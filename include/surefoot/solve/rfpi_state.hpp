@@ -1,0 +1,190 @@
+// What RFPI knows between two iterations, and the checkpoint file that holds it.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/binary.hpp"
+#include "surefoot/core/problem.hpp"
+#include "surefoot/forest/forest.hpp"
+#include "surefoot/forest/leaf.hpp"
+#include "surefoot/forest/serialize.hpp"
+#include "surefoot/solve/forest_policy.hpp"
+#include "surefoot/solve/rfpi_options.hpp"
+
+namespace surefoot {
+
+/// States with what was found out about them: column i of each belongs together.
+template <Problem P>
+struct StateSamples {
+  std::vector<typename P::State> states;
+  std::vector<double> values;
+  std::vector<typename P::Action> actions;
+
+  std::size_t size() const { return states.size(); }
+};
+
+/// Work done so far, in counts that do not depend on the clock or the threads.
+struct RfpiWork {
+  std::uint64_t steps = 0;      // simulated transitions
+  std::uint64_t lookups = 0;    // trees descended
+  std::uint64_t fits = 0;       // samples * trees * inputs fitted, levels of the trees included
+
+  /// Nominal seconds of one core.
+  double seconds(const Budget& budget) const {
+    constexpr double lookup_ns = 30;
+    constexpr double fit_ns = 3;
+    return 1e-9 * (budget.step_ns * static_cast<double>(steps) + lookup_ns * static_cast<double>(lookups) +
+                   fit_ns * static_cast<double>(fits));
+  }
+};
+
+template <Problem P>
+struct RfpiState {
+  static constexpr int inputs = feature_dim<P>();
+  // Linear leaves learn values from fewer samples; the paper's constant ones are what ValueMethod::rollouts uses.
+  using LinearValue = Forest<inputs, 1, LinearLeaf>;
+  using ConstantValue = Forest<inputs, 1, ConstantLeaf>;
+  using ActionForest = typename ForestPolicy<P>::ActionForest;
+
+  int iteration = 0;
+  RfpiWork work;
+  StateSamples<P> samples;   // of the last iteration
+  StateSamples<P> previous;  // of the one before
+  LinearValue value;
+  ActionForest policy;  // empty: none yet
+  ActionForest best_policy;
+  double best_cost = 0;
+  std::vector<RfpiProgress> history;
+};
+
+namespace detail {
+
+constexpr std::string_view checkpoint_magic = "SURERFPI";
+constexpr std::uint32_t checkpoint_version = 1;
+
+template <class Vector>
+void write_vectors(ByteWriter& out, const std::vector<Vector>& vectors) {
+  out.u64(vectors.size());
+  for (const Vector& v : vectors) out.words(std::span<const double>(v.data(), static_cast<std::size_t>(v.size())));
+}
+
+template <class Vector>
+std::vector<Vector> read_vectors(ByteReader& in) {
+  const std::uint64_t count = in.u64();
+  std::vector<double> numbers;
+  constexpr auto dims = static_cast<std::uint64_t>(Vector::RowsAtCompileTime);
+  if (count > in.remaining() / 8 / dims) in.fail("ends too early");
+  in.words(numbers, static_cast<std::size_t>(count * dims));
+  std::vector<Vector> vectors(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < vectors.size(); ++i) vectors[i] = Eigen::Map<const Vector>(numbers.data() + i * dims);
+  return vectors;
+}
+
+template <Problem P>
+void write_samples(ByteWriter& out, const StateSamples<P>& samples) {
+  write_vectors(out, samples.states);
+  out.list(samples.values);
+  write_vectors(out, samples.actions);
+}
+
+template <Problem P>
+StateSamples<P> read_samples(ByteReader& in) {
+  StateSamples<P> samples;
+  samples.states = read_vectors<typename P::State>(in);
+  samples.values = in.list<double>();
+  samples.actions = read_vectors<typename P::Action>(in);
+  if (samples.values.size() != samples.size() || samples.actions.size() != samples.size()) {
+    in.fail("is damaged: its samples have different numbers of states, values and actions");
+  }
+  return samples;
+}
+
+template <class F>
+void write_optional(ByteWriter& out, const F& forest) {
+  out.u8(forest.empty() ? 0 : 1);
+  if (!forest.empty()) write(out, forest);
+}
+
+template <class F>
+F read_optional(ByteReader& in) {
+  return in.u8() == 0 ? F() : read<F>(in);
+}
+
+}  // namespace detail
+
+/// `fingerprint` names everything the run depends on (options, seed, problem); a resume must have the same.
+template <Problem P>
+void save_checkpoint(const std::filesystem::path& path, std::uint64_t fingerprint, const RfpiState<P>& state) {
+  ByteWriter out;
+  out.raw(std::as_bytes(std::span(detail::checkpoint_magic)));
+  out.u32(detail::checkpoint_version);
+  out.u64(fingerprint);
+  out.u32(static_cast<std::uint32_t>(state.iteration));
+  out.u64(state.work.steps);
+  out.u64(state.work.lookups);
+  out.u64(state.work.fits);
+  detail::write_samples(out, state.samples);
+  detail::write_samples(out, state.previous);
+  detail::write_optional(out, state.value);
+  detail::write_optional(out, state.policy);
+  detail::write_optional(out, state.best_policy);
+  out.f64(state.best_cost);
+  out.u64(state.history.size());
+  for (const RfpiProgress& p : state.history) {
+    out.u32(static_cast<std::uint32_t>(p.iteration));
+    for (const double number : {p.seconds, p.cpu_seconds, p.share, p.cost, p.best_cost}) out.f64(number);
+    out.u64(p.states);
+    out.u64(p.leaves);
+  }
+  out.add_checksum();
+  write_file_atomically(path, out.bytes());
+}
+
+/// Throws SolveError if the checkpoint belongs to another run, CoreError or ForestError if it is damaged.
+template <Problem P>
+RfpiState<P> load_checkpoint(const std::filesystem::path& path, std::uint64_t fingerprint) {
+  const Bytes bytes = read_file(path);
+  ByteReader in(bytes, "checkpoint " + path.string());
+  const auto magic = in.raw(detail::checkpoint_magic.size());
+  if (!std::ranges::equal(magic, std::as_bytes(std::span(detail::checkpoint_magic)))) in.fail("is not a checkpoint of RFPI");
+  if (in.u32() != detail::checkpoint_version) in.fail("was written by another version of this library");
+  if (in.u64() != fingerprint) {
+    throw SolveError(in.source() + " belongs to a run with another problem, other options or another seed: "
+                     "resume with the same ones, or remove it to start anew");
+  }
+  RfpiState<P> state;
+  state.iteration = static_cast<int>(in.u32());
+  state.work.steps = in.u64();
+  state.work.lookups = in.u64();
+  state.work.fits = in.u64();
+  state.samples = detail::read_samples<P>(in);
+  state.previous = detail::read_samples<P>(in);
+  state.value = detail::read_optional<typename RfpiState<P>::LinearValue>(in);
+  state.policy = detail::read_optional<typename RfpiState<P>::ActionForest>(in);
+  state.best_policy = detail::read_optional<typename RfpiState<P>::ActionForest>(in);
+  state.best_cost = in.f64();
+  const std::uint64_t entries = in.u64();
+  if (entries > in.remaining() / 60) in.fail("ends too early");
+  for (std::uint64_t i = 0; i < entries; ++i) {
+    RfpiProgress p;
+    p.iteration = static_cast<int>(in.u32());
+    for (double* number : {&p.seconds, &p.cpu_seconds, &p.share, &p.cost, &p.best_cost}) *number = in.f64();
+    p.states = static_cast<std::size_t>(in.u64());
+    p.leaves = static_cast<std::size_t>(in.u64());
+    state.history.push_back(p);
+  }
+  in.expect_checksum();
+  in.expect_end();
+  return state;
+}
+
+}  // namespace surefoot

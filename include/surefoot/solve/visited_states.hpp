@@ -1,0 +1,80 @@
+// The states that runs of a policy visit: where a regression has to be good.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stop_token>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/problem.hpp"
+#include "surefoot/core/rng.hpp"
+#include "surefoot/solve/forest_policy.hpp"
+
+namespace surefoot {
+
+/// Starts `runs` runs at the problem's initial states and returns every state in which an action was taken, run by run.
+/// With chance `exploration` per step a random action is held for 1 to 3 steps instead of the policy's.
+/// Run i draws from rng.stream(i). Fewer runs come back if `stop` is requested.
+template <Problem P, class Acting, Executor E>
+std::vector<typename P::State> visited_states(const P& problem, const Acting& act, std::size_t runs, int horizon,
+                                              double exploration, const E& executor, const Rng& rng,
+                                              std::stop_token stop = {}) {
+  using State = typename P::State;
+  using Action = typename P::Action;
+  constexpr std::size_t runs_per_job = 32;  // in lockstep, so that a forest sees a batch
+  const std::size_t jobs = (runs + runs_per_job - 1) / runs_per_job;
+  std::vector<std::vector<State>> visited(jobs);
+  const Box<P::action_dim> box = problem.action_box();
+  executor.run(
+      jobs,
+      [&](std::size_t job) {
+        struct Run {
+          std::size_t index;
+          Rng rng;
+          int held_steps = 0;
+          Action held = Action::Zero();
+        };
+        std::vector<Run> live;
+        std::vector<State> states;
+        for (std::size_t i = job * runs_per_job; i < std::min(runs, (job + 1) * runs_per_job); ++i) {
+          live.push_back({i, rng.stream(i)});
+          states.push_back(problem.initial_state(live.back().rng));
+        }
+        std::vector<std::vector<State>> paths(live.size());
+        for (int t = 0; t < horizon && !live.empty(); ++t) {
+          std::vector<Action> actions = act(std::span<const State>(states));
+          std::size_t kept = 0;
+          for (std::size_t i = 0; i < live.size(); ++i) {
+            Run& run = live[i];
+            paths[run.index % runs_per_job].push_back(states[i]);
+            if (exploration > 0) {
+              if (run.held_steps == 0 && run.rng.uniform() < exploration) {
+                run.held_steps = 1 + static_cast<int>(run.rng.below(3));
+                run.held = box.sample(run.rng);
+              }
+              if (run.held_steps > 0) {
+                --run.held_steps;
+                actions[i] = run.held;
+              }
+            }
+            const Step<State> step = problem.step(states[i], actions[i], run.rng);
+            if (step.terminal) continue;
+            live[kept] = run;
+            states[kept++] = step.next;
+          }
+          live.resize(kept, Run{0, rng});
+          states.resize(kept);
+        }
+        for (const auto& path : paths) visited[job].insert(visited[job].end(), path.begin(), path.end());
+      },
+      std::move(stop));
+  std::vector<State> all;
+  for (const auto& part : visited) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+}  // namespace surefoot

@@ -1,0 +1,46 @@
+# cmake -D compiler=... -D include=dir;dir -P check_wrong_problems.cmake
+# A problem that lacks a member, or has a wrong one, must give one error of a few lines that names the member.
+set(most_lines 10)  # apart from those that say how the header came to be included
+list(TRANSFORM include PREPEND -isystem)
+list(TRANSFORM include REPLACE "^-isystem(.*/include)$" "-I\\1" AT 0)
+
+function(compile result output)
+  list(TRANSFORM ARGN PREPEND -D)
+  execute_process(COMMAND ${compiler} -std=c++20 -fsyntax-only ${include} ${ARGN} ${CMAKE_CURRENT_LIST_DIR}/wrong_problem.cpp
+                  RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE text)
+  set(${result} ${status} PARENT_SCOPE)
+  set(${output} "${text}" PARENT_SCOPE)
+endfunction()
+
+function(expect_right)
+  compile(status output ${ARGN})
+  if(NOT status EQUAL 0)
+    message(SEND_ERROR "the right problem does not compile (${ARGN}):\n${output}")
+  endif()
+endfunction()
+
+function(expect_error_about member)
+  compile(status output ${ARGN})
+  string(REGEX MATCHALL "[^\n]*error: [^\n]*" errors "${output}")
+  string(REGEX REPLACE "(In file included| +)from [^\n]*\n" "" message "${output}")
+  string(REGEX MATCHALL "\n" lines "${message}")
+  list(LENGTH errors error_count)
+  list(LENGTH lines line_count)
+  if(status EQUAL 0)
+    message(SEND_ERROR "a wrong problem compiles (${ARGN})")
+  elseif(NOT error_count EQUAL 1 OR NOT errors MATCHES "['‘]${member}['’]" OR line_count GREATER most_lines)
+    message(SEND_ERROR "${ARGN}: ${line_count} lines (at most ${most_lines}), ${error_count} errors (one, about ${member}):\n"
+                       "${output}")
+  endif()
+endfunction()
+
+foreach(entry RFPI EVALUATE COMPARE VALIDATE)
+  expect_right(${entry})
+  expect_error_about(step ${entry} WRONG_step=0)
+endforeach()
+foreach(how 1 2 3)
+  expect_error_about(step EVALUATE WRONG_step=${how})
+endforeach()
+foreach(member state_dim action_dim State Action state_box action_box initial_state call_operator reset)
+  expect_error_about(${member} EVALUATE WRONG_${member})
+endforeach()
