@@ -19,13 +19,17 @@ step() {
   "$build/bin/sigmaban_approach" "$@"
 }
 
+# Budgets count work, in seconds of one core, so that the result is the same on every machine; --max-wall [s] keeps slow
+# machines within the ten minutes.
 for problem in ha anha; do
-  step train --problem $problem --budget 200 --seed 1 --out "$results/rfpi_$problem.policy"
+  policy=$results/rfpi_$problem
+  step train --problem $problem --budget 400 --max-wall 220 --seed 1 --out "$policy.policy"
+  step tune --problem $problem --budget 50 --max-wall 40 --seed 1 --out "$results/tuned_$problem.json"
+  step export --policy "$policy.policy" --out "$policy.c"
+  step export --policy "$policy.policy" --max-kb 200 --out "${policy}_small.c"
   if [[ ${1-} == --paper ]]; then
-    step train --problem $problem --budget 300 --seed 1 --preset paper --out "$results/paper_$problem.policy"
+    step train --problem $problem --budget 600 --max-wall 300 --seed 1 --preset paper --out "$results/paper_$problem.policy"
   fi
-  step tune --problem $problem --budget 50 --seed 1 --out "$results/tuned_$problem.json"
-  step export --policy "$results/rfpi_$problem.policy" --out "$results/rfpi_$problem.c"
 done
 step trajectories --results "$results"
 step table --results "$results"

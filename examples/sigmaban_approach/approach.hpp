@@ -29,13 +29,13 @@ struct ApproachConstants {
   double steps_per_cycle = 2;                           // one transition is one walk cycle
 
   // Displacement of a walk cycle = A (1, orders of the cycle): calibrated on the real robot [m, m, rad].
-  surefoot::FullLinearCorrection walk = surefoot::FullLinearCorrection::from_parameters(surefoot::Vec<12>{
-      0.0093, 1.30, -0.17, 0.001,      // forward
-      -0.0026, -0.075, 1.47, 0.101,    // left
-      0.0002, -0.35, 0.05, 0.909});    // turn
+  surefoot::FullLinearCorrection walk =
+      surefoot::FullLinearCorrection::from_parameters(surefoot::Vec<12>{0.0093, 1.30, -0.17, 0.001,    // forward
+                                                                        -0.0026, -0.075, 1.47, 0.101,  // left
+                                                                        0.0002, -0.35, 0.05, 0.909});  // turn
 
-  double kick_min_x = 0.15, kick_max_x = 0.30, kick_max_y = 0.06;  // ball in the kick zone [m]
-  double kick_tolerance = 10 * degree;                             // of the kick direction [rad]
+  double kick_min_x = 0.15, kick_max_x = 0.30, kick_max_y = 0.06;                  // ball in the kick zone [m]
+  double kick_tolerance = 10 * degree;                                             // of the kick direction [rad]
   double collision_min_x = -0.20, collision_max_x = 0.15, collision_max_y = 0.25;  // ball under the robot [m]
   double max_distance = 1.0;                                                       // beyond, the ball is lost [m]
   double step_reward = -1, collision_reward = -3, lost_reward = -100;
@@ -139,8 +139,8 @@ struct Approach {
   }
 
   /// For regression: where ball and kick target will be, seen from the robot, after one walk cycle at the present speed
-  /// and without noise (Cartesian, polar, and in the frame that looks in the kick direction), the ball's distance and its
-  /// direction from the kick line now, and the speed. `export` writes the same lines in C.
+  /// and without noise (Cartesian, polar, and in the frame that looks in the kick direction), the ball's distance and
+  /// its direction from the kick line now, and the speed. `export` writes the same lines in C.
   static constexpr int feature_dim = 11;
   surefoot::Vec<feature_dim> features(const State& s) const {
     const surefoot::Pose2 move = constants.walk.displacement(constants.steps_per_cycle * s.tail<3>());
@@ -148,12 +148,13 @@ struct Approach {
     const double x = s[0] * std::cos(direction) - move.x, y = s[0] * std::sin(direction) - move.y;
     const double c = std::cos(kick), k = std::sin(kick);
     surefoot::Vec<feature_dim> f;
-    f << x, y, std::atan2(y, x), kick, c * x + k * y, c * y - k * x, s[0], surefoot::wrap_angle(s[1] - s[2]), s.tail<3>();
+    f << x, y, std::atan2(y, x), kick, c * x + k * y, c * y - k * x, s[0], surefoot::wrap_angle(s[1] - s[2]),
+        s.tail<3>();
     return f;
   }
 
   std::vector<std::string> state_names() const {
-    return {"ball distance [m]",       "ball direction [rad]",    "kick direction [rad]",
+    return {"ball distance [m]",      "ball direction [rad]",   "kick direction [rad]",
             "forward speed [m/step]", "lateral speed [m/step]", "turn speed [rad/step]"};
   }
   std::vector<std::string> action_names() const {

@@ -21,10 +21,10 @@
 namespace sigmaban {
 
 struct DistillOptions {
-  int runs = 16'000;         // of the larger policy, from the problem's starts
-  int horizon = 50;          // [transitions] of each run
+  int runs = 16'000;          // of the larger policy, from the problem's starts
+  int horizon = 50;           // [transitions] of each run
   double exploration = 0.02;  // chance per step of a run to hold a random action for 1 to 3 steps
-  int min_leaf = 30;         // fewest states in a leaf
+  int min_leaf = 30;          // fewest states in a leaf
 };
 
 /// What the larger policy does where it goes: features in, actions out.
@@ -44,12 +44,15 @@ surefoot::Dataset<surefoot::feature_dim<P>(), P::action_dim> demonstrations(cons
   data.inputs = Eigen::Map<const Eigen::Matrix<float, inputs, Eigen::Dynamic>>(rows.data(), inputs, count);
   data.outputs.resize(P::action_dim, count);
   constexpr std::size_t block = 4096;
-  executor.run((states.size() + block - 1) / block, [&](std::size_t job) {
-    const std::size_t first = job * block;
-    const auto part = std::span(states).subspan(first, std::min(block, states.size() - first));
-    const auto actions = policy.act(part);
-    for (std::size_t i = 0; i < actions.size(); ++i) data.outputs.col(static_cast<Eigen::Index>(first + i)) = actions[i];
-  }, {});
+  executor.run((states.size() + block - 1) / block,
+               [&](std::size_t job) {
+                 const std::size_t first = job * block;
+                 const auto part = std::span(states).subspan(first, std::min(block, states.size() - first));
+                 const auto actions = policy.act(part);
+                 for (std::size_t i = 0; i < actions.size(); ++i)
+                   data.outputs.col(static_cast<Eigen::Index>(first + i)) = actions[i];
+               },
+               {});
   return data;
 }
 

@@ -46,8 +46,7 @@ void add_evaluate(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("evaluate", "Measure the mean cost of a policy");
   add_problem_option(*command, options->problem);
-  command->add_option("--policy", options->policy, "winner2016, tuned, or a file written by train or tune")
-      ->required();
+  command->add_option("--policy", options->policy, "winner2016, tuned, or a file written by train or tune")->required();
   command->add_option("--trials", options->trials, "independent runs")
       ->check(CLI::Range(2, 100'000'000))
       ->capture_default_str();

@@ -22,6 +22,7 @@ using Policy = surefoot::ForestPolicy<Approach>;
 struct Options {
   std::filesystem::path policy, out;
   std::size_t max_kb = 2000;  // [1000 bytes]
+  int runs = DistillOptions{}.runs;
   std::uint64_t seed = 1;
   std::size_t threads = 0;
 };
@@ -58,9 +59,12 @@ std::string wrapper(const Approach& problem) {
    per walk cycle, in the same units. */
 void surefoot_policy(const double state[6], double action[3]);
 void surefoot_policy(const double state[6], double action[3]) {
-  static const double limit[3] = )" + braces(c.max_acceleration) + R"(;
-  static const double walk[3][4] = {)" + walk + R"(};
-  const double steps = )" + std::to_string(c.steps_per_cycle) + R"(, pi = 3.14159265358979323846;
+  static const double limit[3] = )" +
+         braces(c.max_acceleration) + R"(;
+  static const double walk[3][4] = {)" +
+         walk + R"(};
+  const double steps = )" +
+         std::to_string(c.steps_per_cycle) + R"(, pi = 3.14159265358979323846;
   double move[3], features[11], turn, kick, x, y, ck, sk;
   int i;
   for (i = 0; i < 3; ++i) {
@@ -95,15 +99,14 @@ void surefoot_policy(const double state[6], double action[3]) {
 static_assert(Approach::feature_dim == 11, "wrapper() must write the features of Approach");
 
 std::string c_file(const Policy& policy) {
-  return surefoot::export_c(policy.forest(),
-                            {.table = surefoot::CTable::text, .wrapper = wrapper(policy.problem())});
+  return surefoot::export_c(policy.forest(), {.table = surefoot::CTable::text, .wrapper = wrapper(policy.problem())});
 }
 
 double kilobytes(const std::string& text) { return static_cast<double>(text.size()) / 1000; }
 
 /// The largest imitation whose C file fits.
 Policy shrink(const Policy& policy, const Options& options, const surefoot::Threads& threads) {
-  const DistillOptions distill{.horizon = Approach::horizon};
+  const DistillOptions distill{.runs = options.runs, .horizon = Approach::horizon};
   const auto data = demonstrations(policy, distill, threads, options.seed);
   int leaves = static_cast<int>(1000 * options.max_kb / 240);  // about what a leaf takes in the file [bytes]
   for (;;) {
@@ -148,10 +151,14 @@ void add_export(CLI::App& program) {
   command->add_option("--policy", options->policy, "policy file of train")->required();
   command->add_option("--out", options->out, "C file")->required();
   command
-      ->add_option("--max-kb", options->max_kb,
-                   "largest C file [kB]; a policy that does not fit is replaced by a smaller one learnt from it, and the "
-                   "price is told; 0: no limit")
+      ->add_option(
+          "--max-kb", options->max_kb,
+          "largest C file [kB]; a policy that does not fit is replaced by a smaller one learnt from it, and the "
+          "price is told; 0: no limit")
       ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  command->add_option("--runs", options->runs, "runs of the policy that the smaller one learns from")
+      ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "of that learning")->capture_default_str();
   add_threads_option(*command, options->threads);

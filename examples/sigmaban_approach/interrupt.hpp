@@ -1,10 +1,10 @@
 // Ctrl-C as a request to stop, so that long work ends in order and keeps what it has.
 #pragma once
 
-#include <csignal>
 #include <pthread.h>
 
 #include <atomic>
+#include <csignal>
 #include <cstdlib>
 #include <stop_token>
 #include <thread>

@@ -31,13 +31,14 @@ std::string panel(const std::string& problem, const std::string& title, int bloc
   const Published& known = published(problem);
   std::ostringstream out;
   out << "set title '" << title << "'\n"
-      << "plot [:][7:60] " << known.rfpi << " title 'RFPI of the paper, " << published_core_hours
+      << "plot [:][7:150] " << known.rfpi << " title 'published RFPI, " << published_core_hours
       << " core-hours' lc rgb '#d55e00' dt 2 lw 1.5, " << known.near_optimal
       << " title 'near-optimal (grid)' lc rgb '#009e73' dt 4 lw 1.5, data index " << block
-      << " using 1:2 with points pt 7 ps 0.4 lc rgb '#9ecae1' title 'RFPI, current policy', '' index " << block
+      << " using 1:2 with points pt 7 ps 0.4 lc rgb '#9ecae1' title 'RFPI, newest policy', '' index " << block
       << " using 1:3 with steps lc rgb '#0072b2' lw 2 title 'RFPI, best so far'";
   if (with_paper_settings) {
-    out << ", '' index " << block + 1 << " using 1:3 with steps lc rgb '#777777' lw 1.5 title 'RFPI with the settings of the paper'";
+    out << ", '' index " << block + 1
+        << " using 1:3 with steps lc rgb '#777777' lw 1.5 title 'RFPI, settings of the paper'";
   }
   out << '\n';
   return out.str();
@@ -49,7 +50,7 @@ void draw_learning_curves(const Results& results) {
   std::string data;
   std::string commands =
       "set multiplot layout 1,2 title 'Learning the approach: mean cost of a run'\n"
-      "set logscale xy\nset ytics (7, 8, 9, 10, 12, 15, 20, 30, 40, 50, 60)\n"
+      "set logscale xy\nset ytics (7, 8, 9, 10, 12, 15, 20, 30, 40, 50, 70, 100)\n"
       "set grid lc rgb '#e6e6e6' lt 1\nset key top right\n"
       "set xlabel 'CPU seconds'\nset ylabel 'cost'\n";
   int block = 0;

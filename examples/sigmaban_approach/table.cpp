@@ -27,9 +27,9 @@ struct Options {
 
 struct Row {
   std::string policy, problem;
-  std::optional<double> paper;            // published cost
+  std::optional<double> paper;             // published cost
   std::optional<surefoot::Estimate> ours;  // measured here, or by dynamic programming for the last row
-  std::optional<double> cpu_seconds;      // of training or tuning
+  std::optional<double> cpu_seconds;       // of training or tuning
 };
 
 /// What `train` and `tune` noted about their work, if the file is there.

@@ -25,11 +25,12 @@ namespace {
 struct Options {
   std::string problem;
   std::string preset = "default";
-  double budget = 300;                                            // [s] of one nominal core
+  double budget = 300;                                    // [s] of one nominal core
   double wall = std::numeric_limits<double>::infinity();  // [s]
   std::uint64_t seed = 1;
   std::size_t threads = 0;
   std::filesystem::path out;
+  double checkpoint_seconds = 10;
   bool resume = false;
 };
 
@@ -41,8 +42,8 @@ std::vector<Approach::State> seed_states(const Approach& problem, std::uint64_t 
   for (int i = 0; i < seed_runs; ++i) {
     const surefoot::Rng rng(seed, i);
     surefoot::Rng start = rng.stream(0);
-    const auto run = surefoot::trajectory(problem, Winner2016(), problem.initial_state(start), Approach::horizon,
-                                          rng.stream(1));
+    const auto run =
+        surefoot::trajectory(problem, Winner2016(), problem.initial_state(start), Approach::horizon, rng.stream(1));
     states.insert(states.end(), run.states.begin(), run.states.end() - (run.terminal ? 1 : 0));
   }
   return states;
@@ -57,8 +58,8 @@ void print_progress(const surefoot::RfpiProgress& p) {
 
 nlohmann::ordered_json record(const Options& options, const surefoot::RfpiResult<Approach>& result) {
   nlohmann::ordered_json json{{"problem", options.problem}, {"preset", options.preset}, {"seed", options.seed},
-                              {"budget", options.budget},   {"cost", result.cost.mean},
-                              {"low", result.cost.low()},   {"high", result.cost.high()}};
+                              {"budget", options.budget},   {"cost", result.cost.mean}, {"low", result.cost.low()},
+                              {"high", result.cost.high()}};
   json["cpu_seconds"] = result.history.empty() ? 0 : result.history.back().cpu_seconds;
   json["history"] = nlohmann::json::array();
   for (const surefoot::RfpiProgress& p : result.history) {
@@ -80,6 +81,7 @@ void run(const Options& options) {
   rfpi.budget.seconds = options.budget;
   rfpi.budget.wall_seconds = options.wall;
   rfpi.checkpoint = options.out.string() + ".checkpoint";
+  rfpi.checkpoint_seconds = options.checkpoint_seconds;
   rfpi.resume = options.resume && std::filesystem::exists(rfpi.checkpoint);
   rfpi.on_progress = print_progress;
   if (options.resume && !rfpi.resume) std::printf("There is no %s yet: starting anew.\n", rfpi.checkpoint.c_str());
@@ -114,6 +116,9 @@ void add_train(CLI::App& program) {
   command->add_option("--out", options->out, "policy file; FILE.json tells how it was trained")->required();
   command->add_option("--preset", options->preset, "default: ours; paper: the settings of the paper")
       ->check(CLI::IsMember({"default", "paper"}))
+      ->capture_default_str();
+  command->add_option("--checkpoint-every", options->checkpoint_seconds, "[s] between two writes of FILE.checkpoint")
+      ->check(CLI::Range(0.0, 1e7))
       ->capture_default_str();
   command->add_flag("--resume", options->resume, "go on from FILE.checkpoint, if it is there");
   command->callback([options] { run(*options); });

@@ -61,8 +61,8 @@ std::string runs(const Approach& problem, const AnyPolicy& policy, double kick, 
 
 std::string commands(const std::string& problem, const std::vector<std::pair<std::string, AnyPolicy>>& policies) {
   std::ostringstream out;
-  out << R"(set multiplot layout 2,3 margins 0.045,0.99,0.055,0.92 spacing 0.045,0.1 title 'Approaches to the ball, )" << problem
-      << R"(: one arrow per walk cycle, until the robot may kick'
+  out << R"(set multiplot layout 2,3 margins 0.055,0.99,0.055,0.92 spacing 0.055,0.1 title ')" << problem
+      << R"(: approaches to the ball (black), one arrow per walk cycle, until the robot may kick (from the grey zone)'
 set size ratio -1
 set xrange [-1.15:1.15]
 set yrange [-1.15:1.15]

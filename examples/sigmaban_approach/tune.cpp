@@ -23,12 +23,14 @@ namespace {
 
 struct Options {
   std::string problem;
-  std::uint64_t runs = 5'000'000;
+  double budget = 50;                                     // [s] of one nominal core
   double wall = std::numeric_limits<double>::infinity();  // [s]
   std::uint64_t seed = 1;
   std::size_t threads = 0;
   std::filesystem::path out;
 };
+
+constexpr double run_seconds = 5.5e-6;  // nominal price of a simulated run
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -43,9 +45,9 @@ class Progress {
     printed_ = elapsed.count();
     const auto runs = static_cast<double>(search.evaluations * unit_);
     const double rate = runs / printed_;
-    std::printf("%7.1f s  descent %2zu  generation %4llu  %9.0f runs (%.0f/s)  median cost %6.2f  left %4.0f s\n", printed_,
-                search.finished.size() + 1, static_cast<unsigned long long>(search.state.generation), runs, rate,
-                search.state.median_values.empty() ? 0.0 : search.state.median_values.back(),
+    std::printf("%7.1f s  descent %2zu  generation %4llu  %9.0f runs (%.0f/s)  median cost %6.2f  left %4.0f s\n",
+                printed_, search.finished.size() + 1, static_cast<unsigned long long>(search.state.generation), runs,
+                rate, search.state.median_values.empty() ? 0.0 : search.state.median_values.back(),
                 std::max(0.0, (static_cast<double>(budget_) - runs) / rate));
     std::fflush(stdout);
   }
@@ -62,23 +64,19 @@ void run(const Options& options) {
   const Approach problem = problem_named(options.problem);
   surefoot::PolicySearchOptions search;
   search.horizon = Approach::horizon;
-  search.total_runs = options.runs;
+  search.total_runs = static_cast<std::uint64_t>(options.budget / run_seconds);
   search.max_seconds = options.wall;
-  search.observer = Progress(options.runs, static_cast<std::uint64_t>(search.min_runs / 2));
+  search.observer = Progress(search.total_runs, static_cast<std::uint64_t>(search.min_runs / 2));
   const auto make_policy = [](const Winner2016Parameters::Vector& values) {
     return Winner2016(Winner2016Parameters::from_vec(values));
   };
-  const auto result = surefoot::policy_search(problem, make_policy, Winner2016Parameters::winner2016().vec(),
-                                              winner2016_box(), search, surefoot::Threads(options.threads),
-                                              options.seed, interrupt.token());
-  nlohmann::ordered_json json{{"policy", "winner2016"},
-                              {"problem", options.problem},
-                              {"seed", options.seed},
-                              {"runs", result.runs},
-                              {"cpu_seconds", cpu_seconds()},
-                              {"cost", -result.value.mean},
-                              {"low", -result.value.high()},
-                              {"high", -result.value.low()}};
+  const auto result =
+      surefoot::policy_search(problem, make_policy, Winner2016Parameters::winner2016().vec(), winner2016_box(), search,
+                              surefoot::Threads(options.threads), options.seed, interrupt.token());
+  nlohmann::ordered_json json{{"policy", "winner2016"},       {"problem", options.problem},
+                              {"seed", options.seed},         {"runs", result.runs},
+                              {"cpu_seconds", cpu_seconds()}, {"cost", -result.value.mean},
+                              {"low", -result.value.high()},  {"high", -result.value.low()}};
   json["parameters"] = to_json(Winner2016Parameters::from_vec(result.parameters));
   write_text(options.out, json.dump(2) + "\n");
   std::printf("%s: cost %.2f +- %.2f (95 %%) after %llu runs, best of %zu finalists\n", options.out.c_str(),
@@ -93,8 +91,10 @@ void add_tune(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("tune", "Tune Winner2016 by CMA-ES; Ctrl-C ends early and keeps the best");
   add_problem_option(*command, options->problem);
-  command->add_option("--runs", options->runs, "simulated runs of the search")
-      ->check(CLI::Range(std::uint64_t{1000}, std::uint64_t{1'000'000'000'000}))
+  command
+      ->add_option("--budget", options->budget,
+                   "work in seconds of one nominal core, all threads together: the same parameters on any machine")
+      ->check(CLI::Range(0.01, 1e7))
       ->capture_default_str();
   command->add_option("--max-wall", options->wall, "[s] hard limit by the clock")->check(CLI::Range(0.1, 1e7));
   command->add_option("--seed", options->seed, "same seed, same parameters")->capture_default_str();

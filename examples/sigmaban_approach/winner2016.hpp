@@ -15,21 +15,21 @@ namespace sigmaban {
 
 /// The parameters, by name. Their order as a vector is the order here.
 struct Winner2016Parameters {
-  double max_rotate_radius = 1.0;           // [m]
-  double min_far_radius = 0.75;             // [m]
-  double radius = 0.5;                      // [m]
-  double step_p = 0.1;                      // [1/step]
-  double far_theta_p = 0.2;                 // [1/step]
-  double rotate_theta_p = 0.3;              // [1/step]
-  double rotate_lateral_p = -0.2;           // [m/(rad step)]
-  double near_theta_p = 0.1;                // [1/step]
-  double near_lateral_p = 0.06;             // [1/step]
-  double stop_y_near = 0.125;               // [m]
-  double max_y_near = 0.25;                 // [m]
-  double wished_x = 0.22;                   // [m]
-  double wished_y = 0.0;                    // [m]
-  double target_theta_tol = 10 * degree;    // [rad]
-  double ball_theta_tol = 10 * degree;      // [rad]
+  double max_rotate_radius = 1.0;         // [m]
+  double min_far_radius = 0.75;           // [m]
+  double radius = 0.5;                    // [m]
+  double step_p = 0.1;                    // [1/step]
+  double far_theta_p = 0.2;               // [1/step]
+  double rotate_theta_p = 0.3;            // [1/step]
+  double rotate_lateral_p = -0.2;         // [m/(rad step)]
+  double near_theta_p = 0.1;              // [1/step]
+  double near_lateral_p = 0.06;           // [1/step]
+  double stop_y_near = 0.125;             // [m]
+  double max_y_near = 0.25;               // [m]
+  double wished_x = 0.22;                 // [m]
+  double wished_y = 0.0;                  // [m]
+  double target_theta_tol = 10 * degree;  // [rad]
+  double ball_theta_tol = 10 * degree;    // [rad]
 
   static constexpr int count = 15;
   using Vector = surefoot::Vec<count>;
@@ -50,7 +50,7 @@ struct Winner2016Parameters {
 struct Winner2016Parameter {
   std::string_view name, unit;
   double low, high;
-  double Winner2016Parameters::*member;
+  double Winner2016Parameters::* member;
 };
 
 inline constexpr std::array<Winner2016Parameter, Winner2016Parameters::count> winner2016_parameters{{

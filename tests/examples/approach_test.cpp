@@ -73,7 +73,7 @@ TEST_CASE("rewards: the kick zone before the collision before the lost ball befo
     double x, y, kick, reward;
     bool terminal;
   };
-  for (const Case c : {Case{0.2, 0.0, 0.0, 0, false},          // may kick
+  for (const Case c : {Case{0.2, 0.0, 0.0, 0, false},            // may kick
                        Case{0.16, -0.05, 9 * degree, 0, false},  //
                        Case{0.2, 0.0, 11 * degree, -1, false},   // wrong direction
                        Case{0.2, 0.07, 0.0, -1, false},          // beside the foot

@@ -106,7 +106,8 @@ TEST_SUITE("sigmaban_approach" * doctest::skip(!program_exists())) {
 
   TEST_CASE("evaluate gives the same cost for any number of threads") {
     const auto cost = [](const std::string& threads) {
-      const std::string text = run("evaluate --problem ha --policy tuned --trials 1000 --json --threads " + threads).output;
+      const std::string text =
+          run("evaluate --problem ha --policy tuned --trials 1000 --json --threads " + threads).output;
       return text.substr(0, text.find("\"seconds\""));
     };
     CHECK(cost("1").find("\"cost\"") != std::string::npos);

@@ -4,6 +4,10 @@
 
 #include <cmath>
 
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/rollout.hpp"
+#include "surefoot/solve/rfpi.hpp"
+
 using sigmaban::MovingBall;
 
 namespace {
@@ -75,4 +79,20 @@ TEST_CASE("the noise never makes the ball faster than any ball at the start, nor
     REQUIRE(next.tail<2>().norm() <= 0.08 + 1e-12);
     REQUIRE(problem.step(state(0.5, 0, 0, 0), {0, 0, 0}, rng).next.tail<2>().isZero());
   }
+}
+
+TEST_CASE("a short RFPI solves the eight dimensions far better than standing still and than random actions") {
+  const MovingBall problem;
+  surefoot::RfpiOptions options;
+  options.first_states = 1500;
+  options.max_iterations = 10;
+  const auto result = surefoot::rfpi(problem, options, surefoot::Threads{}, 1);
+  const surefoot::RolloutOptions trials{.runs = 500, .horizon = MovingBall::horizon};
+  const auto still = [](const MovingBall::State&) -> MovingBall::Action { return MovingBall::Action::Zero(); };
+  const surefoot::RandomPolicy<3> random(problem.action_box());
+  const auto gain_on = [&](const auto& other) {
+    return surefoot::compare(problem, result.policy, other, trials, surefoot::Threads{}, 2);
+  };
+  CHECK(gain_on(still).low() > 10);
+  CHECK(gain_on(random).low() > 10);
 }

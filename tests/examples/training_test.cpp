@@ -25,14 +25,15 @@ class CPolicy {
  public:
   explicit CPolicy(const std::string& c_file) {
     const std::string library = c_file + ".so";
-    const auto compiled = run_command("cc -O2 -std=c99 -Wall -Wextra -Wpedantic -Werror -ffp-contract=off -shared -fPIC -o " +
-                                      library + " " + c_file + " -lm");
+    const auto compiled =
+        run_command("cc -O2 -std=c99 -Wall -Wextra -Wpedantic -Werror -ffp-contract=off -shared -fPIC -o " + library +
+                    " " + c_file + " -lm");
     CAPTURE(compiled.output);
     REQUIRE(compiled.code == 0);
     library_ = dlopen(library.c_str(), RTLD_NOW);
     REQUIRE(library_ != nullptr);
     function_ = reinterpret_cast<Function>(dlsym(library_, "surefoot_policy"));
-    REQUIRE(function_ != nullptr);
+    REQUIRE(bool(function_ != nullptr));
   }
   ~CPolicy() { dlclose(library_); }
   CPolicy(const CPolicy&) = delete;
@@ -66,11 +67,18 @@ double largest_difference(const A& a, const B& b, const surefoot::Box<6>& box) {
   return largest;
 }
 
-std::string train(const std::string& arguments, const std::string& file) {
+/// Starts the program, waits until the shell's test `condition` holds, and sends the signal. The program must be
+/// running until then.
+approach_program::Outcome run_in_background(const std::string& arguments, const std::string& condition,
+                                            const std::string& signal) {
+  return run_command(program() + " " + arguments + " > /dev/null & pid=$!; until [ " + condition +
+                     " ]; do kill -0 $pid || exit 99; sleep 0.02; done; kill -" + signal + " $pid; wait $pid");
+}
+
+void train(const std::string& arguments, const std::string& file) {
   const auto result = run("train --problem ha " + arguments + " --out " + file);
   CAPTURE(result.output);
   REQUIRE(result.code == 0);
-  return result.output;
 }
 
 }  // namespace
@@ -85,7 +93,7 @@ TEST_SUITE("sigmaban_approach" * doctest::skip(!program_exists())) {
     REQUIRE(run("export --policy " + policy + " --out " + c_file + " --max-kb 0").code == 0);
     CHECK(largest_difference(CPolicy(c_file), surefoot::load_policy(problem, policy), problem.state_box()) <= 1e-6);
 
-    const auto smaller = run("export --policy " + policy + " --out " + c_file + " --max-kb 20");
+    const auto smaller = run("export --policy " + policy + " --out " + c_file + " --max-kb 20 --runs 300");
     REQUIRE(smaller.code == 0);
     CHECK(smaller.output.find("the smaller size costs") != std::string::npos);
     CHECK(std::filesystem::file_size(c_file) <= 20'000);
@@ -96,18 +104,21 @@ TEST_SUITE("sigmaban_approach" * doctest::skip(!program_exists())) {
   TEST_CASE("a training that was killed and resumed gives the same policy as one in one go") {
     const ScratchFolder folder;
     const std::string whole = folder.file("whole"), parts = folder.file("parts");
-    train("--budget 1.5 --threads 1", whole);
-    train("--budget 0.7 --threads 2", parts);
-    train("--budget 1.5 --threads 2 --resume", parts);
+    train("--budget 1 --threads 1", whole);
+    const auto killed =
+        run_in_background("train --problem ha --budget 1 --threads 2 --checkpoint-every 0 --out " + parts,
+                          "-e " + parts + ".checkpoint", "KILL");
+    REQUIRE(killed.code == 128 + 9);
+    REQUIRE_FALSE(std::filesystem::exists(parts));
+    train("--budget 1 --threads 2 --resume", parts);
     CHECK(surefoot::read_file(whole) == surefoot::read_file(parts));
   }
 
   TEST_CASE("Ctrl-C ends a training with code 130 and keeps the best policy so far") {
     const ScratchFolder folder;
-    const std::string policy = folder.file("policy"), log = folder.file("log");
-    const auto result = run_command(program() + " train --problem anha --budget 10000 --out " + policy + " > " + log +
-                                    " & pid=$!; until grep -q iteration " + log +
-                                    "; do kill -0 $pid || exit 1; sleep 0.05; done; kill -INT $pid; wait $pid");
+    const std::string policy = folder.file("policy");
+    const auto result = run_in_background("train --problem anha --budget 10000 --checkpoint-every 0 --out " + policy,
+                                          "-e " + policy + ".checkpoint", "INT");
     CHECK(result.code == 130);
     CHECK(run("evaluate --problem anha --trials 10 --policy " + policy).code == 0);
     const auto wrong = run("evaluate --problem ha --trials 10 --policy " + policy);
@@ -118,7 +129,7 @@ TEST_SUITE("sigmaban_approach" * doctest::skip(!program_exists())) {
   TEST_CASE("tuned parameters are written with their cost and can be evaluated") {
     const ScratchFolder folder;
     const std::string file = folder.file("parameters.json");
-    const auto tuned = run("tune --problem ha --runs 20000 --out " + file);
+    const auto tuned = run("tune --problem ha --budget 0.1 --out " + file);
     CAPTURE(tuned.output);
     REQUIRE(tuned.code == 0);
     CHECK(run("evaluate --problem ha --trials 100 --policy " + file).code == 0);

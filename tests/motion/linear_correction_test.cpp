@@ -54,8 +54,7 @@ TEST_CASE("the full correction is equation 1, coefficients row by row") {
 TEST_CASE("the smaller corrections leave out the cross terms, the smallest the offsets too") {
   Vec<6> simple;
   simple << 1, 2, 3, 4, 5, 6;
-  CHECK(SimpleLinearCorrection::from_parameters(simple).displacement({10, 100, 1000}).vec() ==
-        Vec<3>{21, 403, 6005});
+  CHECK(SimpleLinearCorrection::from_parameters(simple).displacement({10, 100, 1000}).vec() == Vec<3>{21, 403, 6005});
   CHECK(ProportionalCorrection::from_parameters({2, 3, 4}).displacement({10, 100, 1000}).vec() ==
         Vec<3>{20, 300, 4000});
 }

@@ -17,9 +17,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-Pose2 random_pose(surefoot::Rng& rng) {
-  return {rng.uniform(-2, 2), rng.uniform(-2, 2), rng.uniform(-pi, pi)};
-}
+Pose2 random_pose(surefoot::Rng& rng) { return {rng.uniform(-2, 2), rng.uniform(-2, 2), rng.uniform(-pi, pi)}; }
 
 void check_near(const Pose2& a, const Pose2& b) {
   CHECK((a.position() - b.position()).norm() < 1e-12);

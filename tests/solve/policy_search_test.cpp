@@ -24,7 +24,7 @@ constexpr auto make_feedback = [](const Vec<2>& gains) { return Feedback{gains};
 const DoubleIntegrator problem{.push = 0.02};
 const Box<2> gain_box{Vec<2>(0, 0), Vec<2>(5, 5)};
 constexpr int horizon = 60;
-constexpr PolicySearchOptions small{
+const PolicySearchOptions small{
     .horizon = horizon, .min_runs = 4, .max_runs = 16, .total_runs = 10'000, .final_runs = 1000};
 
 TEST_CASE("linear gains come within 3 % of the optimum of a linear-quadratic problem") {

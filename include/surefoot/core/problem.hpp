@@ -38,16 +38,17 @@ struct Step {
 /// `state_box` is where states normally are (it scales exploration and checks); a state may leave it.
 /// Optional members, used where present: `features(state)` (see HasFeatures), `state_names()`, `action_names()`.
 template <class P>
-concept Problem = requires(const P& problem, const typename P::State& state, const typename P::Action& action, Rng& rng) {
-  requires P::state_dim > 0;
-  requires P::action_dim > 0;
-  requires std::same_as<typename P::State, Vec<P::state_dim>>;
-  requires std::same_as<typename P::Action, Vec<P::action_dim>>;
-  { problem.state_box() } -> std::same_as<Box<P::state_dim>>;
-  { problem.action_box() } -> std::same_as<Box<P::action_dim>>;
-  { problem.initial_state(rng) } -> std::same_as<typename P::State>;
-  { problem.step(state, action, rng) } -> std::same_as<Step<typename P::State>>;
-};
+concept Problem =
+    requires(const P& problem, const typename P::State& state, const typename P::Action& action, Rng& rng) {
+      requires P::state_dim > 0;
+      requires P::action_dim > 0;
+      requires std::same_as<typename P::State, Vec<P::state_dim>>;
+      requires std::same_as<typename P::Action, Vec<P::action_dim>>;
+      { problem.state_box() } -> std::same_as<Box<P::state_dim>>;
+      { problem.action_box() } -> std::same_as<Box<P::action_dim>>;
+      { problem.initial_state(rng) } -> std::same_as<typename P::State>;
+      { problem.step(state, action, rng) } -> std::same_as<Step<typename P::State>>;
+    };
 
 /// Deliberately empty: naming a member of it is how explain_problem() and explain_policy() speak through the compiler.
 template <class T>
@@ -71,11 +72,17 @@ auto explain_problem() {
     return Incomplete<P>::State;  // using State = surefoot::Vec<state_dim>
   } else if constexpr (!requires { requires std::same_as<typename P::Action, Vec<P::action_dim>>; }) {
     return Incomplete<P>::Action;  // using Action = surefoot::Vec<action_dim>
-  } else if constexpr (!requires(const P& p) { { p.state_box() } -> std::same_as<Box<P::state_dim>>; }) {
+  } else if constexpr (!requires(const P& p) {
+                         { p.state_box() } -> std::same_as<Box<P::state_dim>>;
+                       }) {
     return Incomplete<P>::state_box;  // surefoot::Box<state_dim> state_box() const
-  } else if constexpr (!requires(const P& p) { { p.action_box() } -> std::same_as<Box<P::action_dim>>; }) {
+  } else if constexpr (!requires(const P& p) {
+                         { p.action_box() } -> std::same_as<Box<P::action_dim>>;
+                       }) {
     return Incomplete<P>::action_box;  // surefoot::Box<action_dim> action_box() const
-  } else if constexpr (!requires(const P& p, Rng& r) { { p.initial_state(r) } -> std::same_as<typename P::State>; }) {
+  } else if constexpr (!requires(const P& p, Rng& r) {
+                         { p.initial_state(r) } -> std::same_as<typename P::State>;
+                       }) {
     return Incomplete<P>::initial_state;  // State initial_state(surefoot::Rng&) const
   } else {
     return Incomplete<P>::step;  // surefoot::Step<State> step(const State&, const Action&, surefoot::Rng&) const

@@ -31,13 +31,6 @@ struct Avx2Keys {
   __m256i second;  // slots 8 to 15, flipped
 };
 
-[[gnu::target("avx2"), gnu::always_inline]] inline __m256i load_words(const std::uint32_t* words) {
-  return _mm256_load_si256(reinterpret_cast<const __m256i*>(words));
-}
-[[gnu::target("avx2"), gnu::always_inline]] inline void store_words(__m256i value, std::uint32_t* words) {
-  _mm256_store_si256(reinterpret_cast<__m256i*>(words), value);
-}
-
 /// One step of 8 lanes; not zero if any moved.
 template <bool TwoRegisters>
 [[gnu::target("avx2"), gnu::always_inline]] inline __m256i step(const Node* nodes, const Avx2Keys& keys,
@@ -66,35 +59,48 @@ template <bool TwoRegisters>
   return moved;
 }
 
+/// Eight descents from the roots [first, first + 8) of `count`; lanes behind the last start at node 0.
+struct Avx2Group {
+  Avx2Lanes lanes;
+  __m256i used;  // -1 where there is a tree
+};
+[[gnu::target("avx2"), gnu::always_inline]] inline Avx2Group start(const std::uint32_t* roots, std::size_t first,
+                                                                   std::size_t count) {
+  const auto left = static_cast<int>(std::min<std::size_t>(count, first + 8)) - static_cast<int>(first);
+  const __m256i used = _mm256_cmpgt_epi32(_mm256_set1_epi32(left), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+  return {{_mm256_maskload_epi32(reinterpret_cast<const int*>(roots + first), used), {}}, used};
+}
+[[gnu::target("avx2"), gnu::always_inline]] inline void finish(const Avx2Group& group, std::uint32_t* payloads) {
+  _mm256_maskstore_epi32(reinterpret_cast<int*>(payloads), group.used, _mm256_permute4x64_epi64(group.lanes.key, 0xD8));
+}
+
 template <bool TwoRegisters>
 [[gnu::target("avx2")]] inline void find_leaves_avx2(const Node* nodes, std::span<const std::uint32_t> roots,
                                                      const Avx2Keys& keys, std::uint32_t* payloads) {
-  constexpr std::size_t width = 8;
-  constexpr std::size_t block = 4 * width;
-  for (std::size_t tree = 0; tree < roots.size(); tree += block) {
-    const std::size_t count = std::min(block, roots.size() - tree);
-    alignas(32) std::array<std::uint32_t, block> buffer;
-    for (std::size_t i = 0; i < block; ++i) buffer[i] = roots[tree + std::min(i, count - 1)];
-    Avx2Lanes a{load_words(&buffer[0]), {}};
-    Avx2Lanes b{load_words(&buffer[width]), {}};
-    Avx2Lanes c{load_words(&buffer[2 * width]), {}};
-    Avx2Lanes d{load_words(&buffer[3 * width]), {}};
-    __m256i moved;
-    if (count > 2 * width) {
-      do {
-        moved = step<TwoRegisters>(nodes, keys, a) | step<TwoRegisters>(nodes, keys, b) |
-                step<TwoRegisters>(nodes, keys, c) | step<TwoRegisters>(nodes, keys, d);
-      } while (!_mm256_testz_si256(moved, moved));
-    } else {
-      do {
-        moved = step<TwoRegisters>(nodes, keys, a) | step<TwoRegisters>(nodes, keys, b);
-      } while (!_mm256_testz_si256(moved, moved));
-    }
-    store_words(_mm256_permute4x64_epi64(a.key, 0xD8), &buffer[0]);
-    store_words(_mm256_permute4x64_epi64(b.key, 0xD8), &buffer[width]);
-    store_words(_mm256_permute4x64_epi64(c.key, 0xD8), &buffer[2 * width]);
-    store_words(_mm256_permute4x64_epi64(d.key, 0xD8), &buffer[3 * width]);
-    std::copy_n(buffer.begin(), count, payloads + tree);
+  std::size_t tree = 0;
+  __m256i moved;
+  for (; tree + 16 < roots.size(); tree += 32) {
+    Avx2Group a = start(roots.data(), tree, roots.size());
+    Avx2Group b = start(roots.data(), tree + 8, roots.size());
+    Avx2Group c = start(roots.data(), tree + 16, roots.size());
+    Avx2Group d = start(roots.data(), tree + 24, roots.size());
+    do {
+      moved = step<TwoRegisters>(nodes, keys, a.lanes) | step<TwoRegisters>(nodes, keys, b.lanes) |
+              step<TwoRegisters>(nodes, keys, c.lanes) | step<TwoRegisters>(nodes, keys, d.lanes);
+    } while (!_mm256_testz_si256(moved, moved));
+    finish(a, payloads + tree);
+    finish(b, payloads + tree + 8);
+    finish(c, payloads + tree + 16);
+    finish(d, payloads + tree + 24);
+  }
+  for (; tree < roots.size(); tree += 16) {
+    Avx2Group a = start(roots.data(), tree, roots.size());
+    Avx2Group b = start(roots.data(), tree + 8, roots.size());
+    do {
+      moved = step<TwoRegisters>(nodes, keys, a.lanes) | step<TwoRegisters>(nodes, keys, b.lanes);
+    } while (!_mm256_testz_si256(moved, moved));
+    finish(a, payloads + tree);
+    finish(b, payloads + tree + 8);
   }
 }
 
@@ -104,7 +110,8 @@ template <bool TwoRegisters>
   alignas(32) std::array<std::uint32_t, avx2_slots> slots{};
   std::copy(keys.begin(), keys.end(), slots.begin());
   for (std::uint32_t& slot : slots) slot ^= 0x80000000U;
-  const Avx2Keys registers{load_words(&slots[0]), load_words(&slots[8])};
+  const Avx2Keys registers{_mm256_load_si256(reinterpret_cast<const __m256i*>(&slots[0])),
+                           _mm256_load_si256(reinterpret_cast<const __m256i*>(&slots[8]))};
   if (keys.size() < 8) {
     find_leaves_avx2<false>(nodes, roots, registers, payloads);
   } else {

@@ -71,11 +71,17 @@ class LinearCorrection {
   // Ranges wide enough for every walk that still deserves the name.
   static constexpr ModelParameter entry(int row, int column) {
     constexpr std::array<std::array<ModelParameter, 4>, 3> entries{{
-        {{{"dx offset", "m", -0.05, 0.05}, {"dx per dx", "1", 0, 3}, {"dx per dy", "1", -1, 1},
+        {{{"dx offset", "m", -0.05, 0.05},
+          {"dx per dx", "1", 0, 3},
+          {"dx per dy", "1", -1, 1},
           {"dx per dt", "m/rad", -0.5, 0.5}}},
-        {{{"dy offset", "m", -0.05, 0.05}, {"dy per dx", "1", -1, 1}, {"dy per dy", "1", 0, 3},
+        {{{"dy offset", "m", -0.05, 0.05},
+          {"dy per dx", "1", -1, 1},
+          {"dy per dy", "1", 0, 3},
           {"dy per dt", "m/rad", -0.5, 0.5}}},
-        {{{"dt offset", "rad", -0.3, 0.3}, {"dt per dx", "rad/m", -5, 5}, {"dt per dy", "rad/m", -5, 5},
+        {{{"dt offset", "rad", -0.3, 0.3},
+          {"dt per dx", "rad/m", -5, 5},
+          {"dt per dy", "rad/m", -5, 5},
           {"dt per dt", "1", 0, 3}}},
     }};
     return entries[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];

@@ -119,7 +119,8 @@ ForestPolicy<P> load_policy(const P& problem, const std::filesystem::path& path)
   }
   auto expect = [&](int wanted, const char* what) {
     if (const auto found = in.u32(); found != static_cast<std::uint32_t>(wanted)) {
-      throw SolveError(in.source() + " has " + std::to_string(found) + " " + what + ", this problem has " + std::to_string(wanted));
+      throw SolveError(in.source() + " has " + std::to_string(found) + " " + what + ", this problem has " +
+                       std::to_string(wanted));
     }
   };
   expect(P::state_dim, "state dimensions");
@@ -128,12 +129,14 @@ ForestPolicy<P> load_policy(const P& problem, const std::filesystem::path& path)
   const Box<P::action_dim> box = problem.action_box();
   for (const auto& bounds : {box.low(), box.high()}) {
     for (const double bound : bounds) {
-      if (in.f64() != bound) throw SolveError(in.source() + " was made for another action box: name the problem it was trained on");
+      if (in.f64() != bound)
+        throw SolveError(in.source() + " was made for another action box: name the problem it was trained on");
     }
   }
   const std::vector<double> probe = in.list<double>();
   const std::vector<double> expected = detail::feature_probe(problem);
-  const bool same = std::ranges::equal(probe, expected, [](double a, double b) { return std::abs(a - b) <= 1e-9 * (1 + std::abs(b)); });
+  const bool same = std::ranges::equal(probe, expected,
+                                       [](double a, double b) { return std::abs(a - b) <= 1e-9 * (1 + std::abs(b)); });
   if (!same) throw SolveError(in.source() + " was trained on other features than this problem's: train it anew");
   auto forest = read<typename ForestPolicy<P>::ActionForest>(in);
   in.expect_checksum();

@@ -71,7 +71,7 @@ class Lookahead {
       for (int i = 0; i < dims; ++i) unit[i] = box_.width()[i] > 0 ? unit[i] / box_.width()[i] : 0;
       add(unit);
     }
-    if (options_.corners) {
+    if (options_.corners && candidates_.size() < wanted) {
       add(Unit::Zero());
       constexpr std::uint32_t corners = 1U << std::min(dims, 16);
       for (std::uint32_t i = 0; i < corners && candidates_.size() < wanted; ++i) {
@@ -95,7 +95,8 @@ class Lookahead {
     order_.resize(candidates_.size());
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     std::ranges::sort(order_, [this](std::size_t a, std::size_t b) { return q_[a] != q_[b] ? q_[a] > q_[b] : a < b; });
-    const std::size_t kept = std::min(static_cast<std::size_t>(options_.kept), order_.size());
+    const std::size_t kept =
+        std::min({static_cast<std::size_t>(options_.kept), static_cast<std::size_t>(options_.refined), order_.size()});
     std::vector<Unit>& best = scratch_;
     best.clear();
     for (std::size_t i = 0; i < kept; ++i) best.push_back(candidates_[order_[i]]);
@@ -154,7 +155,11 @@ class Lookahead {
     q_.resize(candidates_.size());
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
       q_[c] = std::accumulate(rewards_.begin() + static_cast<std::ptrdiff_t>(c * count),
-                              rewards_.begin() + static_cast<std::ptrdiff_t>((c + 1) * count), 0.0) / samples;
+                              rewards_.begin() + static_cast<std::ptrdiff_t>((c + 1) * count), 0.0) /
+              samples;
+      if (!std::isfinite(q_[c])) {
+        throw SolveError("lookahead: a transition gave a reward or a state that is not finite: validate() tells where");
+      }
     }
   }
 

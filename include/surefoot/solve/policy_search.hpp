@@ -1,9 +1,10 @@
 // Tunes the parameters of any policy by CMA-ES on its simulated cost.
 //
-// The candidates of a generation meet the same starts and noise (common random numbers), the next generation meets
-// others. A candidate is first judged by few runs; the number grows where the order of the candidates is more luck than
-// merit (rank_noise.hpp). BIPOP restarts leave poor local optima. At the end every descent enters the center of its
-// distribution and its best candidate, the start joins them, and the one with the best mean over many fresh runs wins.
+// Two stages, each with half of the budget. The first explores: descents by few runs per candidate, restarted (BIPOP)
+// to leave poor local optima. The second refines the best center that was found, with more runs per candidate where the
+// order of the candidates is more luck than merit (rank_noise.hpp). In both the candidates of a generation meet the same
+// starts and noise (common random numbers), and the next generation meets others. At the end the start, the center of
+// every descent and the best candidate of the last stage are compared on many fresh runs.
 // Cost: that of the simulated runs.
 //
 //   auto make_policy = [](const surefoot::Vec<2>& gains) { return Pd(gains); };
@@ -40,15 +41,16 @@ struct PolicySearchOptions {
   int horizon = 50;       // [transitions] of every run
   double discount = 1.0;  // per transition
 
-  int min_runs = 50;                       // of each candidate, at first; rounded down to even
-  int max_runs = 400;                      // of each candidate, where noise hides which is better
-  std::uint64_t total_runs = 5'000'000;    // budget of the search
+  int min_runs = 50;                     // of each candidate while exploring; rounded down to even
+  int max_runs = 400;                    // of each candidate while refining, where noise hides which is better
+  std::uint64_t total_runs = 3'000'000;  // budget of the search
   double max_seconds = std::numeric_limits<double>::infinity();  // another one, wall clock: if it strikes, the result
                                                                  // depends on the speed of the machine [s]
   int final_runs = 10'000;  // of each finalist, on top of the budget
 
   Eigen::Index population = 0;  // candidates of a generation; 0: twice the default of CMA-ES
-  double sigma = 0.3;           // first standard deviation [widths of the box]
+  double sigma = 0.3;           // first standard deviation while exploring [widths of the box]
+  double refine_sigma = 0.05;   // first standard deviation while refining [widths of the box]
   double precision = 1e-3;      // a descent ends at this standard deviation [first standard deviations]
   Restarts restarts = Restarts::bipop;
   int max_restarts = 9;  // with large population
@@ -66,8 +68,8 @@ inline void check(const PolicySearchOptions& options, Eigen::Index population) {
   demand(options.max_runs >= options.min_runs, "max_runs must be at least min_runs");
   demand(options.final_runs >= 1, "final_runs must be at least 1");
   const std::uint64_t generation = static_cast<std::uint64_t>(options.min_runs) * static_cast<std::uint64_t>(population);
-  demand(options.total_runs >= generation,
-         "total_runs must cover the first generation, " + std::to_string(generation) + " runs");
+  demand(options.total_runs >= 2 * generation,
+         "total_runs must cover a generation of both stages, " + std::to_string(2 * generation) + " runs");
 }
 
 /// A point of the search and its mean return over fresh runs.
@@ -81,7 +83,7 @@ template <int N>
 struct PolicySearchResult {
   Vec<N> parameters;  // of the best finalist
   Estimate value;     // its mean return over final_runs runs that had no part in choosing it
-  std::vector<PolicySearchFinalist<N>> finalists;  // the start, then center and best candidate of every descent
+  std::vector<PolicySearchFinalist<N>> finalists;  // the start, the center of every descent, the best candidate
   StopReason reason = StopReason::stop_requested;
   std::uint64_t runs = 0;  // of the search, without the finals
   double seconds = 0;      // wall clock, finals included [s]
@@ -96,48 +98,53 @@ PolicySearchResult<N> policy_search(const P& problem, const MakePolicy& make_pol
                                     const PolicySearchOptions& options, const E& executor, std::uint64_t seed,
                                     std::stop_token stop = {}) {
   const auto began = std::chrono::steady_clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); };
+  const auto stage_seed = [seed](int stage) { return Rng(seed, stage).bits(); };
   const Eigen::Index population = options.population != 0 ? options.population : 2 * default_population(box.size());
   check(options, population);
   const int runs_per_call = options.min_runs / 2;  // two calls at least: rank_disorder() compares halves
-  const RolloutOptions brief{.runs = runs_per_call, .horizon = options.horizon, .discount = options.discount};
-  const RolloutOptions thorough{.runs = options.final_runs, .horizon = options.horizon, .discount = options.discount};
-  const auto cost = [&](const Eigen::VectorXd& parameters, Rng& rng) {
+  const auto rollouts = [&](int runs) {
+    return RolloutOptions{.runs = runs, .horizon = options.horizon, .discount = options.discount};
+  };
+  const auto cost = [&, brief = rollouts(runs_per_call)](const Eigen::VectorXd& parameters, Rng& rng) {
     return -evaluate(problem, make_policy(Vec<N>(parameters)), brief, Serial{}, rng.bits()).mean;
   };
 
-  CmaEsOptions search;
-  search.box_sigma = options.sigma;
-  search.population = population;
-  search.restarts = options.restarts;
-  search.max_restarts = options.max_restarts;
-  search.max_evaluations = options.total_runs / static_cast<std::uint64_t>(runs_per_call);
-  search.max_seconds = options.max_seconds;
-  search.tolerances.x = options.precision;
-  search.noise = {.evaluations = 2, .max_evaluations = options.max_runs / runs_per_call};
-  search.observer = options.observer;
-  const Box<Eigen::Dynamic> bounds{Eigen::VectorXd(box.low()), Eigen::VectorXd(box.high())};
-  const CmaEsResult found =
-      cma_es(cost, Eigen::VectorXd(start), bounds, search, executor, Rng(seed, 0).bits(), std::move(stop));
-
-  PolicySearchResult<N> result{.parameters = start,
-                               .value = {},
-                               .finalists = {},
-                               .reason = found.reason,
-                               .runs = found.evaluations * static_cast<std::uint64_t>(runs_per_call)};
-  const auto enter = [&](const Vec<N>& parameters) {
-    const Estimate value = evaluate(problem, make_policy(parameters), thorough, executor, Rng(seed, 1).bits());
-    result.finalists.push_back({parameters, value});
+  PolicySearchResult<N> result{.parameters = start, .value = {}, .finalists = {{start, {}}}};
+  const auto judge = [&](int runs, std::uint64_t judge_seed) {  // all finalists so far; the best wins
+    for (auto& finalist : result.finalists) {
+      finalist.value = evaluate(problem, make_policy(finalist.parameters), rollouts(runs), executor, judge_seed);
+    }
+    const auto mean = [](const auto& finalist) { return finalist.value.mean; };
+    result.parameters = std::ranges::max_element(result.finalists, {}, mean)->parameters;
   };
-  enter(start);
-  for (const CmaEsDescent& descent : found.descents) {
-    enter(descent.mean);
-    enter(descent.best);
-  }
-  result.parameters = std::ranges::max_element(result.finalists, {}, [](const auto& finalist) {
-                        return finalist.value.mean;
-                      })->parameters;
-  result.value = evaluate(problem, make_policy(result.parameters), thorough, executor, Rng(seed, 2).bits());
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  const auto search = [&](CmaEsOptions stage, std::uint64_t runs, int number) {
+    stage.population = population;
+    stage.max_evaluations = runs / static_cast<std::uint64_t>(runs_per_call);
+    stage.tolerances.x = options.precision;
+    stage.observer = options.observer;
+    const Box<Eigen::Dynamic> bounds{Eigen::VectorXd(box.low()), Eigen::VectorXd(box.high())};
+    const CmaEsResult found =
+        cma_es(cost, Eigen::VectorXd(result.parameters), bounds, stage, executor, stage_seed(number), stop);
+    for (const CmaEsDescent& descent : found.descents) result.finalists.push_back({descent.mean, {}});
+    if (found.best.size() > 0) result.finalists.push_back({found.best, {}});
+    result.runs += found.evaluations * static_cast<std::uint64_t>(runs_per_call);
+    result.reason = found.reason;
+  };
+
+  CmaEsOptions explore{.box_sigma = options.sigma, .restarts = options.restarts, .max_restarts = options.max_restarts};
+  explore.max_seconds = 0.5 * options.max_seconds;
+  explore.noise = {.evaluations = 2, .max_evaluations = 2};
+  search(explore, options.total_runs / 2, 0);
+  judge(5 * options.max_runs, stage_seed(1));
+
+  CmaEsOptions refine{.box_sigma = options.refine_sigma};
+  refine.max_seconds = std::max(0.0, options.max_seconds - seconds());
+  refine.noise = {.evaluations = 2, .max_evaluations = options.max_runs / runs_per_call};
+  if (!stop.stop_requested()) search(refine, options.total_runs - result.runs, 2);
+  judge(options.final_runs, stage_seed(3));
+  result.value = evaluate(problem, make_policy(result.parameters), rollouts(options.final_runs), executor, stage_seed(4));
+  result.seconds = seconds();
   return result;
 }
 

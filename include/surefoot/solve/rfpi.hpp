@@ -1,10 +1,12 @@
 // Regression Forests Policy Iteration: solves a continuous-state, continuous-action MDP from its simulator alone.
 // After Hofer & Rouxel, "An operational method toward efficient walk control policies for humanoid robots", ICAPS 2017.
 // The value of a state and the best action in it are learnt by forests of extremely randomized trees, over and over, on
-// the states that the policy visits. RfpiOptions{} is our own, far faster way; RfpiOptions::paper() is the published one.
+// the states that the policy visits. RfpiOptions{} is our own, far faster way; RfpiOptions::paper() is the published
+// one.
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
@@ -45,9 +47,8 @@ namespace detail {
 /// Passes a stop request on, and makes one of its own when the time is up.
 class TimeLimit {
  public:
-  TimeLimit(std::stop_token outer, double seconds)
-      : forward_(std::move(outer), Request{&source_}) {
-    if (!std::isfinite(seconds)) return;
+  TimeLimit(std::stop_token outer, double seconds) : forward_(std::move(outer), Request{&source_}) {
+    if (!(seconds < 1e9)) return;  // 30 years: as good as no limit, and no overflow of the clock
     timer_ = std::jthread([this, seconds](std::stop_token ended) {
       std::mutex mutex;
       std::unique_lock lock(mutex);
@@ -81,14 +82,15 @@ std::uint64_t rfpi_fingerprint(const P& problem, const RfpiOptions& o, std::uint
   ByteWriter all;
   all.u64(seed);
   const auto number = [&all](auto... values) { (all.f64(static_cast<double>(values)), ...); };
-  number(o.discount, o.horizon, o.value_method, o.first_states, o.steady_iterations, o.growth, o.max_states, o.blind_iterations,
-         o.box_share, o.visited_share, o.exploration, o.backup_steps, o.backup_runs, o.backup_weight, o.remember, o.value_runs,
-         o.evaluation_runs);
+  number(o.discount, o.horizon, o.value_method, o.first_states, o.steady_iterations, o.growth, o.max_states,
+         o.blind_iterations, o.box_share, o.visited_share, o.exploration, o.backup_steps, o.backup_runs,
+         o.backup_weight, o.remember, o.value_runs, o.evaluation_runs);
   const LookaheadOptions& l = o.lookahead;
-  number(l.candidates, l.samples, l.corners, l.common_noise, l.kept, l.refined, l.refined_samples, l.spread, l.softness, l.radius);
+  number(l.candidates, l.samples, l.corners, l.common_noise, l.kept, l.refined, l.refined_samples, l.spread, l.softness,
+         l.radius);
   for (const ExtraTreesOptions* f : {&o.value_forest, &o.policy_forest}) {
-    number(f->trees, f->candidates, f->min_leaf, f->max_depth, f->max_leaves, f->bootstrap, f->threshold_rule, f->model_score,
-           f->ridge, f->clamp);
+    number(f->trees, f->candidates, f->min_leaf, f->max_depth, f->max_leaves, f->bootstrap, f->threshold_rule,
+           f->model_score, f->ridge, f->clamp);
   }
   for (const auto& state : seed_states) all.words(std::span<const double>(state.data(), P::state_dim));
   all.list(feature_probe(problem));
@@ -113,28 +115,37 @@ inline void check(const RfpiOptions& o) {
   require(o.discount > 0 && o.discount <= 1, "discount must be in (0, 1]");
   require(o.horizon >= 1, "horizon must be at least 1");
   require(o.max_iterations >= 0, "max_iterations must be at least 1, or 0 for no limit");
-  require(o.first_states >= 1 && o.max_states >= o.first_states, "first_states must be at least 1 and at most max_states");
+  require(o.first_states >= 1 && o.max_states >= o.first_states,
+          "first_states must be at least 1 and at most max_states");
   require(o.growth >= 1, "growth must be at least 1");
+  require(o.blind_iterations >= 1, "blind_iterations must be at least 1: the first policy comes from one");
   require(share(o.box_share) && share(o.visited_share) && share(o.exploration) && share(o.backup_weight),
           "box_share, visited_share, exploration and backup_weight must be in [0, 1]");
   require(o.backup_steps >= 0 && o.backup_runs >= 1 && o.value_runs >= 1,
           "backup_steps must not be negative; backup_runs and value_runs must be at least 1");
   const LookaheadOptions& l = o.lookahead;
   require(l.candidates >= 1 && l.samples >= 1, "lookahead.candidates and lookahead.samples must be at least 1");
+  require(l.refined >= 0, "lookahead.refined must not be negative");
   require(l.refined == 0 || (l.refined_samples >= 1 && l.kept >= 1),
           "lookahead.kept and lookahead.refined_samples must be at least 1");
   require(l.softness >= 0 && l.spread >= 0 && l.radius >= 0,
           "lookahead.softness, lookahead.spread and lookahead.radius must not be negative");
   require(o.evaluation_runs >= 2, "evaluation_runs must be at least 2");
   require(!o.resume || !o.checkpoint.empty(), "resume needs the name of the checkpoint file");
+  try {
+    surefoot::check(o.value_forest);
+    surefoot::check(o.policy_forest);
+  } catch (const ForestError& error) {
+    require(false, error.what());
+  }
 }
 
 }  // namespace detail
 
 /// Learns a policy for `problem`. Same problem, options, seed and seed states: same bits, whatever the executor and
-/// whether in one go or resumed from a checkpoint. `seed_states` are states worth knowing about from the start, e.g. those
-/// of a few runs of an expert; none are needed. If `stop` is requested (Ctrl-C), the best policy so far comes back.
-/// Throws SolveError for bad options, a checkpoint of another run, or a stop before there is a policy.
+/// whether in one go or resumed from a checkpoint. `seed_states` are states worth knowing about from the start, e.g.
+/// those of a few runs of an expert; none are needed. If `stop` is requested (Ctrl-C), the best policy so far comes
+/// back. Throws SolveError for bad options, a checkpoint of another run, or a stop before there is a policy.
 template <Problem P, Executor E>
 RfpiResult<P> rfpi(const P& problem, const RfpiOptions& options, const E& executor, std::uint64_t seed,
                    std::span<const typename P::State> seed_states = {}, std::stop_token stop = {}) {
@@ -146,11 +157,14 @@ RfpiResult<P> rfpi(const P& problem, const RfpiOptions& options, const E& execut
   const std::uint64_t fingerprint = detail::rfpi_fingerprint(problem, options, seed, seed_states);
 
   RfpiState<P> state;
-  if (options.resume) state = load_checkpoint<P>(options.checkpoint, fingerprint);
+  if (options.resume && std::filesystem::exists(options.checkpoint)) {
+    state = load_checkpoint<P>(options.checkpoint, fingerprint);
+  }
   const RfpiProgress resumed = state.history.empty() ? RfpiProgress{} : state.history.back();
   const detail::TimeLimit limit(std::move(stop), options.budget.wall_seconds - resumed.seconds);
   const RolloutOptions evaluation{.runs = options.evaluation_runs, .horizon = options.horizon};
-  const auto evaluate_policy = [&](const typename ForestPolicy<P>::ActionForest& forest, int runs, std::uint64_t stream) {
+  const auto evaluate_policy = [&](const typename ForestPolicy<P>::ActionForest& forest, int runs,
+                                   std::uint64_t stream) {
     RolloutOptions many = evaluation;
     many.runs = runs;
     Estimate cost = evaluate(problem, ForestPolicy<P>(problem, forest), many, executor, Rng(seed, stream).bits(), {});
@@ -159,7 +173,7 @@ RfpiResult<P> rfpi(const P& problem, const RfpiOptions& options, const E& execut
   };
 
   RfpiStop reason = RfpiStop::budget;
-  auto last_write = Clock::now();
+  std::optional<Clock::time_point> last_write;
   double last_work = 0;  // of the last iteration [nominal s]
   bool unsaved = false;
   while (true) {
@@ -181,12 +195,12 @@ RfpiResult<P> rfpi(const P& problem, const RfpiOptions& options, const E& execut
         double count = std::min<double>(options.max_states, options.first_states * std::pow(options.growth, grown));
         // The last iteration takes what is left.
         if (grown > 0 && last_work > 0) count *= std::clamp(left / (last_work * options.growth), 0.1, 1.0);
-        next = detail::improve_by_backup(problem, options, state, static_cast<std::size_t>(count), seed_states, executor, rng,
-                                         limit.token());
+        next = detail::improve_by_backup(problem, options, state, static_cast<std::size_t>(count), seed_states,
+                                         executor, rng, limit.token());
       } else {
         next = detail::improve_by_rollouts(problem, options, state, seed_states, executor, rng, limit.token());
       }
-    } catch (const CoreError&) {
+    } catch (const Error&) {  // work that a stop left incomplete
       if (!limit.token().stop_requested()) throw;
     }
     if (limit.token().stop_requested()) {
@@ -199,9 +213,10 @@ RfpiResult<P> rfpi(const P& problem, const RfpiOptions& options, const E& execut
     progress.states = next.samples.size();
     progress.leaves = next.policy.leaves();
     progress.cost = evaluate_policy(next.policy, options.evaluation_runs, 2).mean;
-    next.work.steps += static_cast<std::uint64_t>(options.evaluation_runs) * static_cast<std::uint64_t>(options.horizon);
-    next.work.lookups += static_cast<std::uint64_t>(options.evaluation_runs) * static_cast<std::uint64_t>(options.horizon) *
-                         next.policy.trees();
+    next.work.steps +=
+        static_cast<std::uint64_t>(options.evaluation_runs) * static_cast<std::uint64_t>(options.horizon);
+    next.work.lookups += static_cast<std::uint64_t>(options.evaluation_runs) *
+                         static_cast<std::uint64_t>(options.horizon) * next.policy.trees();
     const bool better = next.history.empty() || progress.cost <= state.best_cost;
     next.best_cost = progress.best_cost = better ? progress.cost : state.best_cost;
     next.best_policy = better ? next.policy : std::move(state.best_policy);
@@ -212,7 +227,9 @@ RfpiResult<P> rfpi(const P& problem, const RfpiOptions& options, const E& execut
     state = std::move(next);
     unsaved = true;
     if (options.on_progress) options.on_progress(progress);
-    if (keep_checkpoint && std::chrono::duration<double>(Clock::now() - last_write).count() >= options.checkpoint_seconds) {
+    const bool due =
+        !last_write || std::chrono::duration<double>(Clock::now() - *last_write).count() >= options.checkpoint_seconds;
+    if (keep_checkpoint && due) {
       save_checkpoint(options.checkpoint, fingerprint, state);
       last_write = Clock::now();
       unsaved = false;

@@ -50,8 +50,9 @@ std::vector<typename P::State> choose_states(const P& problem, const RfpiOptions
     const auto wanted = static_cast<std::size_t>(options.visited_share * static_cast<double>(count));
     const std::size_t runs = wanted / static_cast<std::size_t>(options.horizon) + 1;
     const ForestPolicy<P> policy(problem, before.policy);
-    states = visited_states(problem, [&](auto some) { return policy.act(some); }, runs, options.horizon,
-                            options.exploration, executor, rng.stream(1), std::move(stop));
+    states = visited_states(
+        problem, [&](auto some) { return policy.act(some); }, runs, options.horizon, options.exploration, executor,
+        rng.stream(1), std::move(stop));
     work.steps += states.size();
     work.lookups += states.size() * before.policy.trees();
   }
@@ -161,13 +162,14 @@ auto fit_value(const P& problem, const StateSamples<P>& a, const StateSamples<P>
 
 /// The state of affairs after one more iteration over `count` states. Incomplete if `stop` was requested.
 template <Problem P, Executor E>
-RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& options, const RfpiState<P>& before, std::size_t count,
-                               std::span<const typename P::State> seed_states, const E& executor, const Rng& rng,
-                               std::stop_token stop) {
+RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& options, const RfpiState<P>& before,
+                               std::size_t count, std::span<const typename P::State> seed_states, const E& executor,
+                               const Rng& rng, std::stop_token stop) {
   RfpiState<P> after;
   after.work = before.work;
   StateSamples<P>& samples = after.samples;
-  samples.states = choose_states(problem, options, before, count, seed_states, executor, rng.stream(0), after.work, stop);
+  samples.states =
+      choose_states(problem, options, before, count, seed_states, executor, rng.stream(0), after.work, stop);
   samples.values.resize(samples.size());
   samples.actions.resize(samples.size());
   const bool blind = before.iteration < options.blind_iterations;
@@ -185,7 +187,8 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& options, con
         const auto values = std::span(samples.values).subspan(begin, size);
         const Rng noise = rng.stream(1, job);
         const auto incumbents = blind ? std::vector<typename P::Action>() : policy.act(states);
-        Lookahead<P, typename RfpiState<P>::LinearValue> look(problem, before.value, options.discount, options.lookahead);
+        Lookahead<P, typename RfpiState<P>::LinearValue> look(problem, before.value, options.discount,
+                                                              options.lookahead);
         for (std::size_t i = 0; i < size; ++i) {
           const auto found = look(states[i], blind ? nullptr : &incumbents[i], noise.stream(i));
           actions[i] = found.action;
@@ -194,8 +197,8 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& options, con
         done[job].steps = size * look.transitions();
         done[job].lookups = done[job].steps * before.value.trees() + incumbents.size() * before.policy.trees();
         if (!blind && options.backup_weight > 0) {
-          backup_values(problem, options, policy, before.value, states, std::span<const typename P::Action>(actions), values,
-                        noise.stream(size), done[job]);
+          backup_values(problem, options, policy, before.value, states, std::span<const typename P::Action>(actions),
+                        values, noise.stream(size), done[job]);
         }
       },
       stop);
@@ -208,7 +211,8 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& options, con
   if (options.remember && before.iteration >= options.steady_iterations) after.previous = before.samples;
   after.value = fit_value<LinearLeaf>(problem, samples, after.previous, options.value_forest, executor, rng.stream(2),
                                       after.work, stop);
-  after.policy = fit_policy(problem, samples, after.previous, options.policy_forest, executor, rng.stream(3), after.work, stop);
+  after.policy =
+      fit_policy(problem, samples, after.previous, options.policy_forest, executor, rng.stream(3), after.work, stop);
   return after;
 }
 

@@ -17,28 +17,28 @@ struct SolveError : Error {
   using Error::Error;
 };
 
-/// How long to work. `seconds` is counted, not measured: every simulated step, forest look-up and fit has a nominal price,
-/// so the same budget means the same work, and the same result, on any machine and any number of threads.
+/// How long to work. `seconds` is counted, not measured: every simulated step, forest look-up and fit has a nominal
+/// price, so the same budget means the same work, and the same result, on any machine and any number of threads.
 struct Budget {
   double seconds = 300;                                           // of one nominal core, all threads together
   double wall_seconds = std::numeric_limits<double>::infinity();  // hard limit by the clock; if it strikes, the result
                                                                   // depends on the speed of the machine
-  double step_ns = 60;                                            // nominal price of one step of the problem [ns]
+  double step_ns = 80;                                            // nominal price of one step of the problem [ns]
 };
 
 /// How an action is looked for from a state by simulating one transition (see lookahead.hpp).
 struct LookaheadOptions {
-  int candidates = 11;         // actions of the first look: incumbent, centre, corners, random ones
-  int samples = 3;             // simulated transitions of each
-  bool corners = true;         // false: all candidates are random
-  bool common_noise = true;    // all candidates meet the same noise, spread evenly (Latin hypercube)
-  int kept = 6;                // best candidates that go to the second look
-  int refined = 12;            // actions of the second look, those kept included; 0: no second look
-  int refined_samples = 7;     // simulated transitions of each
-  double spread = 0.4;         // of new actions around those kept [half widths of the action box]
-  double softness = 0.1;       // the action is the mean of those about as good as the best: scale of "about"
-                               // [gap between the best and the median action]; 0: the best alone
-  double radius = 0.6;         // and no further from the best than this [half widths of the action box, root mean square]
+  int candidates = 11;       // actions of the first look: incumbent, centre, corners, random ones
+  int samples = 3;           // simulated transitions of each
+  bool corners = true;       // false: all candidates are random
+  bool common_noise = true;  // all candidates meet the same noise, spread evenly (Latin hypercube)
+  int kept = 6;              // best candidates that go to the second look
+  int refined = 12;          // actions of the second look, those kept included; 0: no second look
+  int refined_samples = 7;   // simulated transitions of each
+  double spread = 0.4;       // of new actions around those kept [half widths of the action box]
+  double softness = 0.1;     // the action is the mean of those about as good as the best: scale of "about"
+                             // [gap between the best and the median action]; 0: the best alone
+  double radius = 0.6;       // and no further from the best than this [half widths of the action box, root mean square]
 };
 
 /// How the value of a state is found.
@@ -56,29 +56,30 @@ struct RfpiOptions {
   ValueMethod value_method = ValueMethod::backup;
   LookaheadOptions lookahead = {};
   ExtraTreesOptions value_forest = {.trees = 12, .min_leaf = 20, .model_score = false};
-  ExtraTreesOptions policy_forest = {.trees = 8, .min_leaf = 30, .max_leaves = 500};  // what the robot carries
+  ExtraTreesOptions policy_forest = {.trees = 8, .min_leaf = 30, .max_leaves = 1000};  // what the robot carries
 
   // ValueMethod::backup: every iteration samples new states and forgets older ones.
-  int first_states = 3000;         // samples of the first iterations
-  int steady_iterations = 12;      // iterations before that number grows
-  double growth = 1.25;            // factor per iteration from then on
-  int max_states = 400'000;        // where growth ends
-  int blind_iterations = 6;        // first iterations, on states from the whole state box, before there is a policy
-  double box_share = 0.05;         // of the samples from the whole state box, later
-  double visited_share = 0.5;      // of the samples from runs of the newest policy; the rest stays from before
-  double exploration = 0.3;        // chance per step of those runs to hold a random action for 1 to 3 steps
-  int backup_steps = 2;            // steps of the policy after the lookahead's action, before the last value forest counts
-  int backup_runs = 4;             // simulated runs of those steps
-  double backup_weight = 0.5;      // of their mean; the rest is the lookahead's own value
-  bool remember = true;            // once the number grows, the forests also learn from the iteration before
+  int first_states = 3000;     // samples of the first iterations
+  int steady_iterations = 12;  // iterations before that number grows
+  double growth = 1.25;        // factor per iteration from then on
+  int max_states = 400'000;    // where growth ends
+  int blind_iterations = 6;    // first iterations, on states from the whole state box, before there is a policy
+  double box_share = 0.05;     // of the samples from the whole state box, later
+  double visited_share = 0.5;  // of the samples from runs of the newest policy; the rest stays from before
+  double exploration = 0.3;    // chance per step of those runs to hold a random action for 1 to 3 steps
+  int backup_steps = 2;        // steps of the policy after the lookahead's action, before the last value forest counts
+  int backup_runs = 4;         // simulated runs of those steps
+  double backup_weight = 0.5;  // of their mean; the rest is the lookahead's own value
+  bool remember = true;        // once the number grows, the forests also learn from the iteration before
 
   // ValueMethod::rollouts: all states ever visited are kept; policy n is improved after n more runs.
-  int value_runs = 20;             // simulated runs per state
+  int value_runs = 20;  // simulated runs per state
 
-  int evaluation_runs = 1000;      // runs, always the same, that tell which policy is the best
-  std::string checkpoint = {};     // file to resume from; empty: none is written
-  double checkpoint_seconds = 10;  // wall time between two writes of it
-  bool resume = false;             // continue from `checkpoint` (same problem, options and seed: same bits as one go)
+  int evaluation_runs = 1000;     // runs, always the same, that tell which policy is the best
+  std::string checkpoint = {};    // file to resume from; empty: none is written
+  double checkpoint_seconds = 5;  // wall time between two writes of it; the first follows the first iteration
+  bool resume =
+      false;  // continue from `checkpoint` if it is there: same problem, options and seed, same bits as one go
   std::function<void(const struct RfpiProgress&)> on_progress = {};  // called after every iteration; empty: silence
 
   /// Hofer & Rouxel, "An operational method toward efficient walk control policies for humanoid robots", ICAPS 2017,
@@ -87,7 +88,8 @@ struct RfpiOptions {
     RfpiOptions options;
     options.value_method = ValueMethod::rollouts;
     options.max_iterations = 100;
-    options.lookahead = {.candidates = 100, .samples = 10, .corners = false, .common_noise = false, .refined = 0, .softness = 0};
+    options.lookahead = {
+        .candidates = 100, .samples = 10, .corners = false, .common_noise = false, .refined = 0, .softness = 0};
     options.value_forest = {.trees = 25, .min_leaf = 10};
     options.policy_forest = {.trees = 25, .min_leaf = 50, .model_score = true};
     options.remember = false;
@@ -98,13 +100,13 @@ struct RfpiOptions {
 /// The state of affairs after an iteration.
 struct RfpiProgress {
   int iteration = 0;
-  double seconds = 0;        // wall time so far, that before a resume included
-  double cpu_seconds = 0;    // of all threads of this process, likewise
-  double share = 0;          // of the budget that is used, 0..1
-  std::size_t states = 0;    // samples of this iteration
-  double cost = 0;           // minus the mean return of the newest policy over the evaluation runs
-  double best_cost = 0;      // of the best policy so far
-  std::size_t leaves = 0;    // of the newest policy
+  double seconds = 0;      // wall time so far, that before a resume included
+  double cpu_seconds = 0;  // of all threads of this process, likewise
+  double share = 0;        // of the budget that is used, 0..1
+  std::size_t states = 0;  // samples of this iteration
+  double cost = 0;         // minus the mean return of the newest policy over the evaluation runs
+  double best_cost = 0;    // of the best policy so far
+  std::size_t leaves = 0;  // of the newest policy
 };
 
 enum class RfpiStop { budget, iterations, wall_clock, requested };
@@ -112,10 +114,14 @@ enum class RfpiStop { budget, iterations, wall_clock, requested };
 /// One sentence about why it stopped.
 inline std::string explain(RfpiStop stop) {
   switch (stop) {
-    case RfpiStop::budget: return "the budget is used up";
-    case RfpiStop::iterations: return "all iterations are done";
-    case RfpiStop::wall_clock: return "the wall clock ended it early, so the result depends on the speed of this machine";
-    case RfpiStop::requested: return "it was asked to stop";
+    case RfpiStop::budget:
+      return "the budget is used up";
+    case RfpiStop::iterations:
+      return "all iterations are done";
+    case RfpiStop::wall_clock:
+      return "the wall clock ended it early, so the result depends on the speed of this machine";
+    case RfpiStop::requested:
+      return "it was asked to stop";
   }
   return {};
 }

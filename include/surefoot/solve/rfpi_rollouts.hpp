@@ -69,10 +69,11 @@ RfpiState<P> improve_by_rollouts(const P& problem, const RfpiOptions& options, c
   };
 
   StateSamples<P>& samples = after.samples;
-  samples.states = before.iteration == 0 ? std::vector<State>(seed_states.begin(), seed_states.end()) : before.samples.states;
-  const auto visited = visited_states(problem, [&](auto states) { return acting(rng.stream(0))(states); },
-                                      static_cast<std::size_t>(before.iteration) + 1, options.horizon, 0.0, executor,
-                                      rng.stream(1), stop);
+  samples.states =
+      before.iteration == 0 ? std::vector<State>(seed_states.begin(), seed_states.end()) : before.samples.states;
+  const auto visited = visited_states(
+      problem, acting(rng.stream(0)),  // random only in the first iteration, which has one run
+      static_cast<std::size_t>(before.iteration) + 1, options.horizon, 0.0, executor, rng.stream(1), stop);
   samples.states.insert(samples.states.end(), visited.begin(), visited.end());
   samples.values.resize(samples.size());
   samples.actions.resize(samples.size());
@@ -85,13 +86,14 @@ RfpiState<P> improve_by_rollouts(const P& problem, const RfpiOptions& options, c
     done.assign(samples.size(), {});
   };
   const auto value_of = [&](std::size_t i) {
-    samples.values[i] = rollout_value(problem, acting(rng.stream(2, i)), samples.states[i], options.value_runs, options.horizon,
-                                      options.discount, rng.stream(3, i), done[i]);
+    samples.values[i] = rollout_value(problem, acting(rng.stream(2, i)), samples.states[i], options.value_runs,
+                                      options.horizon, options.discount, rng.stream(3, i), done[i]);
     done[i].lookups = done[i].steps * (before.policy.empty() ? 0 : before.policy.trees());
   };
   if (!executor.run(samples.size(), value_of, stop)) return after;
   collect_work();
-  const auto value = fit_value<ConstantLeaf>(problem, samples, {}, options.value_forest, executor, rng.stream(4), after.work, stop);
+  const auto value =
+      fit_value<ConstantLeaf>(problem, samples, {}, options.value_forest, executor, rng.stream(4), after.work, stop);
 
   const auto action_of = [&](std::size_t i) {
     Lookahead<P, Forest<feature_dim<P>(), 1, ConstantLeaf>> look(problem, value, options.discount, options.lookahead);

@@ -34,14 +34,14 @@ struct StateSamples {
 
 /// Work done so far, in counts that do not depend on the clock or the threads.
 struct RfpiWork {
-  std::uint64_t steps = 0;      // simulated transitions
-  std::uint64_t lookups = 0;    // trees descended
-  std::uint64_t fits = 0;       // samples * trees * inputs fitted, levels of the trees included
+  std::uint64_t steps = 0;    // simulated transitions
+  std::uint64_t lookups = 0;  // trees descended
+  std::uint64_t fits = 0;     // samples * trees * inputs fitted, levels of the trees included
 
   /// Nominal seconds of one core.
   double seconds(const Budget& budget) const {
-    constexpr double lookup_ns = 30;
-    constexpr double fit_ns = 3;
+    constexpr double lookup_ns = 50;
+    constexpr double fit_ns = 6;
     return 1e-9 * (budget.step_ns * static_cast<double>(steps) + lookup_ns * static_cast<double>(lookups) +
                    fit_ns * static_cast<double>(fits));
   }
@@ -155,10 +155,12 @@ RfpiState<P> load_checkpoint(const std::filesystem::path& path, std::uint64_t fi
   const Bytes bytes = read_file(path);
   ByteReader in(bytes, "checkpoint " + path.string());
   const auto magic = in.raw(detail::checkpoint_magic.size());
-  if (!std::ranges::equal(magic, std::as_bytes(std::span(detail::checkpoint_magic)))) in.fail("is not a checkpoint of RFPI");
+  if (!std::ranges::equal(magic, std::as_bytes(std::span(detail::checkpoint_magic))))
+    in.fail("is not a checkpoint of RFPI");
   if (in.u32() != detail::checkpoint_version) in.fail("was written by another version of this library");
   if (in.u64() != fingerprint) {
-    throw SolveError(in.source() + " belongs to a run with another problem, other options or another seed: "
+    throw SolveError(in.source() +
+                     " belongs to a run with another problem, other options or another seed: "
                      "resume with the same ones, or remove it to start anew");
   }
   RfpiState<P> state;

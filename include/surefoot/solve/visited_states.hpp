@@ -18,9 +18,10 @@ namespace surefoot {
 
 /// Starts `runs` runs at the problem's initial states and returns every state in which an action was taken, run by run.
 /// With chance `exploration` per step a random action is held for 1 to 3 steps instead of the policy's.
+/// `act` maps the states of up to 32 runs to their actions, for different runs from several threads at once.
 /// Run i draws from rng.stream(i). Fewer runs come back if `stop` is requested.
 template <Problem P, class Acting, Executor E>
-std::vector<typename P::State> visited_states(const P& problem, const Acting& act, std::size_t runs, int horizon,
+std::vector<typename P::State> visited_states(const P& problem, Acting act, std::size_t runs, int horizon,
                                               double exploration, const E& executor, const Rng& rng,
                                               std::stop_token stop = {}) {
   using State = typename P::State;
