@@ -24,19 +24,19 @@
 #include "tests/support/double_integrator.hpp"
 #include "tests/support/pendulum.hpp"
 
-// operator new is replaced by one that counts.
+// operator new is replaced by one that counts. Not inlined: GCC would take free() for a mismatched deallocation.
 namespace {
 std::atomic<long> allocations{0};
 }
 
-void* operator new(std::size_t size) {
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   void* memory = std::malloc(size);
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace surefoot {
 namespace {

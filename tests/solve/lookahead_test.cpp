@@ -41,7 +41,8 @@ using Value = Forest<1, 1, ConstantLeaf>;
 const Value no_value;
 
 Value constant_value(double value) {
-  const Dataset<1, 1> data{.inputs = Eigen::RowVector2f(-1, 1), .outputs = Eigen::RowVector2d(value, value), .weights = {}};
+  const Dataset<1, 1> data{
+      .inputs = Eigen::RowVector2f(-1, 1), .outputs = Eigen::RowVector2d(value, value), .weights = {}};
   return train_extra_trees<ConstantLeaf>(data, {.trees = 3}, Serial{}, 1);
 }
 
@@ -54,7 +55,8 @@ auto look(const Bowl& problem, const LookaheadOptions& options, std::uint64_t se
 double error(const Bowl& problem, const LookaheadOptions& options) {
   const int count = 200;
   double sum = 0;
-  for (std::uint64_t seed = 0; seed < count; ++seed) sum += (look(problem, options, seed).action - problem.best).squaredNorm();
+  for (std::uint64_t seed = 0; seed < count; ++seed)
+    sum += (look(problem, options, seed).action - problem.best).squaredNorm();
   return std::sqrt(sum / count);
 }
 
@@ -158,7 +160,8 @@ TEST_CASE("as many transitions are simulated as it says") {
   const Vec<2> incumbent(0, 0);
   for (const LookaheadOptions& options :
        {LookaheadOptions{}, LookaheadOptions{.candidates = 1, .refined = 0}, LookaheadOptions{.kept = 9, .refined = 4},
-        LookaheadOptions{.candidates = 2, .kept = 6, .refined = 12}, LookaheadOptions{.corners = false, .common_noise = false}}) {
+        LookaheadOptions{.candidates = 2, .kept = 6, .refined = 12},
+        LookaheadOptions{.corners = false, .common_noise = false}}) {
     std::vector<Vec<2>> tried;
     const Bowl problem{.tried = &tried};
     Lookahead<Bowl, Value> lookahead(problem, no_value, 0.9, options);

@@ -291,18 +291,19 @@ TEST_CASE("a checkpoint of another run is refused in words") {
   rfpi(noisy, options, Serial{}, 1);
   options.resume = true;
   const std::vector<Vec<2>> seeds{Vec<2>(0.5, 0)};
-  const auto refused = [](const Counted& problem, const RfpiOptions& o, std::uint64_t seed, std::span<const Vec<2>> states) {
-    CHECK_THROWS_WITH_AS(rfpi(problem, o, Serial{}, seed, states), doctest::Contains("another problem, other options or another seed"),
-                         SolveError);
+  const auto refused = [](const Counted& problem, const RfpiOptions& o, std::uint64_t seed,
+                          std::span<const Vec<2>> states) {
+    CHECK_THROWS_WITH_AS(rfpi(problem, o, Serial{}, seed, states),
+                         doctest::Contains("another problem, other options or another seed"), SolveError);
   };
   refused(noisy, options, 2, {});
   refused(noisy, options, 1, seeds);
   refused(Counted{{.push = 0.03}}, options, 1, {});
   const std::vector<std::function<void(RfpiOptions&)>> changes{
-      [](RfpiOptions& o) { o.discount = 0.97; },         [](RfpiOptions& o) { o.horizon = 21; },
-      [](RfpiOptions& o) { o.first_states = 101; },      [](RfpiOptions& o) { o.lookahead.softness = 0.2; },
-      [](RfpiOptions& o) { o.value_forest.ridge = 2; },  [](RfpiOptions& o) { o.policy_forest.max_leaves = 7; },
-      [](RfpiOptions& o) { o.remember = false; },        [](RfpiOptions& o) { o.value_method = ValueMethod::rollouts; },
+      [](RfpiOptions& o) { o.discount = 0.97; },        [](RfpiOptions& o) { o.horizon = 21; },
+      [](RfpiOptions& o) { o.first_states = 101; },     [](RfpiOptions& o) { o.lookahead.softness = 0.2; },
+      [](RfpiOptions& o) { o.value_forest.ridge = 2; }, [](RfpiOptions& o) { o.policy_forest.max_leaves = 7; },
+      [](RfpiOptions& o) { o.remember = false; },       [](RfpiOptions& o) { o.value_method = ValueMethod::rollouts; },
       [](RfpiOptions& o) { o.evaluation_runs = 21; }};
   for (const auto& change : changes) {
     RfpiOptions changed = options;

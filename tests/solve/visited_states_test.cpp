@@ -98,7 +98,8 @@ TEST_CASE("exploration holds random actions for 1 to 3 steps, each as often, wit
     i = end;
   }
   const double all = holds[1] + holds[2] + holds[3];
-  for (std::size_t length = 1; length <= 3; ++length) CHECK(holds[length] / all == doctest::Approx(1.0 / 3).epsilon(0.06));
+  for (std::size_t length = 1; length <= 3; ++length)
+    CHECK(holds[length] / all == doctest::Approx(1.0 / 3).epsilon(0.06));
   // A hold of 2 steps on average follows (1 - chance) / chance steps of the policy on average.
   CHECK(random_steps / (3.0 * horizon) == doctest::Approx(2 / (2 + (1 - chance) / chance)).epsilon(0.05));
 }

@@ -23,6 +23,7 @@ constexpr std::size_t avx2_slots = 16;  // keys that fit into two registers, the
 struct Avx2Lanes {
   __m256i place;  // index of each lane's node
   __m256i key;    // its key, lanes in the order 0 1 4 5 2 3 6 7
+  __m256i used;   // -1 where there is a tree
 };
 
 // Sort keys are unsigned, AVX2 compares signed: both sides get their top bit flipped.
@@ -59,48 +60,52 @@ template <bool TwoRegisters>
   return moved;
 }
 
-/// Eight descents from the roots [first, first + 8) of `count`; lanes behind the last start at node 0.
-struct Avx2Group {
-  Avx2Lanes lanes;
-  __m256i used;  // -1 where there is a tree
-};
-[[gnu::target("avx2"), gnu::always_inline]] inline Avx2Group start(const std::uint32_t* roots, std::size_t first,
+/// At the roots of trees [first, first + 8) of `count`; lanes behind the last tree start at node 0 and are not used.
+[[gnu::target("avx2"), gnu::always_inline]] inline Avx2Lanes start(const std::uint32_t* roots, std::size_t first,
                                                                    std::size_t count) {
-  const auto left = static_cast<int>(std::min<std::size_t>(count, first + 8)) - static_cast<int>(first);
-  const __m256i used = _mm256_cmpgt_epi32(_mm256_set1_epi32(left), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
-  return {{_mm256_maskload_epi32(reinterpret_cast<const int*>(roots + first), used), {}}, used};
+  first = std::min(first, count);
+  const auto left = static_cast<int>(std::min<std::size_t>(count - first, 8));
+  Avx2Lanes lanes;
+  lanes.used = _mm256_cmpgt_epi32(_mm256_set1_epi32(left), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+  lanes.place = _mm256_maskload_epi32(reinterpret_cast<const int*>(roots + first), lanes.used);
+  lanes.key = lanes.place;
+  return lanes;
 }
-[[gnu::target("avx2"), gnu::always_inline]] inline void finish(const Avx2Group& group, std::uint32_t* payloads) {
-  _mm256_maskstore_epi32(reinterpret_cast<int*>(payloads), group.used, _mm256_permute4x64_epi64(group.lanes.key, 0xD8));
+[[gnu::target("avx2"), gnu::always_inline]] inline void finish(const Avx2Lanes& lanes, std::uint32_t* payloads,
+                                                               std::size_t first, std::size_t count) {
+  first = std::min(first, count);
+  _mm256_maskstore_epi32(reinterpret_cast<int*>(payloads + first), lanes.used,
+                         _mm256_permute4x64_epi64(lanes.key, 0xD8));
 }
 
 template <bool TwoRegisters>
 [[gnu::target("avx2")]] inline void find_leaves_avx2(const Node* nodes, std::span<const std::uint32_t> roots,
                                                      const Avx2Keys& keys, std::uint32_t* payloads) {
+  const std::size_t count = roots.size();
   std::size_t tree = 0;
   __m256i moved;
-  for (; tree + 16 < roots.size(); tree += 32) {
-    Avx2Group a = start(roots.data(), tree, roots.size());
-    Avx2Group b = start(roots.data(), tree + 8, roots.size());
-    Avx2Group c = start(roots.data(), tree + 16, roots.size());
-    Avx2Group d = start(roots.data(), tree + 24, roots.size());
+  for (; tree + 16 < count; tree += 32) {
+    Avx2Lanes a = start(roots.data(), tree, count);
+    Avx2Lanes b = start(roots.data(), tree + 8, count);
+    Avx2Lanes c = start(roots.data(), tree + 16, count);
+    Avx2Lanes d = start(roots.data(), tree + 24, count);
     do {
-      moved = step<TwoRegisters>(nodes, keys, a.lanes) | step<TwoRegisters>(nodes, keys, b.lanes) |
-              step<TwoRegisters>(nodes, keys, c.lanes) | step<TwoRegisters>(nodes, keys, d.lanes);
+      moved = step<TwoRegisters>(nodes, keys, a) | step<TwoRegisters>(nodes, keys, b) |
+              step<TwoRegisters>(nodes, keys, c) | step<TwoRegisters>(nodes, keys, d);
     } while (!_mm256_testz_si256(moved, moved));
-    finish(a, payloads + tree);
-    finish(b, payloads + tree + 8);
-    finish(c, payloads + tree + 16);
-    finish(d, payloads + tree + 24);
+    finish(a, payloads, tree, count);
+    finish(b, payloads, tree + 8, count);
+    finish(c, payloads, tree + 16, count);
+    finish(d, payloads, tree + 24, count);
   }
-  for (; tree < roots.size(); tree += 16) {
-    Avx2Group a = start(roots.data(), tree, roots.size());
-    Avx2Group b = start(roots.data(), tree + 8, roots.size());
+  for (; tree < count; tree += 16) {
+    Avx2Lanes a = start(roots.data(), tree, count);
+    Avx2Lanes b = start(roots.data(), tree + 8, count);
     do {
-      moved = step<TwoRegisters>(nodes, keys, a.lanes) | step<TwoRegisters>(nodes, keys, b.lanes);
+      moved = step<TwoRegisters>(nodes, keys, a) | step<TwoRegisters>(nodes, keys, b);
     } while (!_mm256_testz_si256(moved, moved));
-    finish(a, payloads + tree);
-    finish(b, payloads + tree + 8);
+    finish(a, payloads, tree, count);
+    finish(b, payloads, tree + 8, count);
   }
 }
 

@@ -176,9 +176,9 @@ class CmaEsCore {
   }
 
   void factorise() {
-    cholesky_.compute(state_.covariance);
-    state_.degenerate = cholesky_.info() != Eigen::Success || !state_.covariance.diagonal().allFinite();
-    if (!state_.degenerate) state_.factor = cholesky_.matrixL();
+    state_.factor = state_.covariance;
+    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(state_.factor);
+    state_.degenerate = in_place.info() != Eigen::Success || !state_.factor.diagonal().allFinite();
   }
 
   CmaEsState state_;
@@ -192,7 +192,6 @@ class CmaEsCore {
   std::vector<Eigen::Index> order_;  // candidates, best first
   std::vector<double> ranked_;       // their values
   Eigen::VectorXd mean_step_, mean_normal_, scaled_weights_;
-  Eigen::LLT<Eigen::MatrixXd> cholesky_;
 };
 
 }  // namespace surefoot

@@ -19,8 +19,8 @@ struct CmaEsState {
   Eigen::VectorXd mean;
   double sigma = 0;
   double start_sigma = 0;
-  Eigen::MatrixXd covariance;  // C, its lower triangle
-  Eigen::MatrixXd factor;      // lower triangular A with A A^T = C, as of the last factorisation
+  Eigen::MatrixXd covariance;  // C: the lower triangle, zeros above
+  Eigen::MatrixXd factor;      // lower triangular A with A A^T = C as it was at the last factorisation
   bool degenerate = false;     // the last factorisation found C not positive definite
   Eigen::VectorXd path_sigma;  // evolution path of the step size, in the coordinates of A^-1
   Eigen::VectorXd path;        // evolution path of the covariance
