@@ -23,7 +23,7 @@ step() {
 # machines within the ten minutes.
 for problem in ha anha; do
   policy=$results/rfpi_$problem
-  step train --problem $problem --budget 400 --max-wall 220 --seed 1 --out "$policy.policy"
+  step train --problem $problem --budget 180 --max-wall 180 --seed 1 --out "$policy.policy"
   step tune --problem $problem --budget 50 --max-wall 40 --seed 1 --out "$results/tuned_$problem.json"
   step export --policy "$policy.policy" --out "$policy.c"
   step export --policy "$policy.policy" --max-kb 200 --out "${policy}_small.c"

@@ -23,6 +23,7 @@ struct Options {
   std::filesystem::path policy, out;
   std::size_t max_kb = 2000;  // [1000 bytes]
   int runs = DistillOptions{}.runs;
+  int trials = 10'000;
   std::uint64_t seed = 1;
   std::size_t threads = 0;
 };
@@ -125,7 +126,7 @@ void run(const Options& options) {
     std::printf("The policy itself would take %.0f kB in C; learning a smaller one from it.\n", kilobytes(code));
     std::fflush(stdout);
     const surefoot::Threads threads(options.threads);
-    const surefoot::RolloutOptions trials{.runs = 10'000, .horizon = Approach::horizon};
+    const surefoot::RolloutOptions trials{.runs = options.trials, .horizon = Approach::horizon};
     const Policy small = shrink(policy, options, threads);
     const auto& problem = policy.problem();
     const auto before = surefoot::evaluate(problem, policy, trials, threads, evaluation_seed);
@@ -159,6 +160,9 @@ void add_export(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--runs", options->runs, "runs of the policy that the smaller one learns from")
       ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  command->add_option("--trials", options->trials, "independent runs that tell its price")
+      ->check(CLI::Range(2, 100'000'000))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "of that learning")->capture_default_str();
   add_threads_option(*command, options->threads);

@@ -87,13 +87,13 @@ TEST_SUITE("sigmaban_approach" * doctest::skip(!program_exists())) {
   TEST_CASE("an exported policy acts as the library does, and a smaller one fits its limit") {
     const ScratchFolder folder;
     const std::string policy = folder.file("ha.policy"), c_file = folder.file("ha.c");
-    train("--budget 0.5", policy);
+    train("--budget 0.3", policy);
     const Approach problem = Approach::ha();
 
     REQUIRE(run("export --policy " + policy + " --out " + c_file + " --max-kb 0").code == 0);
     CHECK(largest_difference(CPolicy(c_file), surefoot::load_policy(problem, policy), problem.state_box()) <= 1e-6);
 
-    const auto smaller = run("export --policy " + policy + " --out " + c_file + " --max-kb 20 --runs 300");
+    const auto smaller = run("export --policy " + policy + " --out " + c_file + " --max-kb 20 --runs 300 --trials 100");
     REQUIRE(smaller.code == 0);
     CHECK(smaller.output.find("the smaller size costs") != std::string::npos);
     CHECK(std::filesystem::file_size(c_file) <= 20'000);
@@ -104,13 +104,13 @@ TEST_SUITE("sigmaban_approach" * doctest::skip(!program_exists())) {
   TEST_CASE("a training that was killed and resumed gives the same policy as one in one go") {
     const ScratchFolder folder;
     const std::string whole = folder.file("whole"), parts = folder.file("parts");
-    train("--budget 1 --threads 1", whole);
+    train("--budget 0.6 --threads 1", whole);
     const auto killed =
-        run_in_background("train --problem ha --budget 1 --threads 2 --checkpoint-every 0 --out " + parts,
+        run_in_background("train --problem ha --budget 0.6 --threads 2 --checkpoint-every 0 --out " + parts,
                           "-e " + parts + ".checkpoint", "KILL");
     REQUIRE(killed.code == 128 + 9);
     REQUIRE_FALSE(std::filesystem::exists(parts));
-    train("--budget 1 --threads 2 --resume", parts);
+    train("--budget 0.6 --threads 2 --resume", parts);
     CHECK(surefoot::read_file(whole) == surefoot::read_file(parts));
   }
 

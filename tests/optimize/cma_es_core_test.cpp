@@ -68,7 +68,7 @@ TEST_CASE("the first candidates are normally distributed around the start") {
   CmaEsCore core(cma_es_start(start, 0.5, 20'000, 3));
   const Eigen::MatrixXd z = (core.ask().colwise() - start) / 0.5;
   const Eigen::Matrix2d covariance = z * z.transpose() / static_cast<double>(z.cols());
-  CHECK(z.rowwise().mean().norm() < 0.03);                            // 3 standard errors: 0.021 each
+  CHECK(z.rowwise().mean().norm() < 0.03);  // 3 standard errors: 0.021 each
   CHECK((covariance - Eigen::Matrix2d::Identity()).norm() < 0.06);
 }
 
@@ -118,7 +118,8 @@ TEST_CASE("values that are not finite rank last") {
   const double bad[] = {std::nan(""), std::numeric_limits<double>::infinity(),
                         -std::numeric_limits<double>::infinity()};
   for (const double value : bad) {
-    CmaEsCore with_bad(cma_es_start(VectorXd::Ones(3), 0.5, 8, 8)), with_worst(cma_es_start(VectorXd::Ones(3), 0.5, 8, 8));
+    CmaEsCore with_bad(cma_es_start(VectorXd::Ones(3), 0.5, 8, 8)),
+        with_worst(cma_es_start(VectorXd::Ones(3), 0.5, 8, 8));
     with_bad.ask();
     with_worst.ask();
     with_bad.tell(std::vector<double>{3, 1, value, 2, 5, 4, 7, 6});

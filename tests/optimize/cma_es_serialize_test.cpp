@@ -18,7 +18,8 @@ using Eigen::VectorXd;
 
 CmaEsSearch example_search() {
   const Box<Eigen::Dynamic> box{VectorXd{{-5, -5, 1}}, VectorXd{{5, 5, 1}}};
-  return cma_es(toy::rastrigin, VectorXd{{2, 3, 1}}, box, {.restarts = Restarts::bipop, .max_evaluations = 3000}, Serial{}, 3)
+  return cma_es(toy::rastrigin, VectorXd{{2, 3, 1}}, box, {.restarts = Restarts::bipop, .max_evaluations = 3000},
+                Serial{}, 3)
       .search;
 }
 

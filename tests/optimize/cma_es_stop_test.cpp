@@ -40,13 +40,14 @@ TEST_CASE("a value below the target ends the search") {
 
 TEST_CASE("the budget of evaluations ends the search and is never exceeded") {
   for (const std::uint64_t budget : {7, 8, 100, 1000}) {
-    const auto result = cma_es(toy::sphere, VectorXd::Ones(3), 0.5, {.max_evaluations = budget, .tolerances = all_off}, Serial{}, 1);
+    const auto result =
+        cma_es(toy::sphere, VectorXd::Ones(3), 0.5, {.max_evaluations = budget, .tolerances = all_off}, Serial{}, 1);
     CHECK(result.reason == StopReason::max_evaluations);
     CHECK(result.evaluations <= budget);
     CHECK(result.evaluations + 7 > budget);  // a generation is 7
   }
-  CHECK_THROWS_WITH_AS(reason_of(toy::sphere, {.max_evaluations = 6}), doctest::Contains("one generation, 7 evaluations"),
-                       OptimizeError);
+  CHECK_THROWS_WITH_AS(reason_of(toy::sphere, {.max_evaluations = 6}),
+                       doctest::Contains("one generation, 7 evaluations"), OptimizeError);
 }
 
 TEST_CASE("the time budget ends the search, but not before its first generation") {
@@ -60,9 +61,10 @@ TEST_CASE("a stop request ends the search, between or within generations") {
   std::stop_source stop;
   int generations = 0;
   const auto result = cma_es(toy::sphere, VectorXd::Ones(3), 0.5,
-                             {.observer = [&](const CmaEsSearch&) {
-                               if (++generations == 5) stop.request_stop();
-                             }},
+                             {.observer =
+                                  [&](const CmaEsSearch&) {
+                                    if (++generations == 5) stop.request_stop();
+                                  }},
                              Serial{}, 1, stop.get_token());
   CHECK(result.reason == StopReason::stop_requested);
   CHECK(result.evaluations == 5 * 7);

@@ -40,8 +40,9 @@ TEST_CASE("the minimum is found from many starts in few and in many dimensions")
       }
     }
   }
-  CHECK(cma_es(toy::ellipsoid, toy::random_start(40, 1, 1), 0.5, {.target = 1e-9, .max_evaluations = 60'000}, Serial{}, 1)
-            .reason == StopReason::target_reached);
+  CHECK(
+      cma_es(toy::ellipsoid, toy::random_start(40, 1, 1), 0.5, {.target = 1e-9, .max_evaluations = 60'000}, Serial{}, 1)
+          .reason == StopReason::target_reached);
 }
 
 TEST_CASE("Rosenbrock's valley is followed to its end") {
@@ -65,8 +66,8 @@ TEST_CASE("one dimension and a dimension without effect are no problem") {
 TEST_CASE("the best point of a box is found on a face, on an edge, in a corner and inside") {
   const Box<Eigen::Dynamic> box{VectorXd{{-1, 0, 100}}, VectorXd{{1, 5, 300}}};
   const VectorXd widths = box.width();
-  for (const VectorXd& target : {VectorXd{{0.3, -2, 150}}, VectorXd{{3, 7, 250}}, VectorXd{{-4, 9, 20}},
-                                 VectorXd{{0.999, 4.99, 299.9}}}) {
+  for (const VectorXd& target :
+       {VectorXd{{0.3, -2, 150}}, VectorXd{{3, 7, 250}}, VectorXd{{-4, 9, 20}}, VectorXd{{0.999, 4.99, 299.9}}}) {
     const auto distance = [&](const VectorXd& x) {
       CHECK(box.contains(x));
       return (x - target).cwiseQuotient(widths).squaredNorm();
@@ -98,8 +99,8 @@ TEST_CASE("BIPOP finds the best of a thousand local minima") {
 }
 
 TEST_CASE("restarts end when they are used up, with the reason of the last descent") {
-  const auto result =
-      cma_es(toy::rastrigin, VectorXd::Constant(5, 3.0), 0.1, {.restarts = Restarts::ipop, .max_restarts = 2}, Serial{}, 1);
+  const auto result = cma_es(toy::rastrigin, VectorXd::Constant(5, 3.0), 0.1,
+                             {.restarts = Restarts::ipop, .max_restarts = 2}, Serial{}, 1);
   REQUIRE(result.descents.size() == 3);
   CHECK(result.descents[2].population == 4 * result.descents[0].population);
   CHECK(result.reason == result.descents[2].reason);
@@ -196,6 +197,7 @@ TEST_CASE("options that make no sense are refused by name") {
   };
   CHECK(message({.box_sigma = 0}).find("box_sigma") != std::string::npos);
   CHECK(message({.population = 3}).find("population") != std::string::npos);
+  CHECK(message({.population = 2'000'000}).find("population") != std::string::npos);
   CHECK(message({.max_restarts = -1}).find("max_restarts") != std::string::npos);
   CHECK(message({.population_growth = 0.5}).find("population_growth") != std::string::npos);
   CHECK(message({.target = std::nan("")}).find("target") != std::string::npos);

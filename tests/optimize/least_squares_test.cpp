@@ -71,8 +71,10 @@ TEST_CASE("hard classics are solved to their known solutions") {
   CHECK(least_squares(powell, VectorXd{{3, -1, 0, 1}}).cost < 1e-12);
 
   // NIST StRD Misra1a, with its certified values and standard deviations.
-  const VectorXd volume{{10.07, 14.73, 17.94, 23.93, 29.61, 35.18, 40.02, 44.82, 50.76, 55.05, 61.01, 66.40, 75.47, 81.78}};
-  const VectorXd pressure{{77.6, 114.9, 141.1, 190.8, 239.9, 289.0, 332.8, 378.4, 434.8, 477.3, 536.8, 593.1, 689.1, 760.0}};
+  const VectorXd volume{
+      {10.07, 14.73, 17.94, 23.93, 29.61, 35.18, 40.02, 44.82, 50.76, 55.05, 61.01, 66.40, 75.47, 81.78}};
+  const VectorXd pressure{
+      {77.6, 114.9, 141.1, 190.8, 239.9, 289.0, 332.8, 378.4, 434.8, 477.3, 536.8, 593.1, 689.1, 760.0}};
   const auto misra = [&](const VectorXd& b) -> VectorXd {
     return (b[0] * (1 - (-b[1] * pressure.array()).exp())).matrix() - volume;
   };
@@ -94,8 +96,8 @@ TEST_CASE("hard classics are solved to their known solutions") {
 
 TEST_CASE("with a box the solution is the best point inside, and held parameters have variance 0") {
   const Line line(2);
-  const LeastSquaresResult fit = least_squares(
-      line, VectorXd{{1, 0}}, {.box = Box<Eigen::Dynamic>{VectorXd{{0, -0.4}}, VectorXd{{10, 1}}}});
+  const LeastSquaresResult fit =
+      least_squares(line, VectorXd{{1, 0}}, {.box = Box<Eigen::Dynamic>{VectorXd{{0, -0.4}}, VectorXd{{10, 1}}}});
   CHECK(fit.x[1] == -0.4);
   // With the slope held, the offset is a mean.
   CHECK(fit.x[0] == doctest::Approx((line.seen + 0.4 * line.inputs.col(1)).mean()));

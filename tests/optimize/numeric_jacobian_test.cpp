@@ -18,7 +18,8 @@ MatrixXd curved_slopes(const VectorXd& x) {
 
 TEST_CASE("the Jacobian is right to nine digits") {
   for (const VectorXd& x : {VectorXd{{0.3, -1.2}}, VectorXd{{0, 0}}, VectorXd{{2, 3}}}) {
-    CHECK((numeric_jacobian(curved, x) - curved_slopes(x)).cwiseAbs().maxCoeff() < 1e-9 * (1 + curved_slopes(x).norm()));
+    CHECK((numeric_jacobian(curved, x) - curved_slopes(x)).cwiseAbs().maxCoeff() <
+          1e-9 * (1 + curved_slopes(x).norm()));
   }
 }
 

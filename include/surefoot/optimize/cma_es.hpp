@@ -10,7 +10,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <stop_token>

@@ -15,7 +15,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -130,7 +129,8 @@ class CmaEsCore {
       mean_normal_ += c.weights[i] * normal_.col(order_[static_cast<std::size_t>(i)]);
     }
     state_.mean += state_.sigma * mean_step_;
-    state_.path_sigma = (1 - c.c_sigma) * state_.path_sigma + std::sqrt(c.c_sigma * (2 - c.c_sigma) * c.mu_eff) * mean_normal_;
+    state_.path_sigma =
+        (1 - c.c_sigma) * state_.path_sigma + std::sqrt(c.c_sigma * (2 - c.c_sigma) * c.mu_eff) * mean_normal_;
 
     const auto n = static_cast<double>(state_.dimension());
     const double forgotten = 1 - std::pow(1 - c.c_sigma, 2 * static_cast<double>(state_.generation + 1));

@@ -71,7 +71,8 @@ class CmaEsLoop {
     Rng rng = Rng(search_.seed, number).stream(restart_stream);
     RestartSchedule schedule = search_.schedule;
     schedule.finished(search_.plan, number, search_.descent.evaluations);
-    const auto plan = schedule.next(options_.restarts, options_.max_restarts, options_.population_growth, rng.stream(0));
+    const auto plan =
+        schedule.next(options_.restarts, options_.max_restarts, options_.population_growth, rng.stream(0));
     if (!plan) return false;
     search_.finished.push_back(record(reason));
     search_.schedule = schedule;
@@ -99,9 +100,7 @@ class CmaEsLoop {
     }
   }
   bool adapts_to_noise() const { return options_.noise.max_evaluations > std::max(1, options_.noise.evaluations); }
-  std::uint64_t generation_cost() const {
-    return repetitions() * static_cast<std::uint64_t>(core_.state().population);
-  }
+  std::uint64_t generation_cost() const { return repetitions() * static_cast<std::uint64_t>(core_.state().population); }
 
   // False if a stop came before all candidates were done.
   bool evaluate() {
@@ -149,8 +148,8 @@ class CmaEsLoop {
       const NoiseOptions& noise = options_.noise;
       const bool confused = rank_disorder(first_half_, second_half_) > noise.disorder;
       search_.noise_evaluations *= confused ? noise.growth : std::pow(noise.growth, -0.25);
-      search_.noise_evaluations = std::clamp<double>(search_.noise_evaluations, std::max(1, noise.evaluations),
-                                                     noise.max_evaluations);
+      search_.noise_evaluations =
+          std::clamp<double>(search_.noise_evaluations, std::max(1, noise.evaluations), noise.max_evaluations);
     }
     if (options_.observer) {
       search_.state = core_.state();
@@ -186,9 +185,7 @@ class CmaEsLoop {
     return result;
   }
 
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
-  }
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
 
   // Streams of a descent; CmaEsCore draws its candidates from streams of two keys, these have three.
   static constexpr std::uint64_t noise_stream = 1, restart_stream = 2;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "surefoot/optimize/cma_es_search.hpp"
+#include "surefoot/optimize/cma_es_state.hpp"
 #include "surefoot/optimize/cma_es_stop.hpp"
 #include "surefoot/optimize/objective.hpp"
 #include "surefoot/optimize/rank_noise.hpp"
@@ -23,7 +24,7 @@ struct CmaEsOptions {
   int max_restarts = 9;          // with large population
   double population_growth = 2;  // factor from one large population to the next
 
-  double target = -std::numeric_limits<double>::infinity();  // a value this small ends the search
+  double target = -std::numeric_limits<double>::infinity();                   // a value this small ends the search
   std::uint64_t max_evaluations = std::numeric_limits<std::uint64_t>::max();  // never exceeded
   double max_seconds = std::numeric_limits<double>::infinity();               // wall clock, of this call [s]
   CmaEsTolerances tolerances = {};
@@ -39,7 +40,8 @@ inline void check(const CmaEsOptions& options) {
     if (!condition) throw OptimizeError(std::string("CmaEsOptions: ") + sentence);
   };
   demand(options.box_sigma > 0 && std::isfinite(options.box_sigma), "box_sigma must be positive and finite");
-  demand(options.population == 0 || options.population >= 4, "population must be at least 4, or 0 for the default");
+  demand(options.population == 0 || (options.population >= 4 && options.population <= max_population),
+         "population must be from 4 to a million, or 0 for the default");
   demand(options.max_restarts >= 0, "max_restarts must not be negative");
   demand(options.population_growth >= 1 && options.population_growth <= 100, "population_growth must be from 1 to 100");
   demand(!std::isnan(options.target), "target must not be NaN");

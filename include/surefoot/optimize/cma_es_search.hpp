@@ -47,7 +47,7 @@ struct CmaEsResult {
   double best_value = std::numeric_limits<double>::infinity();
   StopReason reason = StopReason::stop_requested;
   std::uint64_t evaluations = 0;
-  double seconds = 0;                  // wall clock, of this call [s]
+  double seconds = 0;                       // wall clock, of this call [s]
   std::vector<CmaEsDescent> descents = {};  // in their order; only the last may have been cut short
   CmaEsSearch search = {};                  // to go on from here: cma_es(objective, result.search, ...)
 };

@@ -24,9 +24,7 @@
 
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/box.hpp"
-#include "surefoot/core/error.hpp"
 #include "surefoot/optimize/cma_es_search.hpp"
-#include "surefoot/optimize/objective.hpp"
 
 namespace surefoot {
 
@@ -69,7 +67,9 @@ class FieldWriter {
   void operator()(bool value) { out_.u8(value); }
   void operator()(StopReason value) { out_.u8(static_cast<std::uint8_t>(value)); }
   template <std::integral T>
-  void operator()(T value) { out_.u64(static_cast<std::uint64_t>(value)); }
+  void operator()(T value) {
+    out_.u64(static_cast<std::uint64_t>(value));
+  }
   void operator()(const Eigen::VectorXd& values) {
     out_.list(std::span(values.data(), static_cast<std::size_t>(values.size())));
   }
@@ -156,8 +156,9 @@ inline bool is_sound(const CmaEsSearch& search) {
     free = (search.box->width().array() > 0).count();
   }
   return n > 0 && n == free && search.start.allFinite() && search.sigma > 0 && state.population >= 4 &&
-         state.population <= 1'000'000 && search.plan.population == state.population &&
-         search.descent.population == state.population && search.schedule.first_population >= 4 && column(state.mean) &&
+         state.population <= max_population && state.descent == search.finished.size() &&
+         search.plan.population == state.population && search.descent.population == state.population &&
+         search.schedule.first_population >= 4 && search.schedule.large_population >= 4 && column(state.mean) &&
          state.sigma > 0 && state.start_sigma > 0 && square(state.covariance) && square(state.factor) &&
          column(state.path_sigma) && column(state.path) && state.best_values.size() == state.median_values.size() &&
          search.noise_evaluations >= 1 && search.noise_evaluations <= 1e9 && point(search.descent) &&

@@ -9,6 +9,9 @@
 
 namespace surefoot {
 
+/// More candidates in a generation than this are a mistake.
+inline constexpr Eigen::Index max_population = 1'000'000;
+
 /// The search distribution is N(mean, sigma^2 C). Memory: two matrices of dimension^2 doubles and the histories.
 struct CmaEsState {
   std::uint64_t seed = 0;  // with `descent` and `generation` it names the random numbers of a generation
@@ -25,7 +28,7 @@ struct CmaEsState {
   Eigen::VectorXd path_sigma;  // evolution path of the step size, in the coordinates of A^-1
   Eigen::VectorXd path;        // evolution path of the covariance
 
-  double spread = 0;               // worst minus best value of the last generation
+  double spread = 0;                    // worst minus best value of the last generation
   std::deque<double> best_values = {};  // of the last generations, newest last, as far back as a stop criterion looks
   std::deque<double> median_values = {};
 
@@ -33,9 +36,7 @@ struct CmaEsState {
 
   /// How far back the stop criteria look [generations]: the stagnation window of the tutorial (appendix B.3).
   std::size_t shortest_history() const { return 120 + static_cast<std::size_t>(30 * dimension() / population); }
-  std::size_t history() const {
-    return std::clamp<std::size_t>(generation / 5, shortest_history(), 20'000);
-  }
+  std::size_t history() const { return std::clamp<std::size_t>(generation / 5, shortest_history(), 20'000); }
 };
 
 }  // namespace surefoot

@@ -37,9 +37,9 @@ enum class StopReason : std::uint8_t {
 };
 
 constexpr std::string_view to_string(StopReason reason) {
-  constexpr std::string_view names[] = {"target reached", "max evaluations",  "time budget",         "stop requested",
-                                        "tol x",          "tol fun",          "equal values",        "stagnation",
-                                        "tol x up",       "condition",        "no effect axis",      "no effect coordinate"};
+  constexpr std::string_view names[] = {"target reached", "max evaluations", "time budget",    "stop requested",
+                                        "tol x",          "tol fun",         "equal values",   "stagnation",
+                                        "tol x up",       "condition",       "no effect axis", "no effect coordinate"};
   return names[static_cast<std::size_t>(reason)];
 }
 

@@ -1,10 +1,10 @@
-// Nonlinear least squares: fits a few parameters to many residuals, with bounds, robust losses and the covariance of the
-// estimate.
+// Nonlinear least squares: fits a few parameters to many residuals, with bounds, robust losses and the covariance of
+// the estimate.
 //
 // Levenberg-Marquardt on the normal equations, scaled to unit diagonal; damping by Nielsen ("Damping parameter in
-// Marquardt's method", IMM-REP-1999-05), which ends as Gauss-Newton. Robust losses by iterated weights. At a face of the
-// box the parameters that want to leave it are held and the rest is projected.
-// Cost of an iteration: one Jacobian, m n^2 for m residuals and n parameters, and n^3.
+// Marquardt's method", IMM-REP-1999-05), which ends as Gauss-Newton. Robust losses by iterated weights. At a face of
+// the box the parameters that want to leave it are held and the rest is projected. Cost of an iteration: one Jacobian,
+// m n^2 for m residuals and n parameters, and n^3.
 //
 //   const auto residuals = [&](const Eigen::VectorXd& p) -> Eigen::VectorXd { return model(p) - measured; };
 //   const auto fit = surefoot::least_squares(residuals, start);
@@ -104,8 +104,13 @@ class LeastSquaresFit {
       }
       linearise();
     }
-    LeastSquaresResult result{.x = x_, .cost = cost_, .residuals = residuals_, .reason = reason,
-                              .iterations = iteration, .covariance = {}, .held = held_};
+    LeastSquaresResult result{.x = x_,
+                              .cost = cost_,
+                              .residuals = residuals_,
+                              .reason = reason,
+                              .iterations = iteration,
+                              .covariance = {},
+                              .held = held_};
     estimate_covariance(result);
     return result;
   }
@@ -121,7 +126,8 @@ class LeastSquaresFit {
   void linearise() {
     slopes_ = jacobian_(x_);
     if (slopes_.rows() != residuals_.size() || slopes_.cols() != x_.size() || !slopes_.allFinite()) {
-      throw OptimizeError("least_squares: the Jacobian must be finite with one row per residual and one column per parameter");
+      throw OptimizeError(
+          "least_squares: the Jacobian must be finite with one row per residual and one column per parameter");
     }
     Eigen::VectorXd weights(residuals_.size());
     for (Eigen::Index i = 0; i < weights.size(); ++i) {
@@ -153,7 +159,8 @@ class LeastSquaresFit {
     const Eigen::VectorXd norms = slopes_.colwise().norm().transpose();
     double steepest = 0;
     for (const Eigen::Index i : free) {
-      if (norms[i] > 0 && pull_norm_ > 0) steepest = std::max(steepest, std::abs(gradient_[i]) / (norms[i] * pull_norm_));
+      if (norms[i] > 0 && pull_norm_ > 0)
+        steepest = std::max(steepest, std::abs(gradient_[i]) / (norms[i] * pull_norm_));
     }
     if (steepest <= options_.tol_gradient) return LeastSquaresStop::gradient;
 
@@ -192,7 +199,8 @@ class LeastSquaresFit {
     }
   }
 
-  // The asymptotic covariance of an M-estimate (Huber 1981, section 7.6): for the squared loss, the usual s^2 (J^T J)^-1.
+  // The asymptotic covariance of an M-estimate (Huber 1981, section 7.6); for the squared loss the usual one, the
+  // variance of a residual times the inverse of J^T J.
   void estimate_covariance(LeastSquaresResult& result) const {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const std::vector<Eigen::Index> free = free_parameters();
@@ -255,8 +263,8 @@ class LeastSquaresFit {
 
 }  // namespace detail
 
-/// Minimises half the sum of the losses of `residuals`, from `start`. Throws OptimizeError if the start is outside the box
-/// or its residuals are not finite; later points where they are not are stepped back from.
+/// Minimises half the sum of the losses of `residuals`, from `start`. Throws OptimizeError if the start is outside the
+/// box or its residuals are not finite; later points where they are not are stepped back from.
 template <Residuals F, JacobianFunction J>
 LeastSquaresResult least_squares(const F& residuals, const Eigen::VectorXd& start, const LeastSquaresOptions& options,
                                  const J& jacobian) {

@@ -36,9 +36,8 @@ inline double rank_disorder(std::span<const double> first, std::span<const doubl
     const auto value = [&](std::size_t i) {
       return std::isfinite(values[i]) ? values[i] : std::numeric_limits<double>::infinity();
     };
-    std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
-      return value(a) < value(b) || (value(a) == value(b) && a < b);
-    });
+    std::ranges::sort(
+        order, [&](std::size_t a, std::size_t b) { return value(a) < value(b) || (value(a) == value(b) && a < b); });
     for (std::size_t i = 0; i < order.size(); ++i) rank[order[i]] = i;
     return rank;
   };

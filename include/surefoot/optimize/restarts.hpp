@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/optimize/cma_es_state.hpp"
 
 namespace surefoot {
 
@@ -59,9 +60,10 @@ struct RestartSchedule {
                          .max_evaluations = std::max<std::uint64_t>(1, last_large_evaluations / 2),
                          .small = true};
     }
-    if (large_restarts >= max_restarts) return std::nullopt;
+    const double larger = std::ceil(growth * static_cast<double>(large_population));
+    if (large_restarts >= max_restarts || larger > max_population) return std::nullopt;
     ++large_restarts;
-    large_population = static_cast<Eigen::Index>(std::ceil(growth * static_cast<double>(large_population)));
+    large_population = static_cast<Eigen::Index>(larger);
     return DescentPlan{.population = large_population};
   }
 };

@@ -2,9 +2,9 @@
 //
 // A bounded coordinate is searched in units of the box's width. The map from search to user coordinates is the
 // identity inside, a parabola within 5 % of the width on either side of a face, which it touches with slope zero, and
-// goes on mirrored beyond. So it is onto and smooth, every candidate is feasible, the objective needs no penalty, and an
-// optimum on a face is an ordinary minimum for the search. (The method of Hansen's own implementations.)
-// Dimensions without width are left out of the search. Cost: linear in the dimension.
+// goes on mirrored beyond. So it is onto and smooth, every candidate is feasible, the objective needs no penalty, and
+// an optimum on a face is an ordinary minimum for the search. (The method of Hansen's own implementations.) Dimensions
+// without width are left out of the search. Cost: linear in the dimension.
 #pragma once
 
 #include <Eigen/Core>

@@ -2,10 +2,10 @@
 //
 // Two stages, each with half of the budget. The first explores: descents by few runs per candidate, restarted (BIPOP)
 // to leave poor local optima. The second refines the best center that was found, with more runs per candidate where the
-// order of the candidates is more luck than merit (rank_noise.hpp). In both the candidates of a generation meet the same
-// starts and noise (common random numbers), and the next generation meets others. At the end the start, the center of
-// every descent and the best candidate of the last stage are compared on many fresh runs.
-// Cost: that of the simulated runs.
+// order of the candidates is more luck than merit (rank_noise.hpp). In both the candidates of a generation meet the
+// same starts and noise (common random numbers), and the next generation meets others. At the end the start, the center
+// of every descent and the best candidate of the last stage are compared on many fresh runs. Cost: that of the
+// simulated runs.
 //
 //   auto make_policy = [](const surefoot::Vec<2>& gains) { return Pd(gains); };
 //   auto result = surefoot::policy_search(problem, make_policy, start, box, {}, surefoot::Threads{}, /*seed*/ 1);
@@ -46,7 +46,7 @@ struct PolicySearchOptions {
   std::uint64_t total_runs = 3'000'000;  // budget of the search
   double max_seconds = std::numeric_limits<double>::infinity();  // another one, wall clock: if it strikes, the result
                                                                  // depends on the speed of the machine [s]
-  int final_runs = 10'000;  // of each finalist, on top of the budget
+  int final_runs = 10'000;                                       // of each finalist, on top of the budget
 
   Eigen::Index population = 0;  // candidates of a generation; 0: twice the default of CMA-ES
   double sigma = 0.3;           // first standard deviation while exploring [widths of the box]
@@ -67,7 +67,8 @@ inline void check(const PolicySearchOptions& options, Eigen::Index population) {
   demand(options.min_runs >= 2, "min_runs must be at least 2");
   demand(options.max_runs >= options.min_runs, "max_runs must be at least min_runs");
   demand(options.final_runs >= 1, "final_runs must be at least 1");
-  const std::uint64_t generation = static_cast<std::uint64_t>(options.min_runs) * static_cast<std::uint64_t>(population);
+  const std::uint64_t generation =
+      static_cast<std::uint64_t>(options.min_runs) * static_cast<std::uint64_t>(population);
   demand(options.total_runs >= 2 * generation,
          "total_runs must cover a generation of both stages, " + std::to_string(2 * generation) + " runs");
 }
@@ -143,7 +144,8 @@ PolicySearchResult<N> policy_search(const P& problem, const MakePolicy& make_pol
   refine.noise = {.evaluations = 2, .max_evaluations = options.max_runs / runs_per_call};
   if (!stop.stop_requested()) search(refine, options.total_runs - result.runs, 2);
   judge(options.final_runs, stage_seed(3));
-  result.value = evaluate(problem, make_policy(result.parameters), rollouts(options.final_runs), executor, stage_seed(4));
+  result.value =
+      evaluate(problem, make_policy(result.parameters), rollouts(options.final_runs), executor, stage_seed(4));
   result.seconds = seconds();
   return result;
 }

@@ -160,6 +160,7 @@ RfpiResult<P> rfpi(const P& problem, const RfpiOptions& options, const E& execut
   if (options.resume && std::filesystem::exists(options.checkpoint)) {
     state = load_checkpoint<P>(options.checkpoint, fingerprint);
   }
+  for (RfpiProgress& past : state.history) past.share = past.counted_seconds / options.budget.seconds;
   const RfpiProgress resumed = state.history.empty() ? RfpiProgress{} : state.history.back();
   const detail::TimeLimit limit(std::move(stop), options.budget.wall_seconds - resumed.seconds);
   const RolloutOptions evaluation{.runs = options.evaluation_runs, .horizon = options.horizon};
@@ -184,7 +185,7 @@ RfpiResult<P> rfpi(const P& problem, const RfpiOptions& options, const E& execut
     const double used = state.work.seconds(options.budget);
     const double left = options.budget.seconds - used;
     if (state.history.size() > 1) {
-      last_work = (state.history.back().share - state.history[state.history.size() - 2].share) * options.budget.seconds;
+      last_work = used - state.history[state.history.size() - 2].counted_seconds;
     }
     if (left <= 0.3 * last_work) break;
     const Rng rng(seed, 1, static_cast<std::uint64_t>(state.iteration));
@@ -220,7 +221,8 @@ RfpiResult<P> rfpi(const P& problem, const RfpiOptions& options, const E& execut
     const bool better = next.history.empty() || progress.cost <= state.best_cost;
     next.best_cost = progress.best_cost = better ? progress.cost : state.best_cost;
     next.best_policy = better ? next.policy : std::move(state.best_policy);
-    progress.share = next.work.seconds(options.budget) / options.budget.seconds;
+    progress.counted_seconds = next.work.seconds(options.budget);
+    progress.share = progress.counted_seconds / options.budget.seconds;
     progress.seconds = resumed.seconds + std::chrono::duration<double>(Clock::now() - wall_start).count();
     progress.cpu_seconds = resumed.cpu_seconds + static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
     next.history.push_back(progress);

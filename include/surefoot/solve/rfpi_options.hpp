@@ -100,13 +100,14 @@ struct RfpiOptions {
 /// The state of affairs after an iteration.
 struct RfpiProgress {
   int iteration = 0;
-  double seconds = 0;      // wall time so far, that before a resume included
-  double cpu_seconds = 0;  // of all threads of this process, likewise
-  double share = 0;        // of the budget that is used, 0..1
-  std::size_t states = 0;  // samples of this iteration
-  double cost = 0;         // minus the mean return of the newest policy over the evaluation runs
-  double best_cost = 0;    // of the best policy so far
-  std::size_t leaves = 0;  // of the newest policy
+  double seconds = 0;          // wall time so far, that before a resume included
+  double cpu_seconds = 0;      // of all threads of this process, likewise
+  double counted_seconds = 0;  // work so far, as the budget counts it
+  double share = 0;            // of the budget that is used, 0..1
+  std::size_t states = 0;      // samples of this iteration
+  double cost = 0;             // minus the mean return of the newest policy over the evaluation runs
+  double best_cost = 0;        // of the best policy so far
+  std::size_t leaves = 0;      // of the newest policy
 };
 
 enum class RfpiStop { budget, iterations, wall_clock, requested };

@@ -141,7 +141,7 @@ void save_checkpoint(const std::filesystem::path& path, std::uint64_t fingerprin
   out.u64(state.history.size());
   for (const RfpiProgress& p : state.history) {
     out.u32(static_cast<std::uint32_t>(p.iteration));
-    for (const double number : {p.seconds, p.cpu_seconds, p.share, p.cost, p.best_cost}) out.f64(number);
+    for (const double number : {p.seconds, p.cpu_seconds, p.counted_seconds, p.cost, p.best_cost}) out.f64(number);
     out.u64(p.states);
     out.u64(p.leaves);
   }
@@ -179,7 +179,7 @@ RfpiState<P> load_checkpoint(const std::filesystem::path& path, std::uint64_t fi
   for (std::uint64_t i = 0; i < entries; ++i) {
     RfpiProgress p;
     p.iteration = static_cast<int>(in.u32());
-    for (double* number : {&p.seconds, &p.cpu_seconds, &p.share, &p.cost, &p.best_cost}) *number = in.f64();
+    for (double* number : {&p.seconds, &p.cpu_seconds, &p.counted_seconds, &p.cost, &p.best_cost}) *number = in.f64();
     p.states = static_cast<std::size_t>(in.u64());
     p.leaves = static_cast<std::size_t>(in.u64());
     state.history.push_back(p);
