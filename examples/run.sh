@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # The ball approach from nothing to policies for the robot, on a bare Debian 12, within ten minutes after the build:
 # trains and tunes policies for both problems, then compares, draws and exports them. Ctrl-C ends it at any time.
-#   examples/run.sh [--paper]    --paper adds five minutes a problem with the solver's published settings
 # Results go to $SUREFOOT_RESULTS_DIR, by default results; the build to $SUREFOOT_BUILD_DIR, by default build/release.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -23,13 +22,11 @@ step() {
 # machines within the ten minutes.
 for problem in ha anha; do
   policy=$results/rfpi_$problem
-  step train --problem $problem --budget 180 --max-wall 180 --seed 1 --out "$policy.policy"
+  step train --problem $problem --budget 180 --max-wall 150 --seed 1 --out "$policy.policy"
+  step train --problem $problem --budget 300 --max-wall 100 --seed 1 --preset paper --out "$results/paper_$problem.policy"
   step tune --problem $problem --budget 50 --max-wall 40 --seed 1 --out "$results/tuned_$problem.json"
   step export --policy "$policy.policy" --out "$policy.c"
   step export --policy "$policy.policy" --max-kb 200 --out "${policy}_small.c"
-  if [[ ${1-} == --paper ]]; then
-    step train --problem $problem --budget 600 --max-wall 300 --seed 1 --preset paper --out "$results/paper_$problem.policy"
-  fi
 done
 step trajectories --results "$results"
 step table --results "$results"

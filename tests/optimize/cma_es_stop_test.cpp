@@ -39,7 +39,7 @@ TEST_CASE("a value below the target ends the search") {
 }
 
 TEST_CASE("the budget of evaluations ends the search and is never exceeded") {
-  for (const std::uint64_t budget : {7, 8, 100, 1000}) {
+  for (const std::uint64_t budget : {7U, 8U, 100U, 1000U}) {
     const auto result =
         cma_es(toy::sphere, VectorXd::Ones(3), 0.5, {.max_evaluations = budget, .tolerances = all_off}, Serial{}, 1);
     CHECK(result.reason == StopReason::max_evaluations);

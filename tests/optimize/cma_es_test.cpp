@@ -31,7 +31,7 @@ struct Named {
 TEST_CASE("the minimum is found from many starts in few and in many dimensions") {
   for (const Named& f : {Named{"sphere", toy::sphere}, Named{"ellipsoid", toy::ellipsoid}}) {
     for (const Eigen::Index n : {2, 6, 12}) {
-      for (const std::uint64_t seed : {1, 2, 3}) {
+      for (const std::uint64_t seed : {1U, 2U, 3U}) {
         const auto result = cma_es(f.function, toy::random_start(n, 3, seed), 1.0, {.target = 1e-9}, Serial{}, seed);
         INFO(f.name << " in " << n << " dimensions, seed " << seed);
         CHECK(result.reason == StopReason::target_reached);
@@ -87,7 +87,7 @@ TEST_CASE("a fixed dimension of the box keeps its value") {
 
 TEST_CASE("BIPOP finds the best of a thousand local minima") {
   const auto box = Box<Eigen::Dynamic>::symmetric(VectorXd::Constant(4, 5.12));
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const auto result = cma_es(toy::rastrigin, toy::random_start(4, 5, seed), box,
                                {.restarts = Restarts::bipop, .target = 1e-9}, Serial{}, seed);
     CHECK(result.reason == StopReason::target_reached);
@@ -120,7 +120,7 @@ TEST_CASE("averaging where noise confuses the ranks gets closer to the minimum f
     return toy::sphere(result.descents.back().mean);
   };
   double plain = 0, averaged = 0;
-  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U}) {
     plain += error(1, seed) / 5;
     averaged += error(1000, seed) / 5;
   }
