@@ -22,9 +22,9 @@ step() {
 # machines within the ten minutes.
 for problem in ha anha; do
   policy=$results/rfpi_$problem
-  step train --problem $problem --budget 180 --max-wall 150 --seed 1 --out "$policy.policy"
-  step train --problem $problem --budget 300 --max-wall 100 --seed 1 --preset paper --out "$results/paper_$problem.policy"
-  step tune --problem $problem --budget 50 --max-wall 40 --seed 1 --out "$results/tuned_$problem.json"
+  step train --problem $problem --budget 180 --max-wall 95 --seed 1 --out "$policy.policy"
+  step train --problem $problem --budget 800 --max-wall 145 --seed 1 --preset paper --out "$results/paper_$problem.policy"
+  step tune --problem $problem --budget 50 --max-wall 35 --seed 1 --out "$results/tuned_$problem.json"
   step export --policy "$policy.policy" --out "$policy.c"
   step export --policy "$policy.policy" --max-kb 200 --out "${policy}_small.c"
 done

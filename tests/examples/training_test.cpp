@@ -104,13 +104,13 @@ TEST_SUITE("sigmaban_approach" * doctest::skip(!program_exists())) {
   TEST_CASE("a training that was killed and resumed gives the same policy as one in one go") {
     const ScratchFolder folder;
     const std::string whole = folder.file("whole"), parts = folder.file("parts");
-    train("--budget 0.6 --threads 1", whole);
+    train("--budget 0.8 --threads 1", whole);
     const auto killed =
-        run_in_background("train --problem ha --budget 0.6 --threads 2 --checkpoint-every 0 --out " + parts,
+        run_in_background("train --problem ha --budget 0.8 --threads 2 --checkpoint-every 0 --out " + parts,
                           "-e " + parts + ".checkpoint", "KILL");
     REQUIRE(killed.code == 128 + 9);
     REQUIRE_FALSE(std::filesystem::exists(parts));
-    train("--budget 0.6 --threads 2 --resume", parts);
+    train("--budget 0.8 --threads 2 --resume", parts);
     CHECK(surefoot::read_file(whole) == surefoot::read_file(parts));
   }
 
