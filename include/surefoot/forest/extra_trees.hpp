@@ -18,10 +18,32 @@
 #include "surefoot/forest/extra_trees_options.hpp"
 #include "surefoot/forest/forest.hpp"
 #include "surefoot/forest/leaf.hpp"
+#include "surefoot/forest/split.hpp"
 #include "surefoot/forest/tree_grower.hpp"
 #include "surefoot/forest/trees.hpp"
 
 namespace surefoot {
+
+namespace detail {
+
+/// Packs a data set into records.
+template <int Inputs, int Outputs>
+Records pack(const Dataset<Inputs, Outputs>& samples, const RecordShape& shape) {
+  const auto count = static_cast<std::size_t>(samples.inputs.cols());
+  Records records(count * shape.stride(), 0.0F);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    float* record = records.data() + i * shape.stride();
+    for (int k = 0; k < shape.inputs; ++k) record[k] = samples.inputs(k, column) + 0.0F;  // -0 becomes 0
+    for (int o = 0; o < shape.outputs; ++o) {
+      record[shape.inputs + o] = static_cast<float>(samples.outputs(o, column));
+    }
+    if (shape.weighted) record[shape.weight_at()] = static_cast<float>(samples.weights[column]);
+  }
+  return records;
+}
+
+}  // namespace detail
 
 /// Trains on all samples. Tree t draws its numbers from stream t of `seed`, so the forest is the same for any executor.
 template <LeafModel Leaf = ConstantLeaf, int Inputs, int Outputs, Executor E>

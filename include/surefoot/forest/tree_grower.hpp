@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "surefoot/forest/dataset.hpp"
 #include "surefoot/forest/extra_trees_options.hpp"
 #include "surefoot/forest/layout.hpp"
 #include "surefoot/forest/leaf.hpp"
@@ -41,23 +40,6 @@ class FastRng {
  private:
   std::uint64_t state_;
 };
-
-/// Packs a data set into records.
-template <int Inputs, int Outputs>
-Records pack(const Dataset<Inputs, Outputs>& samples, const RecordShape& shape) {
-  const auto count = static_cast<std::size_t>(samples.inputs.cols());
-  Records records(count * shape.stride(), 0.0F);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto column = static_cast<Eigen::Index>(i);
-    float* record = records.data() + i * shape.stride();
-    for (int k = 0; k < shape.inputs; ++k) record[k] = samples.inputs(k, column) + 0.0F;  // -0 becomes 0
-    for (int o = 0; o < shape.outputs; ++o) {
-      record[shape.inputs + o] = static_cast<float>(samples.outputs(o, column));
-    }
-    if (shape.weighted) record[shape.weight_at()] = static_cast<float>(samples.weights[column]);
-  }
-  return records;
-}
 
 /// Grows one tree.
 template <LeafModel Leaf>
