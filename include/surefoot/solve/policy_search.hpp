@@ -153,8 +153,8 @@ PolicySearchResult<N> policy_search(const P& problem, const MakePolicy& make_pol
 /// For a type that is not a Problem: one compile error that names the missing member.
 template <class P, int N>
   requires(!Problem<P>)
-auto policy_search(const P&, const auto&, const std::type_identity_t<Vec<N>>&, const Box<N>&, const PolicySearchOptions&,
-                   auto&&...) {
+auto policy_search(const P&, const auto&, const std::type_identity_t<Vec<N>>&, const Box<N>&,
+                   const PolicySearchOptions&, auto&&...) {
   return explain_problem<P>();
 }
 
