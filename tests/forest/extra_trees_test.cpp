@@ -123,8 +123,9 @@ TEST_CASE("a sample of weight w counts as w samples") {
   samples.outputs.resize(1, 400);
   samples.weights.resize(400);
   for (Eigen::Index i = 0; i < 400; ++i) {
-    samples.inputs(0, i) = static_cast<float>(i / 40);
-    samples.outputs(0, i) = static_cast<double>(i / 40) + (i % 2 == 0 ? 1.0 : 0.0);
+    const Eigen::Index place = i / 40;
+    samples.inputs(0, i) = static_cast<float>(place);
+    samples.outputs(0, i) = static_cast<double>(place) + (i % 2 == 0 ? 1.0 : 0.0);
     samples.weights[i] = i % 2 == 0 ? 3.0 : 1.0;
   }
   const auto forest = train_extra_trees(samples, {}, Serial{}, 1);

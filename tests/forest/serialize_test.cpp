@@ -126,6 +126,7 @@ TEST_CASE_TEMPLATE("10,000 random mutations of a file give an error or an equal 
   const Bytes good = bytes_of(forest);
   Rng rng(1);
   int refused = 0;
+  int refused_streams = 0;
   for (int round = 0; round < 5000; ++round) {  // for each kind of leaf
     Bytes bytes = good;
     const auto size = static_cast<std::uint32_t>(bytes.size());
@@ -158,15 +159,18 @@ TEST_CASE_TEMPLATE("10,000 random mutations of a file give an error or an equal 
       const bool equal = load<Laws<Leaf>>(stream) == forest;
       if (!equal) FAIL("mutation ", round, " gave another forest from a stream");
     } catch (const ForestError&) {
+      ++refused_streams;
     }
   }
   CHECK(refused > 4900);
+  CHECK(refused_streams > 3000);  // all but appended bytes, which are left in the stream
 }
 
 TEST_CASE_TEMPLATE("a mutated file with a valid checksum is refused or works", Leaf, ConstantLeaf, LinearLeaf) {
   const Bytes good = bytes_of(small_forest<Leaf>());
   Rng rng(2);
   int accepted = 0;
+  int refused = 0;
   for (int round = 0; round < 3000; ++round) {
     Bytes bytes = good;
     for (std::uint32_t flips = 1 + rng.below(3); flips > 0; --flips) {
@@ -180,10 +184,11 @@ TEST_CASE_TEMPLATE("a mutated file with a valid checksum is refused or works", L
       if (!forest.predict(x).allFinite()) FAIL("mutation ", round, " predicts numbers that are not finite");
       CHECK_FALSE(export_c(forest).empty());
     } catch (const ForestError&) {
+      ++refused;
     }
   }
   CHECK(accepted > 100);  // thresholds and leaf values may be anything finite
-  CHECK(accepted < 2900);
+  CHECK(refused > 100);
 }
 
 TEST_CASE("a header that lies about sizes is refused before memory is asked for") {

@@ -18,10 +18,9 @@ TEST_CASE("without restarts there is no next descent") {
 TEST_CASE("IPOP doubles the population until its restarts are used up") {
   RestartSchedule schedule = schedule_of(8);
   for (const Eigen::Index population : {16, 32, 64}) {
-    const auto plan = schedule.next(Restarts::ipop, 3, 2, Rng(1));
-    REQUIRE(plan);
-    CHECK(plan->population == population);
-    CHECK(plan->sigma_factor == 1);
+    const DescentPlan plan = schedule.next(Restarts::ipop, 3, 2, Rng(1)).value_or(DescentPlan{});
+    CHECK(plan.population == population);
+    CHECK(plan.sigma_factor == 1);
   }
   CHECK_FALSE(schedule.next(Restarts::ipop, 3, 2, Rng(1)));
 }

@@ -1,0 +1,29 @@
+// What an answer got right in one case.
+#pragma once
+
+#include <vector>
+
+#include "answer.hpp"
+
+namespace score {
+
+struct Outcome {
+  const Truth* truth = nullptr;
+  Answer answer;
+  bool detected = false;     // says that something is missing
+  bool named_first = false;  // its first name is right, or a declared class of indistinguishable ones contains it
+  bool named_in_three = false;
+  bool all_named = false;                // every concealed effect is among those named
+  bool attached = false;                 // of a right name: at the right place
+  int class_size = 1;                    // hypotheses declared indistinguishable, the chosen one included
+  int superfluous = 0;                   // names that are not in the truth
+  std::vector<double> parameter_errors;  // relative
+  double error_ratio = 0;                // held-out error over the true model's; NaN if the answer does not tell
+};
+
+Outcome compare(const Truth& truth, const Answer& answer);
+
+/// In words what is wrong; empty if nothing is.
+std::string complaint(const Outcome& outcome);
+
+}  // namespace score

@@ -1,0 +1,61 @@
+#include "command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "surefoot/diagnose/recording.hpp"
+
+namespace diagnose_program {
+namespace {
+
+constexpr const char* example = R"(Example:
+  surefoot-diagnose --model servo.toml --out diagnosis rec_1.csv rec_2.csv rec_3.csv rec_4.csv
+
+Says what physics the model leaves out of what the recordings show, or that nothing is missing. Writes into the folder
+of --out: report.html (read this), diagnosis.json, augmented.toml, augmented.hpp, pictures.
+Exit codes: 0 a verdict was reached; 2 wrong options or files; 130 stopped by Ctrl-C, what was known by then is kept.)";
+
+}  // namespace
+
+std::optional<CommandLine> parse_command_line(int argc, const char* const* argv, bool with_model) {
+  CommandLine line;
+  CLI::App program{"Finds, names and models the physics that a simulator leaves out", "surefoot-diagnose"};
+  program.footer(example);
+  if (with_model) program.add_option("--model", line.model, "model file with the equations (TOML)")->required();
+  program.add_option("--out", line.out, "folder for the results, made if needed")->required();
+  program.add_option("--test", line.test, "a recording kept for the test alone; may be given several times")
+      ->allow_extra_args(false);
+  program.add_option("--test-share", line.test_share, "share of the recordings kept for the test if none is named")
+      ->check(CLI::Range(0.0, 0.9))
+      ->capture_default_str();
+  program.add_option("--effects", line.effects, "names of the effects to consider, NAME,NAME,...; all by default")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  program.add_option("--max-effects", line.max_effects, "effects to combine at most")
+      ->check(CLI::Range(0, 16))
+      ->capture_default_str();
+  program.add_option("--budget", line.budget, "seconds after which the search for effects ends; 0: no limit")
+      ->check(CLI::NonNegativeNumber);
+  program.add_option("--seed", line.seed, "of all randomness; the same seed gives the same result")
+      ->capture_default_str();
+  program.add_option("--threads", line.threads, "0: as many as the machine has; results do not depend on it")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  program.add_flag("--quiet", line.quiet, "no progress and no summary, only files and errors");
+  program.add_option("recordings", line.recordings, "recordings (CSV)")->required();
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::CallForHelp& help) {
+    program.exit(help, std::cout, std::cerr);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    std::string what = error.what();
+    for (char& c : what) {
+      if (c == '\n') c = ' ';
+    }
+    throw surefoot::DiagnoseError(what + "; see surefoot-diagnose --help");
+  }
+  return line;
+}
+
+}  // namespace diagnose_program

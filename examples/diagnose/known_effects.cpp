@@ -1,0 +1,57 @@
+#include "known_effects.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "names.hpp"
+#include "surefoot/diagnose/recording.hpp"
+
+namespace diagnose_program {
+namespace {
+
+// Values in the order of the library, if the file names exactly the same parameters.
+std::optional<std::vector<double>> values_for(const ModelEffect& effect, const surefoot::Effect& known) {
+  if (effect.parameters.size() != known.parameters.size()) return std::nullopt;
+  std::vector<double> values;
+  for (const surefoot::EffectParameter& wanted : known.parameters) {
+    const auto given = std::ranges::find(effect.parameters, wanted.name, &surefoot::ParameterInfo::name);
+    if (given == effect.parameters.end()) return std::nullopt;
+    values.push_back(given->value);
+  }
+  return values;
+}
+
+surefoot::NamedEffect known_effect(const ModelEffect& effect, const std::vector<surefoot::Effect>& library) {
+  std::vector<std::string> names, forms, parameters;
+  for (const surefoot::Effect& known : library) {
+    if (std::ranges::find(names, known.name) == names.end()) names.push_back(known.name);
+    if (known.name != effect.name) continue;
+    forms.push_back(known.form.empty() ? "no form" : known.form);
+    if (known.form != effect.form) continue;
+    if (const auto values = values_for(effect, known)) {
+      return {effect.name, effect.attached_to, effect.form, effect.with, *values};
+    }
+    parameters.clear();
+    for (const surefoot::EffectParameter& wanted : known.parameters) parameters.push_back(wanted.name);
+  }
+  const auto fail = [&effect](const std::string& what) { throw surefoot::DiagnoseError(effect.place + ": " + what); };
+  if (forms.empty()) fail("there is no effect " + in_quotes(effect.name) + suggestion(effect.name, names));
+  if (parameters.empty()) {
+    fail("the effect " + in_quotes(effect.name) + " has no form " + in_quotes(effect.form) + "; there is " +
+         listed(forms));
+  }
+  fail("the effect " + in_quotes(effect.name) + " needs the parameters " + listed(parameters) +
+       ", all of them and no other");
+  return {};
+}
+
+}  // namespace
+
+std::vector<surefoot::NamedEffect> known_effects(const ModelFile& model, const std::vector<surefoot::Effect>& library) {
+  std::vector<surefoot::NamedEffect> result;
+  for (const ModelEffect& effect : model.effects) result.push_back(known_effect(effect, library));
+  return result;
+}
+
+}  // namespace diagnose_program

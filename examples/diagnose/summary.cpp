@@ -1,0 +1,50 @@
+#include "summary.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include "progress.hpp"
+#include "wording.hpp"
+
+namespace diagnose_program {
+
+std::string summary(const surefoot::Diagnosis& d, const std::filesystem::path& out) {
+  std::ostringstream text;
+  text << d.model << ": " << headline(d.verdict) << (d.complete ? "" : " (interrupted, so far)") << '\n';
+  if (!d.sentence.empty()) text << "  " << d.sentence << '\n';
+  if (!d.regions.empty()) {
+    const auto& region = d.regions.front();
+    text << "  where   " << region.rule << ": " << percent(region.share_of_excess) << " of the excess error in "
+         << percent(region.share_of_samples) << " of the samples\n";
+  }
+  for (const auto& effect : d.effects) {
+    text << "  effect  " << effect.name << " at " << effect.attached_to;
+    for (const auto& fit : effect.parameters) text << ", " << fit.name << " " << with_interval(fit);
+    text << "; gain " << percent(effect.evidence.heldout_gain) << " +- " << percent(effect.evidence.gain_stderr)
+         << ", confidence " << percent(effect.evidence.confidence) << '\n';
+  }
+  std::string changed;
+  for (const auto& parameter : d.augmented_parameters.empty() ? d.parameters : d.augmented_parameters) {
+    if (parameter.fixed) continue;
+    changed += (changed.empty() ? "" : ", ") + parameter.fit.name + " " + rounded(parameter.fit.value) +
+               (parameter.at_bound ? " (at its bound)" : "");
+  }
+  if (!changed.empty()) text << "  calibrated  " << changed << '\n';
+  if (!d.test.empty()) {
+    text << "  on " << d.test.size() << " recording(s) kept aside: error " << rounded(d.test_before);
+    if (!d.effects.empty()) text << " before, " << rounded(d.test_after) << " after";
+    text << "; forest " << rounded(d.test_forest) << ", noise floor " << rounded(d.noise_floor) << '\n';
+  }
+  const auto twins = std::ranges::count_if(d.alternatives, [](const auto& one) { return one.indistinguishable; });
+  if (twins > 0) {
+    const auto twin = std::ranges::find_if(d.alternatives, [](const auto& one) { return one.indistinguishable; });
+    text << "  cannot be told apart from  " << effects_text(twin->effects)
+         << (twins > 1 ? " and " + std::to_string(twins - 1) + " more" : "") << '\n';
+  }
+  if (!d.next_experiment.empty()) text << "  next experiment  " << d.next_experiment << '\n';
+  if (!d.remarks.empty()) text << "  " << d.remarks.size() << " remark(s) on the recordings, see the report\n";
+  text << "  " << duration_text(d.seconds) << "; read " << (out / "report.html").string() << '\n';
+  return text.str();
+}
+
+}  // namespace diagnose_program

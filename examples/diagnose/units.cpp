@@ -1,0 +1,123 @@
+#include "units.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace diagnose_program {
+namespace {
+
+// Ending of a column's name, and the unit as it is printed. Longer endings are looked for first.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 76> units{{
+    {"s", "s"},
+    {"ms", "ms"},
+    {"us", "us"},
+    {"min", "min"},
+    {"h", "h"},
+    {"m", "m"},
+    {"cm", "cm"},
+    {"mm", "mm"},
+    {"um", "um"},
+    {"km", "km"},
+    {"rad", "rad"},
+    {"deg", "deg"},
+    {"mrad", "mrad"},
+    {"rev", "rev"},
+    {"rpm", "rpm"},
+    {"rad_s", "rad/s"},
+    {"deg_s", "deg/s"},
+    {"m_s", "m/s"},
+    {"cm_s", "cm/s"},
+    {"mm_s", "mm/s"},
+    {"km_h", "km/h"},
+    {"m_s2", "m/s^2"},
+    {"rad_s2", "rad/s^2"},
+    {"m3", "m^3"},
+    {"m3_s", "m^3/s"},
+    {"m2", "m^2"},
+    {"cm2", "cm^2"},
+    {"cm3", "cm^3"},
+    {"cm3_s", "cm^3/s"},
+    {"l", "l"},
+    {"l_s", "l/s"},
+    {"l_min", "l/min"},
+    {"kg", "kg"},
+    {"g", "g"},
+    {"kg_s", "kg/s"},
+    {"N", "N"},
+    {"mN", "mN"},
+    {"kN", "kN"},
+    {"Nm", "N m"},
+    {"N_m", "N m"},
+    {"mNm", "mN m"},
+    {"N_s", "N s"},
+    {"Pa", "Pa"},
+    {"kPa", "kPa"},
+    {"bar", "bar"},
+    {"V", "V"},
+    {"mV", "mV"},
+    {"kV", "kV"},
+    {"A", "A"},
+    {"mA", "mA"},
+    {"W", "W"},
+    {"kW", "kW"},
+    {"J", "J"},
+    {"kJ", "kJ"},
+    {"C", "C"},
+    {"degC", "C"},
+    {"K", "K"},
+    {"Hz", "Hz"},
+    {"kHz", "kHz"},
+    {"ohm", "ohm"},
+    {"T", "T"},
+    {"mol", "mol"},
+    {"mol_l", "mol/l"},
+    {"lx", "lx"},
+    {"V_s", "V/s"},
+    {"A_s", "A/s"},
+    {"K_s", "K/s"},
+    {"N_m2", "N/m^2"},
+    {"pct", "%"},
+    {"percent", "%"},
+    {"norm", "1"},
+    {"raw", "1"},
+    {"ratio", "1"},
+    {"counts", "1"},
+    {"1", "1"},
+    {"duty", "1"},
+}};
+
+// Letters and digits alone: "N m", "N.m" and "N*m" are the same.
+std::string bare(std::string_view unit) {
+  std::string result;
+  for (const char c : unit) {
+    if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '%') result += c;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string unit_of_column(std::string_view column) {
+  std::string_view best_ending, best;
+  for (const auto& [ending, unit] : units) {
+    const bool ends =
+        column.size() > ending.size() && column.ends_with(ending) && column[column.size() - ending.size() - 1] == '_';
+    if (ends && ending.size() > best_ending.size()) {
+      best_ending = ending;
+      best = unit;
+    }
+  }
+  return std::string(best);
+}
+
+bool unit_fits(std::string_view column, std::string_view unit) {
+  const std::string known = unit_of_column(column);
+  if (known.empty() || known == "1" || unit == "1" || bare(known) == bare(unit)) return true;
+  // A shorter ending may be the one that is meant: "order_m_s" in seconds.
+  return std::ranges::any_of(units, [&](const auto& entry) {
+    return column.ends_with("_" + std::string(entry.first)) && bare(entry.second) == bare(unit);
+  });
+}
+
+}  // namespace diagnose_program

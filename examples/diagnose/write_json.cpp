@@ -1,0 +1,164 @@
+#include "write_json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace diagnose_program {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using surefoot::Diagnosis;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json interval(const surefoot::FittedValue& fit) { return Json::array({number(fit.low), number(fit.high)}); }
+
+Json parameters_json(const std::vector<surefoot::CalibratedParameter>& parameters) {
+  Json list = Json::array();
+  for (const auto& parameter : parameters) {
+    list.push_back({{"name", parameter.fit.name},
+                    {"nominal", number(parameter.nominal)},
+                    {"calibrated", number(parameter.fit.value)},
+                    {"ci95", interval(parameter.fit)},
+                    {"unit", parameter.fit.unit},
+                    {"at_bound", parameter.at_bound},
+                    {"fixed", parameter.fixed}});
+  }
+  return list;
+}
+
+Json mismatch_json(const Diagnosis& diagnosis) {
+  Json channels = Json::array(), regions = Json::array(), intervals = Json::array();
+  for (const auto& channel : diagnosis.channels) {
+    channels.push_back({{"output", channel.output},
+                        {"unit", channel.unit},
+                        {"rmse_nominal", number(channel.rmse_nominal)},
+                        {"rmse_calibrated", number(channel.rmse_calibrated)},
+                        {"rmse_after", number(channel.rmse_after)},
+                        {"noise", number(channel.noise)},
+                        {"p_value", number(channel.p_value)}});
+  }
+  for (const auto& region : diagnosis.regions) {
+    regions.push_back({{"rule", region.rule},
+                       {"share_of_excess", number(region.share_of_excess)},
+                       {"share_of_samples", number(region.share_of_samples)},
+                       {"p_value", number(region.p_value)}});
+  }
+  for (const auto& one : diagnosis.intervals) {
+    intervals.push_back({{"recording", one.recording},
+                         {"from", number(one.from)},
+                         {"to", number(one.to)},
+                         {"share_of_excess", number(one.share_of_excess)}});
+  }
+  return {{"channels", channels}, {"regions", regions}, {"intervals", intervals}};
+}
+
+Json effects_json(const std::vector<surefoot::FoundEffect>& effects) {
+  Json list = Json::array();
+  for (const auto& effect : effects) {
+    Json parameters = Json::array();
+    for (const auto& fit : effect.parameters) {
+      parameters.push_back(
+          {{"name", fit.name}, {"value", number(fit.value)}, {"ci95", interval(fit)}, {"unit", fit.unit}});
+    }
+    Json one = {{"name", effect.name}, {"attached_to", effect.attached_to}, {"sentence", effect.sentence}};
+    if (!effect.form.empty()) one["form"] = effect.form;
+    if (!effect.other.empty()) one["with"] = effect.other;
+    one["parameters"] = parameters;
+    one["evidence"] = {{"heldout_gain", number(effect.evidence.heldout_gain)},
+                       {"gain_stderr", number(effect.evidence.gain_stderr)},
+                       {"p_value", number(effect.evidence.p_value)},
+                       {"confidence", number(effect.evidence.confidence)}};
+    list.push_back(one);
+  }
+  return list;
+}
+
+Json alternatives_json(const Diagnosis& diagnosis) {
+  Json list = Json::array();
+  for (const auto& alternative : diagnosis.alternatives) {
+    Json effects = Json::array();
+    for (const auto& [name, attached_to] : alternative.effects) {
+      effects.push_back({{"name", name}, {"attached_to", attached_to}});
+    }
+    list.push_back({{"effects", effects},
+                    {"heldout_rmse", number(alternative.heldout_rmse)},
+                    {"indistinguishable", alternative.indistinguishable}});
+  }
+  return list;
+}
+
+Json fit_json(const Diagnosis& diagnosis) {
+  Json recordings = Json::array();
+  for (const auto& one : diagnosis.per_recording) {
+    recordings.push_back({{"recording", one.recording}, {"before", number(one.before)}, {"after", number(one.after)}});
+  }
+  return {{"train", {{"rmse_before", number(diagnosis.train_before)}, {"rmse_after", number(diagnosis.train_after)}}},
+          {"heldout",
+           {{"rmse_before", number(diagnosis.test_before)},
+            {"rmse_after", number(diagnosis.test_after)},
+            {"rmse_forest", number(diagnosis.test_forest)},
+            {"noise_floor", number(diagnosis.noise_floor)},
+            {"ratio_ci95", Json::array({number(diagnosis.gain_low), number(diagnosis.gain_high)})},
+            {"per_recording", recordings}}}};
+}
+
+Json limits_json(const Diagnosis& diagnosis) {
+  Json list = Json::array();
+  for (const auto& limit : diagnosis.limits) {
+    list.push_back({{"name", limit.name},
+                    {"attached_to", limit.attached_to},
+                    {"parameter", limit.smallest.name},
+                    {"smallest", number(limit.smallest.value)},
+                    {"unit", limit.smallest.unit}});
+  }
+  return list;
+}
+
+Json remarks_json(const Diagnosis& diagnosis) {
+  Json list = Json::array();
+  for (const auto& remark : diagnosis.remarks) list.push_back({{"recording", remark.recording}, {"text", remark.text}});
+  return list;
+}
+
+}  // namespace
+
+std::string verdict_text(surefoot::Verdict verdict) {
+  switch (verdict) {
+    case surefoot::Verdict::adequate:
+      return "adequate";
+    case surefoot::Verdict::parameters_only:
+      return "parameters-only";
+    case surefoot::Verdict::missing_physics:
+      return "missing-physics";
+    case surefoot::Verdict::unexplained:
+      break;
+  }
+  return "unexplained";
+}
+
+std::string diagnosis_json(const Diagnosis& diagnosis) {
+  const Json json = {{"schema", "surefoot.diagnosis/1"},
+                     {"model", diagnosis.model},
+                     {"complete", diagnosis.complete},
+                     {"verdict", verdict_text(diagnosis.verdict)},
+                     {"sentence", diagnosis.sentence},
+                     {"recordings", {{"fit", diagnosis.fit}, {"select", diagnosis.select}, {"test", diagnosis.test}}},
+                     {"parameters", parameters_json(diagnosis.parameters)},
+                     {"augmented_parameters", parameters_json(diagnosis.augmented_parameters)},
+                     {"correlated", diagnosis.correlated},
+                     {"noise", diagnosis.noise_sentence},
+                     {"mismatch", mismatch_json(diagnosis)},
+                     {"effects", effects_json(diagnosis.effects)},
+                     {"known_effects", effects_json(diagnosis.known_effects)},
+                     {"alternatives", alternatives_json(diagnosis)},
+                     {"limits", limits_json(diagnosis)},
+                     {"next_experiment", diagnosis.next_experiment},
+                     {"fit", fit_json(diagnosis)},
+                     {"remarks", remarks_json(diagnosis)},
+                     {"seconds", number(diagnosis.seconds)},
+                     {"seed", diagnosis.seed}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";  // names of files may be no UTF-8
+}
+
+}  // namespace diagnose_program

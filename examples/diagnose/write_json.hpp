@@ -1,0 +1,16 @@
+// The result as JSON, schema surefoot.diagnosis/1.
+#pragma once
+
+#include <string>
+
+#include "surefoot/diagnose/diagnosis.hpp"
+
+namespace diagnose_program {
+
+/// Numbers that are not finite become null.
+std::string diagnosis_json(const surefoot::Diagnosis& diagnosis);
+
+/// "adequate", "parameters-only", "missing-physics" or "unexplained".
+std::string verdict_text(surefoot::Verdict verdict);
+
+}  // namespace diagnose_program

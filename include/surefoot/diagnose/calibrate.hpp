@@ -1,0 +1,199 @@
+// Calibrates the nominal parameters and the unknown initial states: a wrong parameter is not missing physics.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/fit.hpp"
+
+namespace surefoot {
+
+/// Trajectories of some recordings.
+inline std::vector<SimulatedRun> simulate_all(const Rig& rig, const Hypothesis& hypothesis,
+                                              const std::vector<std::size_t>& recordings,
+                                              const Integration& integration, const Parallel& parallel) {
+  std::vector<SimulatedRun> result(recordings.size());
+  parallel(recordings.size(),
+           [&](std::size_t i) { result[i] = simulate(rig, hypothesis, recordings[i], integration); });
+  return result;
+}
+
+/// Standard deviation of each output over some recordings.
+inline Eigen::VectorXd output_spreads(const Rig& rig, const std::vector<std::size_t>& recordings) {
+  Eigen::VectorXd spreads(static_cast<Eigen::Index>(rig.info.outputs.size()));
+  for (Eigen::Index k = 0; k < spreads.size(); ++k) {
+    double sum = 0, squares = 0, count = 0;
+    for (const std::size_t r : recordings) {
+      for (const double value : rig.recordings[r].outputs.row(k)) {
+        if (!std::isfinite(value)) continue;
+        sum += value;
+        squares += value * value;
+        ++count;
+      }
+    }
+    const double mean = count > 0 ? sum / count : 0;
+    const double spread = count > 0 ? std::sqrt(std::max(0.0, squares / count - mean * mean)) : 0;
+    spreads[k] = spread > 1e-12 * (1 + std::abs(mean)) ? spread : 1;
+  }
+  return spreads;
+}
+
+/// Global start: Latin-hypercube points over the bounds beside the nominal one; the best few are fitted, the best of
+/// those kept. Then twice more with each output weighed by what is left of it.
+inline Fit calibrate(const Rig& rig, const Hypothesis& nominal, FitProblem& problem, std::size_t points,
+                     std::uint64_t seed, const Parallel& parallel) {
+  problem.weighting.sigma = output_spreads(rig, problem.recordings);
+  Eigen::VectorXd floor = problem.weighting.sigma * 1e-6;
+  for (Eigen::Index k = 0; k < floor.size(); ++k) {
+    const double noise = rig.info.outputs[static_cast<std::size_t>(k)].noise;
+    if (noise > 0) floor[k] = noise;
+  }
+  FitProblem first = problem;
+  first.max_iterations = 20;
+  Fit best = fit(rig, nominal, first, parallel);
+
+  const std::vector<Variable> variables = variables_of(rig, nominal, {});
+  std::vector<Hypothesis> starts;
+  if (!variables.empty()) {
+    Rng rng(seed, 0xca1u);
+    Eigen::VectorXd low(static_cast<Eigen::Index>(variables.size())), high = low;
+    for (std::size_t i = 0; i < variables.size(); ++i) {
+      low[static_cast<Eigen::Index>(i)] = to_search(variables[i], variables[i].low);
+      high[static_cast<Eigen::Index>(i)] = to_search(variables[i], variables[i].high);
+    }
+    for (std::size_t k = 0; k < points; ++k) {
+      Hypothesis start = nominal;
+      for (std::size_t i = 0; i < variables.size(); ++i) {
+        const auto j = static_cast<Eigen::Index>(i);
+        // one stratum per point and variable, dealt by a cyclic shift that differs between variables
+        const double cell = static_cast<double>((k * (2 * i + 1) + i) % points);
+        const double share = (cell + rng.uniform()) / static_cast<double>(points);
+        value_of(start, variables[i]) = from_search(variables[i], low[j] + share * (high[j] - low[j]));
+      }
+      starts.push_back(start);
+    }
+    std::vector<double> losses(starts.size());
+    parallel(starts.size(), [&](std::size_t k) {
+      const detail::FitFunctions functions(rig, starts[k], problem, serially());
+      const Eigen::VectorXd residuals = functions.residuals(functions.start());
+      losses[k] = residuals.allFinite() ? mean_loss(residuals, problem.weighting.robust)
+                                        : std::numeric_limits<double>::infinity();
+    });
+    std::vector<std::size_t> order(starts.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return losses[a] < losses[b]; });
+    const std::size_t fitted = std::min<std::size_t>(2, order.size());
+    std::vector<Fit> fits(fitted);
+    parallel(fitted, [&](std::size_t k) { fits[k] = fit(rig, starts[order[k]], first, serially()); });
+    for (const Fit& other : fits) {
+      if (other.ok && other.loss < 0.98 * best.loss) best = other;
+    }
+  }
+  if (!best.ok) {
+    throw DiagnoseError(
+        "the model cannot be simulated over the recordings with any parameters that were tried: check "
+        "its equations, initial values and bounds");
+  }
+  for (int round = 0; round < 2; ++round) {
+    const auto trajectories = simulate_all(rig, best.hypothesis, problem.recordings, problem.integration, parallel);
+    problem.weighting.sigma = residual_sizes(rig, problem.recordings, trajectories).cwiseMax(floor);
+    best = fit(rig, best.hypothesis, problem, parallel);
+  }
+  return best;
+}
+
+/// The cheapest integration whose error is small against what is left of each output (5 %), tried on one recording.
+inline Integration choose_integration(const Rig& rig, const Hypothesis& hypothesis, const Eigen::VectorXd& left,
+                                      const Integration& now, std::size_t recording) {
+  if (rig.info.kind == SimulatorKind::map) return now;
+  const Recording& example = rig.recordings[recording];
+  std::vector<double> intervals;
+  for (Eigen::Index i = 1; i < example.rows(); ++i) intervals.push_back(example.time[i] - example.time[i - 1]);
+  std::nth_element(intervals.begin(), intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2),
+                   intervals.end());
+  const double row = intervals[intervals.size() / 2];
+  Integration fine = now;
+  fine.order = 4;
+  fine.step = row / 8;
+  const SimulatedRun exact = simulate(rig, hypothesis, recording, fine);
+  if (!exact.finite) return fine;
+  for (const auto& [order, step] : {std::pair{2, 1.5 * row}, {4, 1.5 * row}, {4, row / 1.9}, {4, row / 3.9}}) {
+    Integration coarse = now;
+    coarse.order = order;
+    coarse.step = step;
+    const SimulatedRun trajectory = simulate(rig, hypothesis, recording, coarse);
+    if (!trajectory.finite) continue;
+    bool good = true;
+    for (Eigen::Index k = 0; k < left.size(); ++k) {
+      const double error = detail::root_mean_square(trajectory.outputs.row(k) - exact.outputs.row(k));
+      good = good && error < 0.05 * left[k];
+    }
+    if (good) return coarse;
+  }
+  return fine;
+}
+
+/// Typical sizes of everything along the trajectories of a hypothesis.
+inline Sizes measure_sizes(const Rig& rig, const Hypothesis& hypothesis, const std::vector<std::size_t>& recordings,
+                           const std::vector<SimulatedRun>& trajectories) {
+  Sizes sizes = rig.sizes;
+  const auto n = rig.info.states.size(), m = rig.info.inputs.size(), s = rig.info.signals.size();
+  std::vector<double> state(n), position(n), effort(n), input(m), signal(s);
+  sizes.state_peak.assign(n, 0.0);
+  sizes.input_peak.assign(m, 0.0);
+  sizes.signal_peak.assign(s, 0.0);
+  const auto raise = [](std::vector<double>& peaks, const Eigen::MatrixXd& values) {
+    for (std::size_t k = 0; k < peaks.size(); ++k) {
+      for (const double value : values.row(static_cast<Eigen::Index>(k))) {
+        if (std::isfinite(value)) peaks[k] = std::max(peaks[k], std::abs(value));
+      }
+    }
+  };
+  double rows = 0;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const Recording& recording = rig.recordings[recordings[i]];
+    const Eigen::MatrixXd& states = trajectories[i].states;
+    if (!trajectories[i].finite) continue;
+    Eigen::MatrixXd efforts, signals;
+    rig.probe(rig, recordings[i], hypothesis.parameters, states, efforts, signals);
+    const auto weight = static_cast<double>(recording.rows());
+    rows += weight;
+    const auto add = [&](std::vector<double>& sums, const Eigen::MatrixXd& values, bool about_mean) {
+      for (std::size_t k = 0; k < sums.size(); ++k) {
+        const auto line = values.row(static_cast<Eigen::Index>(k));
+        const double size = about_mean ? detail::spread(line) : detail::root_mean_square(line);
+        sums[k] += weight * size * size;
+      }
+    };
+    add(state, states, false);
+    add(position, states, true);
+    add(effort, efforts, rig.info.kind == SimulatorKind::map);
+    add(input, recording.inputs, false);
+    add(signal, signals, false);
+    raise(sizes.state_peak, states);
+    raise(sizes.input_peak, recording.inputs);
+    raise(sizes.signal_peak, signals);
+    sizes.duration = std::max(sizes.duration, recording.duration());
+    if (recording.rows() > 1) sizes.step = recording.duration() / static_cast<double>(recording.rows() - 1);
+  }
+  const auto finish = [&](std::vector<double>& to, const std::vector<double>& sums) {
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+      const double size = rows > 0 ? std::sqrt(sums[k] / rows) : 1;
+      to[k] = size > 1e-9 ? size : 1;
+    }
+  };
+  finish(sizes.state, state);
+  finish(sizes.position, position);
+  finish(sizes.effort, effort);
+  finish(sizes.input, input);
+  finish(sizes.signal, signal);
+  const Eigen::VectorXd spreads = output_spreads(rig, recordings);
+  for (Eigen::Index k = 0; k < spreads.size(); ++k) sizes.output[static_cast<std::size_t>(k)] = spreads[k];
+  return sizes;
+}
+
+}  // namespace surefoot

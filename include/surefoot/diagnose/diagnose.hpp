@@ -1,0 +1,40 @@
+// Diagnosis: finds, names and models the physics that a simulator leaves out of what recordings show.
+//
+// Screen, calibrate, detect, locate, propose, fit, select, compare, prove: one header each, put together here. All
+// randomness comes from the seed; the result does not depend on the executor.
+//
+//   const auto diagnosis = surefoot::diagnose(Pendulum{}, recordings, {}, surefoot::Threads{}, 1);
+//   // diagnosis.verdict, diagnosis.sentence, diagnosis.effects, ...
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stop_token>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/executor.hpp"
+#include "surefoot/diagnose/diagnosis.hpp"
+#include "surefoot/diagnose/investigate.hpp"
+#include "surefoot/diagnose/options.hpp"
+#include "surefoot/diagnose/rig.hpp"
+
+namespace surefoot {
+
+/// Diagnoses a simulator against recordings of the machine it is meant to be. Throws DiagnoseError if a recording does
+/// not fit the simulator. After `stop` is requested it ends soon, with what is known by then (complete = false).
+template <Simulator S, Executor E>
+Diagnosis diagnose(const S& simulator, std::span<const Recording> recordings, const DiagnoseOptions& options,
+                   const E& executor, std::uint64_t seed, std::stop_token stop = {}) {
+  const auto make = [&simulator](std::vector<Recording> some) { return make_rig(simulator, std::move(some)); };
+  const Parallel parallel = [&executor](std::size_t count, const std::function<void(std::size_t)>& job) {
+    executor.run(count, job);
+  };
+  return investigate(make, simulator.info(), std::vector<Recording>(recordings.begin(), recordings.end()), options,
+                     parallel, seed, stop)
+      .diagnosis;
+}
+
+}  // namespace surefoot

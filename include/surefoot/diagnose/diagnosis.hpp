@@ -1,0 +1,128 @@
+// What a diagnosis finds: plain data, the source of the report, of the JSON and of the augmented model.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace surefoot {
+
+enum class Verdict : std::uint8_t {
+  adequate,         // no significant mismatch, even with the nominal parameters
+  parameters_only,  // calibration removes it
+  missing_physics,  // named effects remove it
+  unexplained       // a significant mismatch remains that no effect models
+};
+
+/// An estimate with its 95 % interval.
+struct FittedValue {
+  std::string name, unit;
+  double value = 0, low = 0, high = 0;
+};
+
+struct CalibratedParameter {
+  FittedValue fit;
+  double nominal = 0;
+  bool at_bound = false, fixed = false;
+};
+
+/// How far an output is off, in its own unit; simulated over whole recordings kept for the test.
+struct ChannelMismatch {
+  std::string output, unit;
+  double rmse_nominal = 0, rmse_calibrated = 0, rmse_after = 0;
+  double noise = 0;    // standard deviation of what no model can predict, as far as can be seen
+  double p_value = 1;  // that the calibrated model is off by chance only
+};
+
+/// Where the mismatch is: a rule over features of the motion.
+struct MismatchRegion {
+  std::string rule;
+  double share_of_excess = 0, share_of_samples = 0, p_value = 1;
+};
+
+struct MismatchInterval {
+  std::string recording;
+  double from = 0, to = 0;  // [s], or rows of a map
+  double share_of_excess = 0;
+};
+
+struct Evidence {
+  double heldout_gain = 0;  // share of the held-out error that goes with this effect (1 - after / before)
+  double gain_stderr = 0;
+  double p_value = 1;
+  double confidence = 0;  // share of bootstrap repetitions that choose it
+};
+
+struct FoundEffect {
+  std::string name, attached_to, sentence;
+  std::vector<FittedValue> parameters;
+  Evidence evidence;
+  std::string form, other;  // which variant of the effect, and the second state it acts on, if any
+};
+
+/// Effects that might have been chosen instead.
+struct Alternative {
+  std::vector<std::pair<std::string, std::string>> effects;  // name, attached to
+  double heldout_rmse = 0;
+  bool indistinguishable = false;  // these recordings cannot tell them from the chosen ones
+};
+
+struct RecordingFit {
+  std::string recording;
+  double before = 0, after = 0;  // error in units of the noise, or of the spread of the output where that is unknown
+};
+
+/// One test recording for pictures: rows x outputs, and the times.
+struct Curve {
+  std::string recording;
+  Eigen::VectorXd time;
+  Eigen::MatrixXd inputs, measured, nominal, before, after;  // channel x row
+};
+
+/// What the recordings themselves forbid to see, or what is wrong with them; one sentence each.
+struct Remark {
+  std::string recording, text;
+};
+
+/// The smallest effect that would have been found, for a clean verdict.
+struct DetectionLimit {
+  std::string name, attached_to;
+  FittedValue smallest;
+};
+
+struct Diagnosis {
+  std::string model;
+  bool complete = true;  // false: interrupted
+  Verdict verdict = Verdict::adequate;
+  std::string sentence;
+  std::vector<std::string> fit, select, test;  // names of recordings
+  std::vector<Remark> remarks;
+  std::vector<CalibratedParameter> parameters;  // of the model without effects
+  std::vector<CalibratedParameter> augmented_parameters;
+  std::vector<std::string> correlated;  // pairs of parameters the recordings hardly separate
+  std::string noise_sentence;           // measurement noise, or noise that accumulates
+  std::vector<ChannelMismatch> channels;
+  std::vector<MismatchRegion> regions;
+  std::vector<MismatchInterval> intervals;
+  std::vector<FoundEffect> effects;
+  std::vector<FoundEffect> known_effects;  // that the model had before, with numbers of the augmented fit
+  std::vector<Alternative> alternatives;
+  std::vector<DetectionLimit> limits;
+  std::string next_experiment;
+  double train_before = 0, train_after = 0;
+  double test_before = 0, test_after = 0;
+  double test_forest = std::numeric_limits<double>::quiet_NaN();  // a forest on residuals instead of effects
+  double noise_floor = std::numeric_limits<double>::quiet_NaN();
+  double gain_low = 0, gain_high = 0;  // 95 % interval of test_after / test_before over recordings
+  std::vector<RecordingFit> per_recording;
+  std::vector<Curve> curves;
+  int integration_order = 4;    // with which all this was simulated, see Integration
+  double integration_step = 0;  // [s]
+  double seconds = 0;
+  std::uint64_t seed = 0;
+};
+
+}  // namespace surefoot

@@ -1,0 +1,39 @@
+// Cogging or torque ripple: a force that repeats along the way,
+//   sine * sin(2 pi q/period) + cosine * cos(2 pi q/period).
+// J. Holtz, L. Springob: "Identification and compensation of torque ripple in high-precision permanent magnet motor
+// drives", IEEE Trans. Ind. Electron. 43(2), 1996.
+// Confusable with gravity when the period is about a turn, and with stick-slip of Stribeck friction at slow speeds.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "surefoot/diagnose/effect.hpp"
+
+namespace surefoot::effects {
+
+inline Effect cogging() {
+  const EffectParameter amplitude{
+      .name = "sine", .measure = {.effort = 1}, .low = -3, .high = 3, .starts = {0.01}, .strength = true};
+  EffectParameter quarter_later = amplitude;
+  quarter_later.name = "cosine";
+  return {.name = "cogging",
+          .sentence = "cogging with a period of {period}, amplitudes {sine} and {cosine}, at {at}",
+          .place = Place::velocity,
+          .parameters = {amplitude,
+                         quarter_later,
+                         {.name = "period",
+                          .measure = {.position = 1},
+                          .low = 0.02,
+                          .high = 10,
+                          .starts = {0.2, 0.217, 0.235, 0.253, 0.274, 0.3, 0.33, 0.364, 0.41, 0.465, 0.54, 0.645, 0.8,
+                                     1.05, 1.5, 2.9}}},
+          .confusable_with = {"gravity_offset", "stribeck_friction", "cubic_stiffness"},
+          .experiment = "turn through the whole range slowly and steadily, both ways",
+          .force = [](const Moment& m, Values p, Values) {
+            const double phase = 2 * std::numbers::pi * m.position / p[2];
+            return p[0] * std::sin(phase) + p[1] * std::cos(phase);
+          }};
+}
+
+}  // namespace surefoot::effects

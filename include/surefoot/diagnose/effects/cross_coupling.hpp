@@ -1,0 +1,73 @@
+// A walk whose directions mix: `gain` times one part of a step's displacement is added to another part. The forms say
+// which: "forward_to_turn" [rad/m], "forward_to_lateral", "lateral_to_turn", "lateral_to_forward", "turn_to_forward"
+// [m/rad], "turn_to_lateral".
+// Confusable with a drift of the body when the first part is nearly the same in all steps.
+#pragma once
+
+#include <string>
+
+#include "surefoot/diagnose/effect.hpp"
+
+namespace surefoot::effects {
+
+namespace detail {
+
+template <double Pose2::* From, double Pose2::* To>
+Effect coupling(const std::string& from, const std::string& to, EffectParameter gain) {
+  return {.name = "cross_coupling",
+          .sentence = from + " motion causes " + to + " motion, {gain}",
+          .place = Place::planar,
+          .parameters = {std::move(gain)},
+          .confusable_with = {"body_drift", "input_asymmetry", "ground_slope"},
+          .experiment = "walks with " + from + " steps alone, both ways and in two sizes",
+          .form = from + "_to_" + to,
+          .planar = [](const Pose2& displacement, double, Values p) {
+            Pose2 moved = displacement;
+            moved.*To += p[0] * displacement.*From;
+            return moved;
+          }};
+}
+
+// Turn per distance [rad/m], distance per turn [m/rad], or sideways per distance.
+inline EffectParameter turn_gain() {
+  return {.name = "gain",
+          .measure = {.value = -1, .position = 1},
+          .low = -20,
+          .high = 20,
+          .starts = {0.02},
+          .strength = true};
+}
+inline EffectParameter distance_gain() {
+  return {.name = "gain",
+          .measure = {.value = 1, .position = -1},
+          .low = -2,
+          .high = 2,
+          .starts = {0.002},
+          .strength = true};
+}
+inline EffectParameter sideways_gain() {
+  return {.name = "gain", .measure = {}, .low = -2, .high = 2, .starts = {0.01}, .strength = true};
+}
+
+}  // namespace detail
+
+inline Effect cross_coupling_forward_to_turn() {
+  return detail::coupling<&Pose2::x, &Pose2::angle>("forward", "turn", detail::turn_gain());
+}
+inline Effect cross_coupling_forward_to_lateral() {
+  return detail::coupling<&Pose2::x, &Pose2::y>("forward", "lateral", detail::sideways_gain());
+}
+inline Effect cross_coupling_lateral_to_turn() {
+  return detail::coupling<&Pose2::y, &Pose2::angle>("lateral", "turn", detail::turn_gain());
+}
+inline Effect cross_coupling_lateral_to_forward() {
+  return detail::coupling<&Pose2::y, &Pose2::x>("lateral", "forward", detail::sideways_gain());
+}
+inline Effect cross_coupling_turn_to_forward() {
+  return detail::coupling<&Pose2::angle, &Pose2::x>("turn", "forward", detail::distance_gain());
+}
+inline Effect cross_coupling_turn_to_lateral() {
+  return detail::coupling<&Pose2::angle, &Pose2::y>("turn", "lateral", detail::distance_gain());
+}
+
+}  // namespace surefoot::effects

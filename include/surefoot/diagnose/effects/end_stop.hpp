@@ -1,0 +1,40 @@
+// An end stop: the position cannot pass `level`; what hits it comes back with `restitution` of its speed (Newton's law
+// of impact). Forms: "upper" and "lower".
+// Confusable with a limit of the input (the machine does not get further) and with a hardening spring.
+#pragma once
+
+#include "surefoot/diagnose/effect.hpp"
+
+namespace surefoot::effects {
+
+namespace detail {
+
+// side +1: upper, -1: lower
+template <int Side>
+Effect end_stop_of(std::string form) {
+  return {.name = "end_stop",
+          .sentence = "an end stop at {level} that returns {restitution} of the speed, at {at}",
+          .place = Place::velocity,
+          .parameters = {{.name = "level",
+                          .measure = {.position = 1},
+                          .low = -6,
+                          .high = 6,
+                          .starts = {0.6 * Side, 1.0 * Side, 1.5 * Side}},
+                         {.name = "restitution", .measure = {}, .low = 0, .high = 0.95, .starts = {0.1}}},
+          .confusable_with = {"saturation", "cubic_stiffness", "coulomb_friction"},
+          .experiment = "push slowly against the suspected stop, then hit it at two speeds",
+          .form = std::move(form),
+          .limit = [](Values p, double& value, double& position, double&) {
+            if (Side * (position - p[0]) <= 0) return;
+            position = p[0];
+            if (Side * value > 0) value *= -p[1];
+          }};
+}
+
+}  // namespace detail
+
+inline Effect end_stop_upper() { return detail::end_stop_of<1>("upper"); }
+
+inline Effect end_stop_lower() { return detail::end_stop_of<-1>("lower"); }
+
+}  // namespace surefoot::effects

@@ -1,0 +1,52 @@
+// An input that acts with a lag: time y' = u - y, y(0) = u(0). The equations get the mean of y over the step. Exact for
+// inputs that are held over a step, and stable for any step: with a = 1 - exp(-step/time)
+//   y <- y + a (mean u - y),   mean of y = u + (y - u) a time/step.
+// Memories: y at the end of the last step; integral of u over the present step.
+// Confusable with a delay (the near twin), with a limited rate, and with an elastic joint.
+#pragma once
+
+#include <cmath>
+
+#include "surefoot/diagnose/effect.hpp"
+
+namespace surefoot::effects {
+
+inline Effect first_order_lag() {
+  return {.name = "first_order_lag",
+          .sentence = "{at} acts with a lag of {time}",
+          .place = Place::input,
+          .parameters = {{.name = "time",
+                          .measure = {.time = 1},
+                          .low = 0.002,
+                          .high = 2,
+                          .starts = {0.003, 0.01, 0.05, 0.25},
+                          .strength = true}},
+          .confusable_with = {"input_delay", "rate_limit", "sensor_delay", "joint_elasticity"},
+          .experiment =
+              "sharp steps of the input at random times: after a lag it starts at once, after a delay nothing "
+              "moves",
+          .memories = 2,
+          .start =
+              [](const Moment& m, Values, Memory memory) {
+                memory[0] = m.value;
+                memory[1] = 0;
+              },
+          .memory_rate =
+              [](const Moment& m, Values, Values, Memory rates) {
+                rates[0] = 0;
+                rates[1] = m.value;
+              },
+          .advance =
+              [](const Moment& m, Values p, Memory memory) {
+                if (m.step > 0) memory[0] += -std::expm1(-m.step / p[0]) * (memory[1] / m.step - memory[0]);
+                memory[1] = 0;
+              },
+          .signal =
+              [](const Moment& m, Values p, Values memory) {
+                const double steps = m.step / p[0];
+                const double still = steps > 1e-9 ? -std::expm1(-steps) / steps : 1.0;
+                return m.value + (memory[0] - m.value) * still;
+              }};
+}
+
+}  // namespace surefoot::effects

@@ -1,0 +1,70 @@
+// Hysteresis: a force that depends on the way and not on the speed, as of rubber, cables and pre-sliding friction.
+// R. Bouc, 1967; Y.-K. Wen: "Method for random vibration of hysteretic systems", J. Eng. Mech. 102, 1976:
+//   z' = v - |v| z / width  (exponent 1, beta alone),   force = -force * z / width.
+// Form "n = 2" has exponent 2 and beta = gamma: dz/dq = 1 - (z/width)^2 on the way up, 1 on the way back. Both are
+// functions of the distance travelled since the last step, so they are evaluated in closed form and stable for any
+// step. Memory: z, position after the last step. Confusable with dry friction (width to 0) and with backlash, which
+// also forgets the way at each reversal.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "surefoot/diagnose/effect.hpp"
+
+namespace surefoot::effects {
+
+namespace detail {
+
+/// z after moving by `way` from z. |result| <= width if |z| was.
+inline double bouc_wen_1(double z, double way, double width) {
+  const double limit = way < 0 ? -width : width;
+  return limit + (z - limit) * std::exp(-std::abs(way) / width);
+}
+
+inline double bouc_wen_2(double z, double way, double width) {
+  const double side = way < 0 ? -1 : 1;
+  double up = side * z, left = std::abs(way);  // seen in the direction of motion
+  if (up < 0) {                                // unloading: a plain spring
+    const double share = std::min(left, -up);
+    up += share;
+    left -= share;
+  }
+  const double a = std::min(up / width, 1.0), b = std::tanh(left / width);
+  return side * width * (a + b) / (1 + a * b);  // addition theorem of tanh
+}
+
+template <double (*Move)(double, double, double)>
+Effect hysteresis_of(std::string form) {
+  return {
+      .name = "hysteresis",
+      .sentence = "hysteresis of {force}, reached after {width} of travel, at {at}",
+      .place = Place::velocity,
+      .parameters =
+          {{.name = "force", .measure = {.effort = 1}, .low = 0, .high = 3, .starts = {0.003, 0.1}, .strength = true},
+           {.name = "width", .measure = {.position = 1}, .low = 0.005, .high = 2, .starts = {0.02, 0.1, 0.5}}},
+      .confusable_with = {"coulomb_friction", "backlash", "stribeck_friction"},
+      .experiment = "slow reversals of growing amplitude, from far below to far above the width",
+      .form = std::move(form),
+      .memories = 2,
+      .force = [](const Moment& m, Values p,
+                  Values memory) { return -p[0] * Move(memory[0], m.position - memory[1], p[1]) / p[1]; },
+      .start =
+          [](const Moment& m, Values, Memory memory) {
+            memory[0] = 0;
+            memory[1] = m.position;
+          },
+      .advance =
+          [](const Moment& m, Values p, Memory memory) {
+            memory[0] = Move(memory[0], m.position - memory[1], p[1]);
+            memory[1] = m.position;
+          }};
+}
+
+}  // namespace detail
+
+inline Effect hysteresis() { return detail::hysteresis_of<detail::bouc_wen_1>(""); }
+
+inline Effect hysteresis_squared() { return detail::hysteresis_of<detail::bouc_wen_2>("n = 2"); }
+
+}  // namespace surefoot::effects

@@ -1,0 +1,21 @@
+// An input that acts more to one side: u (1 + asymmetry) for u > 0, u (1 - asymmetry) for u < 0.
+// Confusable with a constant force (when the input is always about as large) and with a gain (when it is one-sided).
+#pragma once
+
+#include "surefoot/diagnose/effect.hpp"
+
+namespace surefoot::effects {
+
+inline Effect input_asymmetry() {
+  return {
+      .name = "input_asymmetry",
+      .sentence = "{at} acts more to the positive side, by {asymmetry} of its value, and less to the negative",
+      .place = Place::input,
+      .parameters =
+          {{.name = "asymmetry", .measure = {}, .low = -0.95, .high = 0.95, .starts = {0.003, 0.1}, .strength = true}},
+      .confusable_with = {"constant_force", "input_gain", "body_drift", "sensor_bias"},
+      .experiment = "the same steps of the input to either side, in two sizes",
+      .signal = [](const Moment& m, Values p, Values) { return m.value * (m.value > 0 ? 1 + p[0] : 1 - p[0]); }};
+}
+
+}  // namespace surefoot::effects

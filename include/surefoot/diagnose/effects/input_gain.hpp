@@ -1,0 +1,20 @@
+// An input that acts more or less than ordered: u (1 + excess).
+// Confusable with any parameter of the model that scales the same force (a motor constant, an inertia).
+#pragma once
+
+#include "surefoot/diagnose/effect.hpp"
+
+namespace surefoot::effects {
+
+inline Effect input_gain() {
+  return {.name = "input_gain",
+          .sentence = "the gain of {at} is off by {excess} of its value",
+          .place = Place::input,
+          .parameters =
+              {{.name = "excess", .measure = {}, .low = -0.95, .high = 3, .starts = {0.003, 0.1}, .strength = true}},
+          .confusable_with = {"input_asymmetry", "dead_zone", "supply_sag", "viscous_friction"},
+          .experiment = "steps of the input of several sizes, both ways",
+          .signal = [](const Moment& m, Values p, Values) { return m.value * (1 + p[0]); }};
+}
+
+}  // namespace surefoot::effects

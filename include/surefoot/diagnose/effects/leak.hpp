@@ -1,0 +1,45 @@
+// A leak: the state falls the faster the more there is of it, rate = -leak * x.
+// Form "hole": through an opening at the bottom, rate = -rate_at_one * sqrt(x), x in units of the model (E. Torricelli,
+// "Opera geometrica", 1644); nothing leaks below 0.
+// Confusable with a constant loss when x hardly changes, and with a weaker inflow when it settles.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "surefoot/diagnose/effect.hpp"
+
+namespace surefoot::effects {
+
+inline Effect leak() {
+  return {.name = "leak",
+          .sentence = "a leak that grows with {at}, {leak}",
+          .place = Place::state,
+          .parameters = {{.name = "leak",
+                          .measure = {.effort = 1, .value = -1},
+                          .low = -3,
+                          .high = 3,
+                          .starts = {0.003, 0.1},
+                          .strength = true}},
+          .confusable_with = {"constant_rate", "input_gain", "overflow"},
+          .experiment = "fill it up, stop every input and record the decay until little is left",
+          .force = [](const Moment& m, Values p, Values) { return -p[0] * m.value; }};
+}
+
+inline Effect leak_hole() {
+  return {.name = "leak",
+          .sentence = "a leak through a hole, {rate_at_one} at level 1, at {at}",
+          .place = Place::state,
+          .parameters = {{.name = "rate_at_one",
+                          .measure = {.effort = 1},
+                          .low = 0,
+                          .high = 10,
+                          .starts = {0.003, 0.1},
+                          .strength = true}},
+          .confusable_with = {"constant_rate", "input_gain", "overflow"},
+          .experiment = "fill it up, stop every input and record the decay until little is left",
+          .form = "hole",
+          .force = [](const Moment& m, Values p, Values) { return -p[0] * std::sqrt(std::max(m.value, 0.0)); }};
+}
+
+}  // namespace surefoot::effects

@@ -1,0 +1,47 @@
+// Dry friction that grows with the force carried, as in gears: level = factor * |force|.
+// M. Duclusaud, G. Passault, V. Padois, O. Ly: "Extended friction models for the physics simulation of servo
+// actuators", 2024. Forms: "drive", the force due to the inputs; "load", the force that remains with inputs and speed
+// at zero (say, weight); "gears", what the gears pass on, half the difference of the two. Confusable with plain dry
+// friction when the load hardly changes, and with a weaker drive when it always moves.
+#pragma once
+
+#include <cmath>
+
+#include "surefoot/diagnose/effect.hpp"
+
+namespace surefoot::effects {
+
+namespace detail {
+
+inline Effect load_friction(std::string form, std::string sentence, std::function<double(const Moment&, Values)> dry) {
+  return {.name = "load_dependent_friction",
+          .sentence = std::move(sentence),
+          .place = Place::velocity,
+          // below 1: a joint whose friction exceeds the force that causes it would lock itself
+          .parameters =
+              {{.name = "factor", .measure = {}, .low = 0, .high = 0.9, .starts = {0.003, 0.1}, .strength = true}},
+          .confusable_with = {"coulomb_friction", "stribeck_friction", "input_gain"},
+          .experiment = "the same slow ramp with reversals under two or three different loads",
+          .form = std::move(form),
+          .needs_drive = true,
+          .dry = std::move(dry)};
+}
+
+}  // namespace detail
+
+inline Effect load_dependent_friction() {
+  return detail::load_friction("drive", "dry friction of {factor} times the driving force at {at}",
+                               [](const Moment& m, Values p) { return p[0] * std::abs(m.drive); });
+}
+
+inline Effect load_dependent_friction_under_load() {
+  return detail::load_friction("load", "dry friction of {factor} times the load at {at}",
+                               [](const Moment& m, Values p) { return p[0] * std::abs(m.load); });
+}
+
+inline Effect load_dependent_friction_in_gears() {
+  return detail::load_friction("gears", "dry friction of {factor} times the force that the gears pass on at {at}",
+                               [](const Moment& m, Values p) { return p[0] * 0.5 * std::abs(m.drive - m.load); });
+}
+
+}  // namespace surefoot::effects

@@ -1,0 +1,48 @@
+// A level limit: what rises above `level` is lost. Form "spill": `share` of it arrives in another state.
+// Confusable with a clipped sensor or a limited input, which also cut the top off.
+#pragma once
+
+#include "surefoot/diagnose/effect.hpp"
+
+namespace surefoot::effects {
+
+inline Effect overflow() {
+  return {.name = "overflow",
+          .sentence = "{at} overflows at {level}",
+          .place = Place::state,
+          .parameters = {{.name = "level",
+                          .measure = {.value = 1},
+                          .low = 0.1,
+                          .high = 4,
+                          .starts = {0.7, 0.85, 0.95},
+                          .of_peak = true}},
+          .confusable_with = {"saturation", "leak"},
+          .experiment = "fill it well beyond the suspected level, slowly and quickly, and let it fall again",
+          .limit = [](Values p, double& value, double&, double&) {
+            if (value > p[0]) value = p[0];
+          }};
+}
+
+inline Effect overflow_spill() {
+  return {.name = "overflow",
+          .sentence = "{at} overflows at {level}, and {share} of what is lost arrives elsewhere",
+          .place = Place::state,
+          .parameters = {{.name = "level",
+                          .measure = {.value = 1},
+                          .low = 0.1,
+                          .high = 4,
+                          .starts = {0.7, 0.85, 0.95},
+                          .of_peak = true},
+                         {.name = "share", .measure = {}, .low = 0, .high = 2, .starts = {0.8}}},
+          .confusable_with = {"saturation", "leak"},
+          .experiment = "fill it well beyond the suspected level, slowly and quickly, and watch where it goes",
+          .form = "spill",
+          .spills = true,
+          .limit = [](Values p, double& value, double&, double& other) {
+            if (value <= p[0]) return;
+            other += p[1] * (value - p[0]);
+            value = p[0];
+          }};
+}
+
+}  // namespace surefoot::effects

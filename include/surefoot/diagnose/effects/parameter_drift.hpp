@@ -1,0 +1,23 @@
+// A parameter that changes while the machine runs, by heating or wear: factor = 1 + rate * t, t from the first row of
+// each recording; never below a twentieth.
+// Confusable with a drifting sensor, and with that parameter being wrong as a whole when recordings are short.
+#pragma once
+
+#include <algorithm>
+
+#include "surefoot/diagnose/effect.hpp"
+
+namespace surefoot::effects {
+
+inline Effect parameter_drift() {
+  return {.name = "parameter_drift",
+          .sentence = "parameter {at} changes by a share of {rate}",
+          .place = Place::parameter,
+          .parameters =
+              {{.name = "rate", .measure = {.time = -1}, .low = -1, .high = 1, .starts = {0.001}, .strength = true}},
+          .confusable_with = {"sensor_drift", "supply_sag", "leak"},
+          .experiment = "repeat one and the same motion for as long as the machine runs, without a break",
+          .factor = [](const Moment& m, Values p) { return std::max(0.05, 1 + p[0] * m.time); }};
+}
+
+}  // namespace surefoot::effects

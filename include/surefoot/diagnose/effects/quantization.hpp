@@ -1,0 +1,36 @@
+// A sensor that reads in steps: y rounded to multiples of `step`. The edges are softened (a tenth of a step from the
+// edge, the error is a quarter of one), so that fits of the model can pass through them.
+// B. Widrow, I. Kollar: "Quantization noise", 2008, chapter 1.
+// Confusable with backlash before the sensor, and with plain noise when the steps are small.
+#pragma once
+
+#include <cmath>
+
+#include "surefoot/diagnose/effect.hpp"
+
+namespace surefoot::effects {
+
+/// Rounds to the nearest integer, with soft edges. Keeps integers, is monotone.
+inline double soft_round(double x) {
+  constexpr double sharpness = 8;
+  const double below = std::floor(x);
+  return below + 0.5 + 0.5 * std::tanh(sharpness * (x - below - 0.5)) / std::tanh(0.5 * sharpness);
+}
+
+inline Effect quantization() {
+  return {.name = "quantization",
+          .sentence = "the sensor {at} reads in steps of {step}",
+          .place = Place::output,
+          .parameters = {{.name = "step",
+                          .measure = {.value = 1},
+                          .low = 0.001,
+                          .high = 2,
+                          .starts = {0.01, 0.03, 0.1, 0.2, 0.4, 0.8}}},
+          .confusable_with = {"backlash"},
+          .experiment = "the slowest motion possible through many steps of the sensor",
+          .sensor = [](const Series& series, Values p) {
+            for (double& reading : series.readings) reading = p[0] * soft_round(reading / p[0]);
+          }};
+}
+
+}  // namespace surefoot::effects

@@ -1,0 +1,22 @@
+// A sensor that reads too much or too little by the same amount everywhere: y + bias.
+// Confusable with a constant force, with weight off its line, and with a wrong initial state.
+#pragma once
+
+#include "surefoot/diagnose/effect.hpp"
+
+namespace surefoot::effects {
+
+inline Effect sensor_bias() {
+  return {.name = "sensor_bias",
+          .sentence = "the sensor {at} reads {bias} too much",
+          .place = Place::output,
+          .parameters =
+              {{.name = "bias", .measure = {.value = 1}, .low = -2, .high = 2, .starts = {0.05}, .strength = true}},
+          .confusable_with = {"constant_force", "gravity_offset", "sensor_drift"},
+          .experiment = "rest in a pose that is known from elsewhere (a tape, a plumb line)",
+          .sensor = [](const Series& series, Values p) {
+            for (double& reading : series.readings) reading += p[0];
+          }};
+}
+
+}  // namespace surefoot::effects

@@ -1,0 +1,30 @@
+// A sensor whose zero wanders steadily: y + rate * (t - t0), t0 the first row.
+// Confusable with a constant rate or a leak of what it reads, and with a drifting parameter.
+#pragma once
+
+#include <cstddef>
+
+#include "surefoot/diagnose/effect.hpp"
+
+namespace surefoot::effects {
+
+inline Effect sensor_drift() {
+  return {.name = "sensor_drift",
+          .sentence = "the sensor {at} drifts by {rate}",
+          .place = Place::output,
+          .parameters = {{.name = "rate",
+                          .measure = {.value = 1, .time = -1},
+                          .low = -1,
+                          .high = 1,
+                          .starts = {0.01},
+                          .strength = true}},
+          .confusable_with = {"constant_rate", "leak", "sensor_bias", "parameter_drift"},
+          .experiment = "rest for as long as a recording lasts, in a pose known from elsewhere",
+          .sensor = [](const Series& series, Values p) {
+            for (std::size_t row = 0; row < series.readings.size(); ++row) {
+              series.readings[row] += p[0] * (series.time[row] - series.time[0]);
+            }
+          }};
+}
+
+}  // namespace surefoot::effects

@@ -1,0 +1,38 @@
+// Dry friction that is larger near rest: level(v) = level + breakaway * exp(-(v/speed)^2).
+// R. Stribeck, 1902; in this form L. C. Bo, D. Pavelescu: "The friction-speed relation and its influence on the
+// critical velocity of stick-slip motion", Wear 82, 1982. Confusable with plain dry friction as long as the motion is
+// fast against `speed`, and with friction that grows with the load, since joints are often slow where the load is
+// largest.
+#pragma once
+
+#include <cmath>
+
+#include "surefoot/diagnose/effect.hpp"
+
+namespace surefoot::effects {
+
+inline Effect stribeck_friction() {
+  return {
+      .name = "stribeck_friction",
+      .sentence = "dry friction of {level} and another {breakaway} near rest (below {speed}) at {at}",
+      .place = Place::velocity,
+      .parameters =
+          {{.name = "level", .measure = {.effort = 1}, .low = 0, .high = 3, .starts = {0.003, 0.1}, .strength = true},
+           {.name = "breakaway",
+            .measure = {.effort = 1},
+            .low = 0,
+            .high = 3,
+            .starts = {0.003, 0.1},
+            .strength = true},
+           {.name = "speed", .measure = {.value = 1}, .low = 0.005, .high = 2, .starts = {0.03, 0.1, 0.4}}},
+      .confusable_with = {"coulomb_friction", "load_dependent_friction", "hysteresis"},
+      .experiment =
+          "slow ramps with reversals at several speeds, from crawling to fast: the force needed falls with "
+          "speed",
+      .dry = [](const Moment& m, Values p) {
+        const double ratio = m.value / p[2];
+        return p[0] + p[1] * std::exp(-ratio * ratio);
+      }};
+}
+
+}  // namespace surefoot::effects

@@ -1,0 +1,27 @@
+// A supply that gives way under load: u (1 - sag |u|), never the other way round. For an input that is a duty or a
+// voltage, sag is what its source loses per unit of it (inner resistance times current per unit).
+// Confusable with a limit of the input, which also costs most where it is largest, and with a lower gain.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "surefoot/diagnose/effect.hpp"
+
+namespace surefoot::effects {
+
+inline Effect supply_sag() {
+  return {
+      .name = "supply_sag",
+      .sentence = "the supply of {at} sags by a share of {sag}",
+      .place = Place::input,
+      .parameters =
+          {{.name = "sag", .measure = {.value = -1}, .low = 0, .high = 1, .starts = {0.003, 0.1}, .strength = true}},
+      .confusable_with = {"saturation", "input_gain", "quadratic_drag"},
+      .experiment = "long pushes of several strengths, with the supply's voltage recorded",
+      .signal = [](const Moment& m, Values p, Values) {
+        return m.value * std::max(0.0, 1 - p[0] * std::abs(m.value));
+      }};
+}
+
+}  // namespace surefoot::effects

@@ -1,0 +1,184 @@
+// What can be learned about a simulator by asking it: which state is the speed of which, which output reads which
+// state, which signals the inputs drive. And the typical sizes of everything in a set of recordings, from which effects
+// take their scales.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/simulator.hpp"
+
+namespace surefoot {
+
+struct SimulatorFacts {
+  std::vector<int> position_of;     // by state: the state whose rate it is, or -1
+  std::vector<bool> velocity;       // by state: forces may act on it
+  std::vector<int> output_of;       // by state: the output that reads it directly, or -1
+  std::vector<bool> driven_signal;  // by signal: changes with the inputs
+  bool all_states_measured = false;
+};
+
+/// Typical sizes, root mean squares over the recordings.
+struct Sizes {
+  std::vector<double> state, input, signal, output;
+  std::vector<double> effort;                               // by state: of rate * effort
+  std::vector<double> position;                             // by state: deviation from its mean
+  std::vector<double> state_peak, input_peak, signal_peak;  // largest absolute values
+  double step = 0;                                          // median interval between rows [s]
+  double duration = 0;                                      // longest recording [s], or steps
+};
+
+/// All sizes 1: where nothing has been simulated yet.
+inline Sizes unit_sizes(const SimulatorInfo& info) {
+  Sizes sizes;
+  sizes.state.assign(info.states.size(), 1.0);
+  sizes.effort = sizes.position = sizes.state;
+  sizes.input.assign(info.inputs.size(), 1.0);
+  sizes.signal.assign(info.signals.size(), 1.0);
+  sizes.output.assign(info.outputs.size(), 1.0);
+  sizes.state_peak = sizes.state;
+  sizes.input_peak = sizes.input;
+  sizes.signal_peak = sizes.signal;
+  return sizes;
+}
+
+namespace detail {
+
+template <class S>
+inline constexpr bool is_ode = requires(const S& s, const typename S::State& x, const typename S::Input& u,
+                                        const Eigen::VectorXd& p) { s.derivative(x, u, p); };
+
+template <class S>
+inline constexpr bool has_tap =
+    requires(const S& s, const typename S::State& x, const typename S::Input& u, const Eigen::VectorXd& p) {
+      s.derivative(x, u, p, NoTap{});
+    } || requires(const S& s, const typename S::State& x, const typename S::Input& u, const Eigen::VectorXd& p) {
+      s.next(x, u, p, NoTap{});
+    };
+
+/// Rates or next values, with a tap where the simulator has one.
+template <class S, class Tap>
+typename S::State evaluate(const S& s, const typename S::State& x, const typename S::Input& u, const Eigen::VectorXd& p,
+                           Tap&& tap) {
+  if constexpr (is_ode<S>) {
+    if constexpr (has_tap<S>) {
+      return s.derivative(x, u, p, tap);
+    } else {
+      return s.derivative(x, u, p);
+    }
+  } else {
+    if constexpr (has_tap<S>) {
+      return s.next(x, u, p, tap);
+    } else {
+      return s.next(x, u, p);
+    }
+  }
+}
+
+template <class S>
+void prepare(S& s, const Eigen::VectorXd& p) {
+  if constexpr (requires { s.prepare(p); }) s.prepare(p);
+}
+
+template <class S>
+S for_recording(const S& s, const Recording& recording) {
+  if constexpr (requires { s.for_recording(recording); }) {
+    return s.for_recording(recording);
+  } else {
+    return s;
+  }
+}
+
+template <class V>
+V sized(Eigen::Index n) {
+  if constexpr (V::RowsAtCompileTime == Eigen::Dynamic) {
+    return V::Zero(n);
+  } else {
+    return V::Zero();
+  }
+}
+
+template <class V, class Source>
+V converted(const Source& source) {
+  V result = sized<V>(source.size());
+  for (Eigen::Index i = 0; i < source.size(); ++i) result[i] = source[i];
+  return result;
+}
+
+inline bool close(double a, double b) { return std::abs(a - b) <= 1e-9 * (1 + std::abs(a) + std::abs(b)); }
+
+}  // namespace detail
+
+/// Asks the simulator at random points around its recordings. Costs some hundred evaluations.
+template <Simulator S>
+SimulatorFacts find_facts(const S& simulator, const SimulatorInfo& info, const Recording& example,
+                          const Eigen::VectorXd& parameters) {
+  const auto n = info.states.size(), m = info.inputs.size(), k = info.outputs.size();
+  S s = detail::for_recording(simulator, example);
+  detail::prepare(s, parameters);
+  SimulatorFacts facts;
+  facts.driven_signal.assign(info.signals.size(), false);
+  std::vector<std::vector<bool>> speed(n, std::vector<bool>(n, true)), reads(n, std::vector<bool>(k, true));
+  Rng rng(1);
+  std::vector<double> seen(info.signals.size());
+  const auto record = [&seen](int i, double value) {
+    seen[static_cast<std::size_t>(i)] = value;
+    return value;
+  };
+  constexpr std::array<double, 3> scales{1e-3, 0.1, 1};  // so that signals are met within their limits, too
+  for (int round = 0; round < 36; ++round) {
+    const double scale = scales[static_cast<std::size_t>(round) % scales.size()];
+    auto x = detail::sized<typename S::State>(static_cast<Eigen::Index>(n));
+    auto u = detail::sized<typename S::Input>(static_cast<Eigen::Index>(m));
+    for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = example.initial[i] + scale * (0.2 + rng.uniform());
+    if (example.rows() > 0 && m > 0) {
+      const auto row = static_cast<Eigen::Index>(rng.uniform() * static_cast<double>(example.rows()));
+      u = detail::converted<typename S::Input>(example.inputs.col(row));
+    }
+    const auto rate = detail::evaluate(s, x, u, parameters, record);
+    const std::vector<double> first = seen;
+    const auto y = s.observe(x, u, parameters);
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      for (std::size_t j = 0; j < n; ++j) {
+        if (i == j || !detail::close(rate[row], x[static_cast<Eigen::Index>(j)])) speed[i][j] = false;
+      }
+      for (std::size_t j = 0; j < k; ++j) {
+        if (!detail::close(y[static_cast<Eigen::Index>(j)], x[row])) reads[i][j] = false;
+      }
+    }
+    auto other = u;
+    for (double& value : other) value += scale * (0.1 + rng.uniform());
+    detail::evaluate(s, x, other, parameters, record);
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      if (!detail::close(first[i], seen[i])) facts.driven_signal[i] = true;
+    }
+  }
+  facts.position_of.assign(n, -1);
+  facts.velocity.assign(n, false);
+  facts.output_of.assign(n, -1);
+  facts.all_states_measured = true;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (info.kind == SimulatorKind::ode) {
+      for (std::size_t j = 0; j < n; ++j) {
+        if (speed[i][j]) facts.position_of[j] = static_cast<int>(i);
+      }
+    }
+    for (std::size_t j = 0; j < k; ++j) {
+      if (reads[i][j]) facts.output_of[i] = static_cast<int>(j);
+    }
+    facts.all_states_measured = facts.all_states_measured && facts.output_of[i] >= 0;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const StateInfo& state = info.states[i];
+    facts.velocity[i] = info.kind == SimulatorKind::ode && (facts.position_of[i] >= 0 || !state.effort_unit.empty());
+  }
+  return facts;
+}
+
+}  // namespace surefoot

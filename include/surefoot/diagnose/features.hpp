@@ -1,0 +1,101 @@
+// What a mismatch may depend on: one table of features of the motion, row by row.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "surefoot/diagnose/calibrate.hpp"
+
+namespace surefoot {
+
+struct FeatureTable {
+  std::vector<std::string> names;
+  Eigen::MatrixXd values;              // feature x sample
+  std::vector<std::size_t> recording;  // by sample: place in the list of recordings
+  std::vector<Eigen::Index> row;
+};
+
+/// Names of the features: states, sizes of velocities, time since their last reversal, inputs and their changes, time,
+/// and whatever constants differ between the recordings.
+inline std::vector<std::string> feature_names(const Rig& rig) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < rig.info.states.size(); ++i) {
+    names.push_back(rig.info.states[i].name);
+    if (!rig.facts.velocity[i]) continue;
+    names.push_back("abs(" + rig.info.states[i].name + ")");
+    names.push_back("since_reversal(" + rig.info.states[i].name + ")");
+  }
+  for (const InputInfo& input : rig.info.inputs) {
+    names.push_back(input.name);
+    names.push_back("since_change(" + input.name + ")");
+  }
+  names.emplace_back("time");
+  for (const auto& [key, first] : rig.recordings.front().constants) {
+    bool differs = false;
+    for (const Recording& recording : rig.recordings) {
+      const auto found = recording.constants.find(key);
+      differs = differs || found == recording.constants.end() || found->second != first;
+    }
+    if (differs) names.push_back(key);
+  }
+  return names;
+}
+
+/// Every `stride`-th row of the recordings, along the given trajectories.
+inline FeatureTable make_features(const Rig& rig, const std::vector<std::size_t>& recordings,
+                                  const std::vector<SimulatedRun>& trajectories, Eigen::Index stride) {
+  FeatureTable table;
+  table.names = feature_names(rig);
+  std::vector<std::vector<double>> rows;
+  const auto n = rig.info.states.size(), m = rig.info.inputs.size();
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const Recording& recording = rig.recordings[recordings[i]];
+    const Eigen::MatrixXd& states = trajectories[i].states;
+    std::vector<double> reversed(n, recording.time[0]), changed(m, recording.time[0]);
+    for (Eigen::Index row = 0; row < recording.rows(); ++row) {
+      const double now = recording.time[row];
+      for (std::size_t k = 0; row > 0 && k < n; ++k) {
+        const auto s = static_cast<Eigen::Index>(k);
+        if (states(s, row) * states(s, row - 1) < 0) reversed[k] = now;
+      }
+      for (std::size_t k = 0; row > 0 && k < m; ++k) {
+        const auto s = static_cast<Eigen::Index>(k);
+        if (recording.inputs(s, row) != recording.inputs(s, row - 1)) changed[k] = now;
+      }
+      if (row % stride != 0) continue;
+      std::vector<double> one;
+      for (std::size_t k = 0; k < n; ++k) {
+        const double value = states(static_cast<Eigen::Index>(k), row);
+        one.push_back(value);
+        if (!rig.facts.velocity[k]) continue;
+        one.push_back(std::abs(value));
+        one.push_back(now - reversed[k]);
+      }
+      for (std::size_t k = 0; k < m; ++k) {
+        one.push_back(recording.inputs(static_cast<Eigen::Index>(k), row));
+        one.push_back(now - changed[k]);
+      }
+      one.push_back(now - recording.time[0]);
+      for (std::size_t k = one.size(); k < table.names.size(); ++k) {
+        const auto found = recording.constants.find(table.names[k]);
+        one.push_back(found == recording.constants.end() ? 0 : found->second);
+      }
+      rows.push_back(one);
+      table.recording.push_back(i);
+      table.row.push_back(row);
+    }
+  }
+  table.values.resize(static_cast<Eigen::Index>(table.names.size()), static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    for (std::size_t k = 0; k < rows[j].size(); ++k) {
+      const double value = rows[j][k];
+      table.values(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(j)) = std::isfinite(value) ? value : 0;
+    }
+  }
+  return table;
+}
+
+}  // namespace surefoot

@@ -1,0 +1,49 @@
+// One recording of a machine: what was ordered, what was measured, and what was constant meanwhile.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "surefoot/core/error.hpp"
+
+namespace surefoot {
+
+/// Wrong models, recordings or options handed to the diagnosis.
+struct DiagnoseError : Error {
+  using Error::Error;
+};
+
+/// One column per row of the recording (a moment for an ODE, a step for a map). Units are those of the model.
+struct Recording {
+  std::string name;                         // for messages and reports: the file's name
+  std::map<std::string, double> constants;  // of this recording: mass, gain, supply voltage, ...
+  Eigen::VectorXd time;                     // [s] rising; for a map the number of the row
+  Eigen::MatrixXd inputs;                   // input x row; held until the next row, or interpolated (InputInfo::linear)
+  Eigen::MatrixXd outputs;                  // output x row; NaN: not measured in that row
+  Eigen::VectorXd initial;                  // state in the first row, as far as it is known
+  Eigen::VectorXd initial_scale;  // 0: that state is known; else it is estimated, and may be off by about this
+
+  Eigen::Index rows() const { return time.size(); }
+  double duration() const { return rows() > 1 ? time[rows() - 1] - time[0] : 0; }  // [s], or steps
+};
+
+/// Rows [from, to) of a recording as one of its own. Its initial state is unknown unless it starts in row 0: it is
+/// estimated, from `initial` on, off by about `scale`.
+inline Recording part_of(const Recording& whole, Eigen::Index from, Eigen::Index to, const Eigen::VectorXd& initial,
+                         const Eigen::VectorXd& scale) {
+  Recording part;
+  part.name = whole.name + "[" + std::to_string(from) + ":" + std::to_string(to) + "]";
+  part.constants = whole.constants;
+  part.time = whole.time.segment(from, to - from);
+  part.inputs = whole.inputs.middleCols(from, to - from);
+  part.outputs = whole.outputs.middleCols(from, to - from);
+  part.initial = from == 0 ? whole.initial : initial;
+  part.initial_scale = from == 0 ? whole.initial_scale : scale;
+  return part;
+}
+
+}  // namespace surefoot

@@ -1,0 +1,97 @@
+// Residuals of a hypothesis: simulated minus measured, weighed by what an output may be off.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "surefoot/diagnose/hypothesis.hpp"
+#include "surefoot/motion/pose2.hpp"
+
+namespace surefoot {
+
+/// How residuals are weighed: divided by sigma, by output; or, where noise accumulates until a late measurement,
+/// multiplied by a matrix for each recording (the inverse of a square root of their covariance).
+struct Weighting {
+  Eigen::VectorXd sigma;
+  std::vector<Eigen::MatrixXd> whitening;  // by recording of the rig, or empty
+  double robust = 4;                       // residuals beyond this count less (Huber)
+};
+
+/// Where residuals of one recording come from, in their order.
+struct Cell {
+  Eigen::Index row = 0, output = 0;
+};
+
+/// The measured cells of a recording that can be off: not the first row if the start is known from it.
+inline std::vector<Cell> cells_of(const Recording& recording) {
+  const bool known_start = !(recording.initial_scale.array() > 0).any();
+  std::vector<Cell> cells;
+  for (Eigen::Index row = known_start ? 1 : 0; row < recording.rows(); ++row) {
+    for (Eigen::Index k = 0; k < recording.outputs.rows(); ++k) {
+      if (std::isfinite(recording.outputs(k, row))) cells.push_back({row, k});
+    }
+  }
+  return cells;
+}
+
+/// Simulated minus measured, in units of the outputs; infinite if the simulation ran away.
+inline Eigen::VectorXd raw_residuals(const Rig& rig, std::size_t r, const SimulatedRun& trajectory,
+                                     const std::vector<Cell>& cells) {
+  Eigen::VectorXd residuals(static_cast<Eigen::Index>(cells.size()));
+  if (!trajectory.finite) {
+    residuals.setConstant(std::numeric_limits<double>::infinity());
+    return residuals;
+  }
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const Cell& cell = cells[i];
+    double off = trajectory.outputs(cell.output, cell.row) - rig.recordings[r].outputs(cell.output, cell.row);
+    if (rig.wrapped[static_cast<std::size_t>(cell.output)]) off = wrap_angle(off);
+    residuals[static_cast<Eigen::Index>(i)] = off;
+  }
+  return residuals;
+}
+
+/// Dimensionless residuals of one recording.
+inline Eigen::VectorXd weighed_residuals(const Rig& rig, std::size_t r, const SimulatedRun& trajectory,
+                                         const std::vector<Cell>& cells, const Weighting& weighting) {
+  Eigen::VectorXd residuals = raw_residuals(rig, r, trajectory, cells);
+  if (!weighting.whitening.empty() && weighting.whitening[r].rows() == residuals.size()) {
+    return weighting.whitening[r] * residuals;
+  }
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    residuals[static_cast<Eigen::Index>(i)] /= weighting.sigma[cells[i].output];
+  return residuals;
+}
+
+/// Root mean square of the raw residuals by output over some recordings; far outliers are left out.
+inline Eigen::VectorXd residual_sizes(const Rig& rig, const std::vector<std::size_t>& recordings,
+                                      const std::vector<SimulatedRun>& trajectories) {
+  std::vector<std::vector<double>> by_output(rig.info.outputs.size());
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const std::vector<Cell> cells = cells_of(rig.recordings[recordings[i]]);
+    const Eigen::VectorXd off = raw_residuals(rig, recordings[i], trajectories[i], cells);
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      by_output[static_cast<std::size_t>(cells[k].output)].push_back(off[static_cast<Eigen::Index>(k)]);
+    }
+  }
+  Eigen::VectorXd sizes(static_cast<Eigen::Index>(by_output.size()));
+  for (std::size_t k = 0; k < by_output.size(); ++k) {
+    double size = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < 3; ++round) {  // without what lies beyond six times the size so far
+      double sum = 0, count = 0;
+      for (const double value : by_output[k]) {
+        if (std::abs(value) > 6 * size) continue;
+        sum += value * value;
+        ++count;
+      }
+      size = count > 0 ? std::sqrt(sum / count) : 0;
+    }
+    sizes[static_cast<Eigen::Index>(k)] = size > 0 ? size : 1e-12;
+  }
+  return sizes;
+}
+
+}  // namespace surefoot

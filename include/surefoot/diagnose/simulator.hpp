@@ -1,0 +1,97 @@
+// The concept of a simulator that can be diagnosed: any plain struct with equations of motion.
+#pragma once
+
+#include <Eigen/Core>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "surefoot/diagnose/recording.hpp"
+
+namespace surefoot {
+
+/// ode: rates, integrated between the rows of a recording. map: next values, one row is one step.
+enum class SimulatorKind : std::uint8_t { ode, map };
+
+struct StateInfo {
+  std::string name, unit;
+  std::string effort_unit = {};  // of rate times Simulator::effort, say "N m"; empty: effects act on the rate itself
+};
+
+struct InputInfo {
+  std::string name, unit;
+  bool linear = false;  // interpolated between rows instead of held
+};
+
+struct OutputInfo {
+  std::string name, unit;
+  double noise = std::numeric_limits<double>::quiet_NaN();  // standard deviation, NaN: to be estimated
+};
+
+struct ParameterInfo {
+  std::string name, unit;
+  double value = 0, low = 0, high = 0;  // nominal value and bounds
+  bool fixed = false;                   // true: never calibrated
+};
+
+/// Which states of a map are a pose in the plane; lets the walking effects attach.
+struct PlanarInfo {
+  int x = 0, y = 1, heading = 2;  // states [m, m, rad]
+};
+
+/// Everything about a simulator but its equations.
+struct SimulatorInfo {
+  std::string name;
+  SimulatorKind kind = SimulatorKind::ode;
+  std::vector<StateInfo> states;
+  std::vector<InputInfo> inputs;
+  std::vector<OutputInfo> outputs;
+  std::vector<ParameterInfo> parameters;
+  std::vector<std::string> signals = {};  // quantities inside the equations that effects may change (see tap)
+  std::optional<PlanarInfo> planar = {};
+};
+
+/// Lets effects reach quantities inside the equations: called as tap(i, value) for signal i, gives the value to use.
+struct NoTap {
+  double operator()(int /*signal*/, double value) const { return value; }
+};
+
+/// A simulator has equations `derivative` (ode, per second) or `next` (map), and `observe`, all functions of state,
+/// input and parameters p (in the order of info().parameters). State, Input and Output are Eigen column vectors. The
+/// smallest conforming struct:
+///
+///   struct Pendulum {
+///     using State = surefoot::Vec<2>;
+///     using Input = surefoot::Vec<1>;
+///     using Output = surefoot::Vec<1>;
+///     surefoot::SimulatorInfo info() const {
+///       return {.name = "pendulum", .states = {{"theta", "rad"}, {"omega", "rad/s"}}, .inputs = {{"torque", "N m"}},
+///               .outputs = {{"theta_rad", "rad"}}, .parameters = {{"inertia", "kg m^2", 0.01, 0.001, 0.1}}};
+///     }
+///     State derivative(const State& x, const Input& u, const Eigen::VectorXd& p) const {
+///       return {x[1], (u[0] - std::sin(x[0])) / p[0]};
+///     }
+///     Output observe(const State& x, const Input&, const Eigen::VectorXd&) const { return Output(x[0]); }
+///   };
+///
+/// Optional: `State effort(x, u, p)`, what turns each rate into a force or torque (an inertia), 1 without it;
+/// `S for_recording(const Recording&)`, the simulator with the constants of that recording;
+/// `void prepare(p)`, called before a run with these parameters;
+/// `derivative(x, u, p, tap)` or `next(x, u, p, tap)`, which pass quantities inside through tap(i, value), named in
+/// info().signals.
+template <class S>
+concept Simulator = std::copyable<S> && requires(const S& simulator, const typename S::State& x,
+                                                 const typename S::Input& u, const Eigen::VectorXd& p) {
+  { simulator.info() } -> std::convertible_to<SimulatorInfo>;
+  { simulator.observe(x, u, p) } -> std::convertible_to<typename S::Output>;
+  requires requires {
+    { simulator.derivative(x, u, p) } -> std::convertible_to<typename S::State>;
+  } || requires {
+    { simulator.next(x, u, p) } -> std::convertible_to<typename S::State>;
+  };
+};
+
+}  // namespace surefoot

@@ -1,0 +1,101 @@
+// The result as JSON, and the page for people.
+#include <doctest/doctest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "examples/diagnose/report.hpp"
+#include "examples/diagnose/summary.hpp"
+#include "examples/diagnose/write_json.hpp"
+#include "tests/examples/diagnose_result.hpp"
+
+using diagnose_test::some_diagnosis;
+using nlohmann::json;
+
+TEST_CASE("the JSON holds every key of the schema with the values of the diagnosis") {
+  const json result = json::parse(diagnose_program::diagnosis_json(some_diagnosis()));
+  CHECK(result.at("schema") == "surefoot.diagnosis/1");
+  CHECK(result.at("model") == "servo <pendulum>");
+  CHECK(result.at("complete") == true);
+  CHECK(result.at("verdict") == "missing-physics");
+  CHECK(result.at("recordings").at("test") == json({"rec_1.csv", "rec_2.csv"}));
+  CHECK(result.at("parameters").at(0) == json({{"name", "kt"},
+                                               {"nominal", 1.6},
+                                               {"calibrated", 1.48},
+                                               {"ci95", {1.45, 1.51}},
+                                               {"unit", "N m/A"},
+                                               {"at_bound", false},
+                                               {"fixed", false}}));
+  const json& mismatch = result.at("mismatch");
+  CHECK(mismatch.at("channels").at(0).at("rmse_calibrated") == 0.05);
+  CHECK(mismatch.at("channels").at(0).at("p_value") == 1e-9);
+  CHECK(mismatch.at("regions").at(0).at("share_of_samples") == 0.09);
+  CHECK(mismatch.at("intervals").at(0) ==
+        json({{"recording", "rec_1.csv"}, {"from", 0.5}, {"to", 0.9}, {"share_of_excess", 0.05}}));
+  const json& effect = result.at("effects").at(0);
+  CHECK(effect.at("name") == "coulomb_friction");
+  CHECK(effect.at("attached_to") == "omega");
+  CHECK(effect.at("parameters").at(0).at("ci95") == json({0.115, 0.127}));
+  CHECK(effect.at("evidence").at("confidence") == 0.97);
+  const json& alternative = result.at("alternatives").at(0);
+  CHECK(alternative.at("effects").at(0) == json({{"name", "stribeck_friction"}, {"attached_to", "omega"}}));
+  CHECK(alternative.at("indistinguishable") == true);
+  CHECK(result.at("next_experiment") == "a slow ramp");
+  const json& fit = result.at("fit");
+  CHECK(fit.at("train").at("rmse_after") == 0.0040);
+  CHECK(fit.at("heldout").at("rmse_before") == 0.052);
+  CHECK(fit.at("heldout").at("per_recording").at(1) ==
+        json({{"recording", "rec_2.csv"}, {"before", 0.06}, {"after", 0.005}}));
+  CHECK(result.at("seconds") == 12.3);
+  CHECK(result.at("seed") == 7);
+}
+
+TEST_CASE("numbers that are not finite are null, and names that are no UTF-8 do not break the JSON") {
+  surefoot::Diagnosis diagnosis = some_diagnosis();
+  diagnosis.test_forest = std::numeric_limits<double>::quiet_NaN();
+  diagnosis.parameters[0].fit.low = -std::numeric_limits<double>::infinity();
+  diagnosis.model = "caf\xE9";
+  const json result = json::parse(diagnose_program::diagnosis_json(diagnosis));
+  CHECK(result.at("fit").at("heldout").at("rmse_forest").is_null());
+  CHECK(result.at("parameters").at(0).at("ci95").at(0).is_null());
+}
+
+TEST_CASE("every verdict has its name") {
+  using surefoot::Verdict;
+  CHECK(diagnose_program::verdict_text(Verdict::adequate) == "adequate");
+  CHECK(diagnose_program::verdict_text(Verdict::parameters_only) == "parameters-only");
+  CHECK(diagnose_program::verdict_text(Verdict::missing_physics) == "missing-physics");
+  CHECK(diagnose_program::verdict_text(Verdict::unexplained) == "unexplained");
+}
+
+TEST_CASE("an empty diagnosis is written without a complaint") {
+  const surefoot::Diagnosis nothing;
+  CHECK(json::parse(diagnose_program::diagnosis_json(nothing)).at("effects").empty());
+  CHECK(diagnose_program::make_report(nothing, {}).html.find("</html>") != std::string::npos);
+  CHECK(!diagnose_program::summary(nothing, "out").empty());
+}
+
+TEST_CASE("the summary fits on a screen and names the effect with its interval") {
+  const std::string text = diagnose_program::summary(some_diagnosis(), "out");
+  CHECK(std::count(text.begin(), text.end(), '\n') <= 15);
+  CHECK(text.find("coulomb_friction at omega, level 0.121 N m (0.115 to 0.127)") != std::string::npos);
+}
+
+TEST_CASE("the page holds all parts, escapes names and needs nothing from outside") {
+  const auto report = diagnose_program::make_report(some_diagnosis(), diagnose_test::some_simulator());
+  const std::string& html = report.html;
+  for (const char* part :
+       {"Physics is missing", "Where the model is off", "What is missing", "Before and after", "Other candidates",
+        "Next experiment", "Parameters", "The recordings", "servo &lt;pendulum&gt;", "width=device-width"}) {
+    CAPTURE(part);
+    CHECK(html.find(part) != std::string::npos);
+  }
+  CHECK(html.find("servo <pendulum>") == std::string::npos);
+  CHECK(html.find("src=") == std::string::npos);
+  CHECK(html.find("href=") == std::string::npos);
+  REQUIRE(report.pictures.size() == 2);
+  CHECK(report.pictures[0].svg.starts_with("<svg"));
+  CHECK(report.pictures[0].svg.find("class=\"mark\"") != std::string::npos);
+  CHECK(report.pictures[0].svg.find("nan") == std::string::npos);
+}
