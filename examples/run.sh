@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The ball approach from nothing to policies for the robot, on a bare Debian 12, within ten minutes after the build:
-# trains and tunes policies for both problems, then compares, draws and exports them. Ctrl-C ends it at any time.
+# The main job on a bare Debian 12, within ten minutes after the build: diagnoses a machine, then goes from nothing to
+# policies for the ball approach: trains and tunes them for both problems, compares, draws and exports them. Ctrl-C ends
+# it at any time. The machine is a real motor if SUREFOOT_RECORDINGS names the folder of recordings, else one of our plants.
 # Results go to $SUREFOOT_RESULTS_DIR, by default results; the build to $SUREFOOT_BUILD_DIR, by default build/release.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -9,8 +10,21 @@ require_packages "${build_packages[@]}" gnuplot-nox
 
 build=${SUREFOOT_BUILD_DIR:-build/release}
 results=${SUREFOOT_RESULTS_DIR:-results}
-cmake --preset release -B "$build" -D SUREFOOT_TESTS=OFF -D SUREFOOT_EXAMPLES=ON -D SUREFOOT_BENCHMARKS=OFF
-cmake --build "$build"
+cmake --preset release -B "$build" -D SUREFOOT_TESTS=OFF -D SUREFOOT_EXAMPLES=ON -D SUREFOOT_BENCHMARKS=ON
+cmake --build "$build" --target sigmaban_approach minimal surefoot-diagnose diagnose_own concealed_plants
+
+echo
+if [[ -d ${SUREFOOT_RECORDINGS:-} ]]; then
+  echo "== what does the textbook model of a DC motor leave out?"
+  "$build/bin/surefoot-diagnose" --model examples/diagnose/models/hoop_motor.toml --out "$results/diagnosis" \
+    "$SUREFOOT_RECORDINGS"/hoop_motor/*.csv
+else
+  echo "== what does the model of a servo leave out? (SUREFOOT_RECORDINGS is not set: a plant of ours stands in)"
+  "$build/bin/concealed_plants" --out "$results/plant" --cases 2 --seed 1 --families servo
+  "$build/bin/surefoot-diagnose" --model "$results/plant/cases/case_0002/model.toml" --out "$results/diagnosis" \
+    "$results"/plant/cases/case_0002/rec_*.csv
+  echo "concealed was: $results/plant/truth/case_0002.json"
+fi
 
 step() {
   echo
@@ -31,4 +45,4 @@ done
 step trajectories --results "$results"
 step table --results "$results"
 echo
-echo "Policies, C files for the robot, pictures and table.json are in $results/"
+echo "Policies, C files for the robot, pictures and table.json are in $results/; the diagnosis is $results/diagnosis/report.html"

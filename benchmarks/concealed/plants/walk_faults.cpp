@@ -88,6 +88,7 @@ Fault draw_walk_fault(Random& random, const System& system) {
   }
   Fault fault = draw_signal(random, name, order_names[axis], axis < 2 ? "m" : "rad", Place::input,
                             0.58 * top_order[axis], top_order[axis], 1);
+  fault.target = static_cast<int>(axis);
   if (name == "input_delay") {
     fault.a = 1;
     fault.numbers = {{"delay", 1, "step"}};

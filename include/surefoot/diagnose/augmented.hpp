@@ -13,9 +13,9 @@
 namespace surefoot {
 
 struct Augmented {
-  std::vector<double> parameters;  // of the simulator; empty: its nominal ones
-  std::vector<NamedEffect> effects;
-  Integration integration;
+  std::vector<double> parameters = {};  // of the simulator; empty: its nominal ones
+  std::vector<NamedEffect> effects = {};
+  Integration integration = {};
 };
 
 /// Simulates a recording from `recording.initial` on.

@@ -85,7 +85,7 @@ inline Fit calibrate(const Rig& rig, const Hypothesis& nominal, FitProblem& prob
     });
     std::vector<std::size_t> order(starts.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return losses[a] < losses[b]; });
+    std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return losses[a] < losses[b]; });
     const std::size_t fitted = std::min<std::size_t>(2, order.size());
     std::vector<Fit> fits(fitted);
     parallel(fitted, [&](std::size_t k) { fits[k] = fit(rig, starts[order[k]], first, serially()); });

@@ -36,7 +36,7 @@ struct Measure {
 /// recordings, so that they need not be chosen for each machine.
 struct EffectParameter {
   std::string name;
-  Measure measure;
+  Measure measure = {};
   double low = 0, high = 1;
   std::vector<double> starts;  // tried in turn, in every combination; for a strength: a small but visible one
   bool strength = false;       // the effect vanishes, in proportion, as this goes to 0
@@ -78,7 +78,8 @@ struct Effect {
 
   int memories = 0;
   bool needs_drive = false;
-  bool spills = false;  // also tried with each other state as `other` (limit)
+  bool at_start = false;  // a sensor's fault that an initial state read off that sensor has, too
+  bool spills = false;    // also tried with each other state as `other` (limit)
 
   /// Force on a velocity, in effort units; for Place::state the addition to the rate.
   std::function<double(const Moment&, Values p, Values memory)> force = {};
@@ -96,6 +97,8 @@ struct Effect {
   std::function<double(const Moment&, Values p, Values memory)> seen_position = {};
   /// After each step: the state attached to, what it is the speed of, and for effects that spill another state.
   std::function<void(Values p, double& value, double& position, double& other)> limit = {};
+  /// Starting values of the first parameter, in the unit of the sensor, that its readings suggest; beside `starts`.
+  std::function<std::vector<double>(Values readings)> suggest = {};
   /// What a sensor reads.
   std::function<void(const Series&, Values p)> sensor = {};
   /// Displacement of a step from one pose (its heading is in the world) [m, m, rad].

@@ -79,8 +79,8 @@ inline std::vector<Effect> input_effects() {
 
 /// In a sensor.
 inline std::vector<Effect> sensor_effects() {
-  return {effects::sensor_bias(),  effects::sensor_scale(), effects::sensor_delay(),   effects::sensor_delay_long(),
-          effects::sensor_drift(), effects::quantization(), effects::backlash_sensor()};
+  return {effects::sensor_bias(),  effects::sensor_scale(), effects::sensor_delay(),       effects::sensor_delay_long(),
+          effects::sensor_drift(), effects::quantization(), effects::quantization_floor(), effects::backlash_sensor()};
 }
 
 /// On the displacement of each step in the plane.

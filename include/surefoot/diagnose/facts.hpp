@@ -153,7 +153,8 @@ SimulatorFacts find_facts(const S& simulator, const SimulatorInfo& info, const R
       }
     }
     auto other = u;
-    for (double& value : other) value += scale * (0.1 + rng.uniform());
+    const double reach = (round % 2 == 0 ? 10 : -10) * scale;
+    for (double& value : other) value += reach * (0.1 + rng.uniform());
     detail::evaluate(s, x, other, parameters, record);
     for (std::size_t i = 0; i < seen.size(); ++i) {
       if (!detail::close(first[i], seen[i])) facts.driven_signal[i] = true;

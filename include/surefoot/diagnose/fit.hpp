@@ -132,7 +132,7 @@ class FitFunctions {
   const Rig& rig_;
   Hypothesis base_;
   const FitProblem& problem_;
-  const Parallel& parallel_;
+  Parallel parallel_;  // a copy: callers hand in temporaries
   std::vector<Variable> variables_;
   std::size_t shared_ = 0;
   std::vector<std::vector<Cell>> cells_;

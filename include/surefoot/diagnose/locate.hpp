@@ -194,8 +194,7 @@ inline std::vector<MismatchInterval> find_intervals(const Rig& rig, const std::v
       all.push_back({recording.name, recording.time[from], recording.time[to], parts[part] / total});
     }
   }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const auto& a, const auto& b) { return a.share_of_excess > b.share_of_excess; });
+  std::ranges::sort(all, [](const auto& a, const auto& b) { return a.share_of_excess > b.share_of_excess; });
   if (all.size() > count) all.resize(count);
   return all;
 }

@@ -16,7 +16,7 @@ namespace surefoot {
 struct NamedEffect {
   std::string name, attached_to;
   std::string form = {}, other = {};
-  std::vector<double> values;
+  std::vector<double> values = {};
 };
 
 /// Finds an effect and its place in a simulator. Throws a DiagnoseError that lists what there is.

@@ -158,6 +158,18 @@ inline std::vector<Eigen::VectorXd> starts_of(const Rig& rig, const AttachedEffe
     }
     result = std::move(longer);
   }
+  if (attached.effect->suggest && attached.effect->place == Place::output) {
+    std::vector<double> readings;
+    for (const Recording& recording : rig.recordings) {
+      for (const double value : recording.outputs.row(attached.at)) {
+        if (std::isfinite(value)) readings.push_back(value);
+      }
+    }
+    for (const double value : attached.effect->suggest(readings)) {
+      result.push_back(result.front());
+      result.back()[0] = value;
+    }
+  }
   return result;
 }
 
@@ -260,7 +272,7 @@ inline std::vector<Proposal> propose(const Rig& rig, const Hypothesis& base, con
     same->more_starts.insert(same->more_starts.end(), tried[j].more_starts.begin(), tried[j].more_starts.end());
     same->more_starts.push_back(tried[j].start);
   }
-  std::stable_sort(best.begin(), best.end(), [](const Proposal& a, const Proposal& b) { return a.gain > b.gain; });
+  std::ranges::sort(best, [](const Proposal& a, const Proposal& b) { return a.gain > b.gain; });
   return best;
 }
 

@@ -103,8 +103,13 @@ inline Comparison compare_scores(const Score& before, const Score& after) {
   result.t = a > b ? std::max(t_absolute, t_relative) : t_absolute;
   const auto n = static_cast<double>(before.blocks.size());
   result.p_value = std::min(1.0, 2 * student_tail(result.t, n - 1));
-  result.stderr_ =
-      std::abs(t_absolute) > 0 ? std::abs(a - b) / std::abs(t_absolute) / a * 0.5 / std::max(1e-3, 1 - result.gain) : 0;
+  if (n < 2) return result;
+  double squares = 0;  // of the ratio b / a, which the gain is the root of
+  for (std::size_t i = 0; i < before.blocks.size(); ++i) {
+    const double off = after.blocks[i] - b / a * before.blocks[i];
+    squares += off * off;
+  }
+  result.stderr_ = std::sqrt(n / (n - 1) * squares) / a / (2 * std::sqrt(std::max(b / a, 1e-12)));
   return result;
 }
 

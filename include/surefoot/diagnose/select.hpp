@@ -22,6 +22,7 @@ struct SelectOptions {
   double min_t = 2.5;          // and in standard errors of that gain
   double significance = 0.02;  // after correction for the number of candidates
   double least_share = 0.03;   // of the error without effects, that an effect must take away
+  double decisive_gain = 0.5;  // or of the error that is left
   double large_gain = 0.1;     // is believed at 0.005 without that correction: it may come from few recordings
   std::size_t known = 0;       // effects that are part of the model already: the first ones, never removed
   std::size_t shortlist = 14;  // proposals that get a fit
@@ -108,12 +109,12 @@ inline std::vector<Fit> fit_children(const Rig& rig, const Hypothesis& parent,
     }
   });
   std::erase_if(fits, [](const Fit& one) { return !one.ok; });
-  std::stable_sort(fits.begin(), fits.end(), [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
+  std::ranges::sort(fits, [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
   if (fits.size() > keep) fits.resize(keep);
   parallel(fits.size(), [&](std::size_t i) {
     if (!problem.stopped()) fits[i] = fit(rig, fits[i].hypothesis, problem.fit, serially());
   });
-  std::stable_sort(fits.begin(), fits.end(), [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
+  std::ranges::sort(fits, [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
   return fits;
 }
 
@@ -141,14 +142,15 @@ inline std::size_t most_plausible(const std::vector<Judged>& judged) {
     if (i == best || !simpler(judged[i].hypothesis, judged[choice].hypothesis)) continue;
     const Comparison lead = compare_scores(judged[i].heldout, judged[best].heldout);
     const bool fewer = judged[i].numbers() < judged[choice].numbers();
-    if (lead.gain < 0.01 || (fewer && lead.t < 1.5)) choice = i;
+    const bool all_but = judged[i].gain.gain >= 0.985 * judged[best].gain.gain && judged[i].gain.gain > 0;
+    if (lead.gain < 0.01 || (fewer && lead.t < 1.5) || all_but) choice = i;
   }
   return choice;
 }
 
 /// `parent` is the error before, as a share of the error without effects.
 inline bool accepted(const Comparison& gain, std::size_t tried, double parent, const SelectOptions& options) {
-  if (gain.gain * parent < options.least_share) return false;
+  if (gain.gain * parent < options.least_share && gain.gain < options.decisive_gain) return false;
   const bool significant = gain.p_value * static_cast<double>(std::max<std::size_t>(1, tried)) <= options.significance;
   return gain.gain >= options.min_gain && gain.t >= options.min_t &&
          (significant || (gain.gain >= options.large_gain && gain.p_value <= 0.005));
@@ -156,6 +158,7 @@ inline bool accepted(const Comparison& gain, std::size_t tried, double parent, c
 
 inline std::vector<Judged> judge_all(const Rig& rig, const std::vector<Fit>& fits, const Judged& parent,
                                      const SelectProblem& problem, std::size_t keep, const Parallel& parallel) {
+  while (keep < fits.size() && fits[keep].loss < 1.05 * fits.front().loss + 1e-300 && keep < 9) ++keep;  // near ties
   std::vector<Judged> judged(std::min(keep, fits.size()));
   parallel(judged.size(), [&](std::size_t i) {
     if (problem.stopped()) return;
@@ -211,7 +214,7 @@ inline std::vector<Judged> next_effects(const Rig& rig, const Judged& parent, co
   std::vector<std::vector<Proposal>> singles;
   for (const Proposal& proposal : proposals) singles.push_back({proposal});
   const std::vector<Fit> fits =
-      detail::fit_children(rig, parent.hypothesis, singles, problem, options.finalists + 2, parallel);
+      detail::fit_children(rig, parent.hypothesis, singles, problem, options.finalists + 4, parallel);
   return detail::judge_all(rig, fits, parent, problem, options.finalists, parallel);
 }
 
@@ -319,7 +322,8 @@ inline Selection select_effects(const Rig& rig, const Fit& calibrated, SelectPro
         });
         for (Judged& other : others) {
           const Comparison lead = compare_scores(selection.chosen.heldout, other.heldout);
-          if (round == 0 && lead.gain > 0.01 && lead.t > 2) {
+          const double share = selection.chosen.heldout.rms() / std::max(selection.nominal.heldout.rms(), 1e-300);
+          if (round == 0 && lead.t > 2 && lead.gain > 0.03 && lead.gain * share > 0.015) {
             std::swap(selection.chosen, other);
             swapped = true;
           }

@@ -84,6 +84,7 @@ class SimulationRun {
     SimulatedRun result{Eigen::MatrixXd(static_cast<Eigen::Index>(info_.outputs.size()), rows),
                         Eigen::MatrixXd(n, rows)};
     Point now{converted<State>(initial), Hidden::Zero(memories_)};
+    if (!sensors_.empty()) undo_sensors(now.x);
     if (memories_ > 0) start(now);
     for (Eigen::Index row = 0;; ++row) {
       result.states.col(row) = now.x;
@@ -436,6 +437,23 @@ class SimulationRun {
     rates(now, u_.between(t, 1e-9, 0), t, 1e-9, sliding, f, dz);  // so that effects have seen their first value
     for (const Slot& slot : memory_) {
       if (slot.effect->start) slot.effect->start(memory_moment(slot, now, t, 0), slot.p, hidden(slot, now.z));
+    }
+  }
+
+  /// An initial state that was read off a sensor has the fault of that sensor, which is taken out again.
+  void undo_sensors(State& x) const {
+    for (std::size_t i = 0; i < info_.states.size(); ++i) {
+      const auto state = static_cast<Eigen::Index>(i);
+      const int output = facts_.output_of[i];
+      if (output < 0 || x[state] != recording_.outputs(output, 0)) continue;
+      const double read = x[state], time = 0;
+      for (int round = 0; round < 3; ++round) {
+        double reading = x[state];
+        for (const Slot& slot : sensors_) {
+          if (slot.at == output && slot.effect->at_start) slot.effect->sensor({{&time, 1}, {&reading, 1}}, slot.p);
+        }
+        x[state] += read - reading;
+      }
     }
   }
 

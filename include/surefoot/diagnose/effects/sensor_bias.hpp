@@ -14,6 +14,7 @@ inline Effect sensor_bias() {
               {{.name = "bias", .measure = {.value = 1}, .low = -2, .high = 2, .starts = {0.05}, .strength = true}},
           .confusable_with = {"constant_force", "gravity_offset", "sensor_drift"},
           .experiment = "rest in a pose that is known from elsewhere (a tape, a plumb line)",
+          .at_start = true,
           .sensor = [](const Series& series, Values p) {
             for (double& reading : series.readings) reading += p[0];
           }};

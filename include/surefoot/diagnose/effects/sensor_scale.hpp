@@ -13,6 +13,7 @@ inline Effect sensor_scale() {
           .parameters = {{.name = "excess", .measure = {}, .low = -0.8, .high = 2, .starts = {0.05}, .strength = true}},
           .confusable_with = {"input_gain", "sensor_bias"},
           .experiment = "rest in two poses far apart that are known from elsewhere",
+          .at_start = true,
           .sensor = [](const Series& series, Values p) {
             for (double& reading : series.readings) reading *= 1 + p[0];
           }};

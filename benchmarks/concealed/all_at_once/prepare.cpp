@@ -1,0 +1,91 @@
+#include "prepare.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "surefoot/diagnose/calibrate.hpp"
+#include "surefoot/diagnose/effects.hpp"
+#include "surefoot/diagnose/screen.hpp"
+
+namespace all_at_once {
+
+using surefoot::Investigation;
+using surefoot::NoiseKind;
+
+Investigation prepare(const MakeRig& make, const surefoot::SimulatorInfo& info,
+                      std::vector<surefoot::Recording> recordings, const surefoot::DiagnoseOptions& options,
+                      const surefoot::Parallel& parallel, std::uint64_t seed) {
+  if (recordings.size() < 4) {
+    throw surefoot::DiagnoseError("this baseline needs at least four recordings, for the penalty and for the test; " +
+                                  std::to_string(recordings.size()) + " given");
+  }
+  Investigation result;
+  surefoot::Diagnosis& diagnosis = result.diagnosis;
+  diagnosis.model = info.name;
+  diagnosis.seed = seed;
+  for (surefoot::Recording& recording : recordings) {
+    check_recording(info, recording);
+    const auto wild = remove_wild_samples(info, recording);
+    diagnosis.remarks.insert(diagnosis.remarks.end(), wild.begin(), wild.end());
+  }
+  surefoot::Rig& rig = result.rig;
+  rig = make(std::move(recordings));
+  result.split = split_recordings(rig.recordings, options.test, options.test_share, 4, seed);
+  const auto& training = result.split.training;
+  for (const std::size_t r : training) diagnosis.fit.push_back(rig.recordings[r].name);
+  for (const std::size_t r : result.split.test) diagnosis.test.push_back(rig.recordings[r].name);
+  diagnosis.select = diagnosis.fit;
+
+  result.nominal = nominal_hypothesis(rig);
+  for (const surefoot::NamedEffect& known : options.known) {
+    result.nominal.effects.push_back(attach(info, known, surefoot::all_effects()));
+    result.nominal.values.emplace_back(
+        Eigen::Map<const Eigen::VectorXd>(known.values.data(), static_cast<Eigen::Index>(known.values.size())));
+  }
+  surefoot::FitProblem& problem = result.problem.fit;
+  problem.recordings = training;
+  result.problem.folds = result.split.folds;
+  result.noise = noise_kind(rig, result.nominal, training);
+  rig.integration.restart = result.noise == NoiseKind::process ? 1 : 0;
+  problem.integration = rig.integration;
+  surefoot::Fit calibrated = calibrate(rig, result.nominal, problem, options.starts, seed, parallel);
+  rig.integration =
+      choose_integration(rig, calibrated.hypothesis, problem.weighting.sigma, rig.integration, training.front());
+  problem.integration = rig.integration;
+  if (result.noise == NoiseKind::final_pose) {
+    problem.weighting.whitening = final_pose_whitening(rig, calibrated.hypothesis, training, rig.integration);
+  }
+  calibrated = fit(rig, calibrated.hypothesis, problem, parallel);
+  const auto runs = simulate_all(rig, calibrated.hypothesis, training, rig.integration, parallel);
+  rig.sizes = measure_sizes(rig, calibrated.hypothesis, training, runs);
+  result.selection.nominal.hypothesis = calibrated.hypothesis;
+  result.selection.nominal.loss = calibrated.loss;
+  diagnosis.integration_order = rig.integration.order;
+  diagnosis.integration_step = rig.integration.step;
+  return result;
+}
+
+std::vector<surefoot::AttachedEffect> candidates(const Investigation& investigation,
+                                                 const surefoot::DiagnoseOptions& options,
+                                                 const surefoot::Parallel& parallel) {
+  const surefoot::Rig& rig = investigation.rig;
+  const surefoot::Hypothesis& calibrated = investigation.selection.nominal.hypothesis;
+  std::vector<surefoot::Effect> effects = surefoot::all_effects();
+  for (const std::string& name : options.effects) {
+    if (std::ranges::none_of(effects, [&](const auto& effect) { return effect.name == name; })) {
+      throw surefoot::DiagnoseError("--effects: there is no effect called '" + name +
+                                    "'; see surefoot/diagnose/effects.hpp");
+    }
+  }
+  std::erase_if(effects, [&](const surefoot::Effect& effect) {
+    const bool asked =
+        options.effects.empty() || std::ranges::find(options.effects, effect.name) != options.effects.end();
+    return !asked || (investigation.noise == NoiseKind::process && effect.place == surefoot::Place::output);
+  });
+  const auto& training = investigation.split.training;
+  const auto runs = simulate_all(rig, calibrated, training, rig.integration, parallel);
+  return attachments(rig, effects, distinct_inputs(rig, calibrated, training, runs));
+}
+
+}  // namespace all_at_once

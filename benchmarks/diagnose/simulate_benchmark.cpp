@@ -1,0 +1,65 @@
+// Simulations of recordings per second, what fits spend their time on: equations in C++ against the same equations read
+// from a model file, without effects and with one. One simulation is one recording.
+#include <benchmark/benchmark.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "benchmarks/diagnose/servo.hpp"
+#include "surefoot/diagnose/hypothesis.hpp"
+#ifdef SUREFOOT_HAS_MODEL_FILES
+#include "examples/diagnose/equations.hpp"
+#endif
+
+namespace {
+
+using surefoot::Hypothesis;
+using surefoot::Rig;
+
+Hypothesis with_effect(const Rig& rig, const std::string& effect) {
+  Hypothesis hypothesis = surefoot::nominal_hypothesis(rig);
+  for (const surefoot::NamedEffect& named : diagnose_benchmarks::left_out(effect)) {
+    hypothesis.effects.push_back(surefoot::attach(rig.info, named, surefoot::all_effects()));
+    hypothesis.values.emplace_back(
+        Eigen::Map<const Eigen::VectorXd>(named.values.data(), static_cast<Eigen::Index>(named.values.size())));
+  }
+  return hypothesis;
+}
+
+template <surefoot::Simulator S>
+void simulations(benchmark::State& state, const S& simulator, const std::string& effect) {
+  const Rig rig = surefoot::make_rig(simulator, diagnose_benchmarks::servo_recordings("", 1));
+  const Hypothesis hypothesis = with_effect(rig, effect);
+  for (auto _ : state) {
+    for (std::size_t r = 0; r < rig.recordings.size(); ++r) {
+      benchmark::DoNotOptimize(surefoot::simulate(rig, hypothesis, r, rig.integration));
+    }
+  }
+  using benchmark::Counter;
+  const auto recordings = static_cast<double>(rig.recordings.size());
+  state.counters["simulations"] = Counter(recordings, Counter::kIsIterationInvariantRate);
+  state.counters["time_per_row"] = Counter(diagnose_benchmarks::row_count(rig.recordings),
+                                           Counter::kIsIterationInvariantRate | Counter::kInvert);  // [s]
+}
+
+const toys::ServoPendulum native;
+BENCHMARK_CAPTURE(simulations, native, native, "");
+BENCHMARK_CAPTURE(simulations, native_coulomb_friction, native, "coulomb_friction");
+BENCHMARK_CAPTURE(simulations, native_input_delay, native, "input_delay");
+
+#ifdef SUREFOOT_HAS_MODEL_FILES
+const diagnose_program::OdeModel& equations() {
+  static const diagnose_program::OdeModel model(
+      diagnose_program::parse_model_file(diagnose_benchmarks::servo_model_text, "servo.toml"));
+  return model;
+}
+void simulations_of_equations(benchmark::State& state, const std::string& effect) {
+  simulations(state, equations(), effect);
+}
+BENCHMARK_CAPTURE(simulations_of_equations, none, "");
+BENCHMARK_CAPTURE(simulations_of_equations, coulomb_friction, "coulomb_friction");
+BENCHMARK_CAPTURE(simulations_of_equations, input_delay, "input_delay");
+#endif
+
+}  // namespace

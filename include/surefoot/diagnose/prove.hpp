@@ -1,0 +1,168 @@
+// Proves a diagnosis on recordings that were used neither to fit nor to choose: errors before and after, against the
+// noise and against a forest in place of physics.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <stop_token>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/calibrate.hpp"
+#include "surefoot/diagnose/forest_residual.hpp"
+#include "surefoot/diagnose/investigation.hpp"
+#include "surefoot/diagnose/mismatch.hpp"
+
+namespace surefoot::detail {
+
+/// Error of one recording over outputs, each in units of its scale; by output in `by_output` as sums of squares.
+inline double recording_error(const Rig& rig, std::size_t r, const SimulatedRun& trajectory,
+                              const Eigen::VectorXd& scale) {
+  const std::vector<Cell> cells = cells_of(rig.recordings[r]);
+  Eigen::VectorXd off = raw_residuals(rig, r, trajectory, cells);
+  for (std::size_t i = 0; i < cells.size(); ++i) off[static_cast<Eigen::Index>(i)] /= scale[cells[i].output];
+  return off.size() > 0 ? std::sqrt(off.squaredNorm() / static_cast<double>(off.size())) : 0;
+}
+
+inline double over_all(const std::vector<double>& errors, const std::vector<double>& counts) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    sum += errors[i] * errors[i] * counts[i];
+    count += counts[i];
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+inline std::vector<double> cell_counts(const Rig& rig, const std::vector<std::size_t>& recordings) {
+  std::vector<double> counts;
+  for (const std::size_t r : recordings) counts.push_back(static_cast<double>(cells_of(rig.recordings[r]).size()));
+  return counts;
+}
+
+/// Executor on top of Parallel, for the forest.
+struct ParallelExecutor {
+  const Parallel* parallel;
+  std::size_t width() const { return 1; }
+  template <class Job>
+  bool run(std::size_t count, Job&& job, std::stop_token = {}) const {
+    (*parallel)(count, [&](std::size_t i) { job(i); });
+    return true;
+  }
+};
+
+/// Errors on the test recordings: whole recordings are simulated, whatever the fit did.
+inline void prove(Investigation& investigation, const Hypothesis& calibrated, const Hypothesis& chosen,
+                  const Parallel& parallel, std::uint64_t seed) {
+  const Rig& rig = investigation.rig;
+  Diagnosis& diagnosis = investigation.diagnosis;
+  const auto& training = investigation.split.training;
+  const auto& test = investigation.split.test;
+  Integration whole = rig.integration;
+  whole.restart = 0;
+  std::vector<std::size_t> all(rig.recordings.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const Eigen::VectorXd spreads = output_spreads(rig, all);
+  Eigen::VectorXd scale = spreads;
+  for (Eigen::Index k = 0; k < scale.size(); ++k) {
+    const double noise = rig.info.outputs[static_cast<std::size_t>(k)].noise;
+    if (noise > 0) scale[k] = noise;
+  }
+  // Unknown initial states of test recordings are estimated for each model alike.
+  FitProblem initial = investigation.problem.fit;
+  initial.recordings = test;
+  initial.free = Free::initial_only;
+  const bool free = free_start(rig, test);
+  const auto ready = [&](const Hypothesis& h) { return free ? fit(rig, h, initial, parallel).hypothesis : h; };
+  const Hypothesis models[3] = {ready(investigation.nominal), ready(calibrated), ready(chosen)};
+  std::vector<SimulatedRun> runs[3];
+  for (int m = 0; m < 3; ++m) runs[m] = simulate_all(rig, models[m], test, whole, parallel);
+
+  std::vector<double> errors[3];
+  for (std::size_t i = 0; i < test.size(); ++i) {
+    for (int m = 0; m < 3; ++m) errors[m].push_back(recording_error(rig, test[i], runs[m][i], scale));
+    diagnosis.per_recording.push_back({rig.recordings[test[i]].name, errors[1][i], errors[2][i]});
+    diagnosis.curves.push_back({rig.recordings[test[i]].name, rig.recordings[test[i]].time,
+                                rig.recordings[test[i]].inputs, rig.recordings[test[i]].outputs, runs[0][i].outputs,
+                                runs[1][i].outputs, runs[2][i].outputs});
+  }
+  const std::vector<double> counts = cell_counts(rig, test);
+  diagnosis.test_before = over_all(errors[1], counts);
+  diagnosis.test_after = over_all(errors[2], counts);
+
+  std::vector<double> trained[2];
+  const auto before = simulate_all(rig, calibrated, training, whole, parallel);
+  const auto after = simulate_all(rig, chosen, training, whole, parallel);
+  for (std::size_t i = 0; i < training.size(); ++i) {
+    trained[0].push_back(recording_error(rig, training[i], before[i], scale));
+    trained[1].push_back(recording_error(rig, training[i], after[i], scale));
+  }
+  diagnosis.train_before = over_all(trained[0], cell_counts(rig, training));
+  diagnosis.train_after = over_all(trained[1], cell_counts(rig, training));
+
+  // 95 % interval of the ratio, over test recordings.
+  Rng rng(seed, 0x7e57u);
+  std::vector<double> ratios;
+  for (int round = 0; round < 400; ++round) {
+    double a = 0, b = 0;
+    for (std::size_t i = 0; i < test.size(); ++i) {
+      const std::size_t j = rng.below(static_cast<std::uint32_t>(test.size()));
+      a += errors[1][j] * errors[1][j] * counts[j];
+      b += errors[2][j] * errors[2][j] * counts[j];
+    }
+    ratios.push_back(a > 0 ? std::sqrt(b / a) : 1);
+  }
+  std::sort(ratios.begin(), ratios.end());
+  diagnosis.gain_low = ratios[9];
+  diagnosis.gain_high = ratios[389];
+
+  // A forest on the residuals of the calibrated model instead.
+  Eigen::Index rows = 0, test_rows = 0;
+  for (const std::size_t r : training) rows += rig.recordings[r].rows();
+  for (const std::size_t r : test) test_rows += rig.recordings[r].rows();
+  if (investigation.noise != NoiseKind::final_pose) {
+    const FeatureTable table = make_features(rig, training, before, std::max<Eigen::Index>(1, rows / 8000));
+    const ResidualForest forest = train_residual_forest(table, residual_table(rig, training, before, scale, table),
+                                                        ParallelExecutor{&parallel}, seed);
+    const FeatureTable unseen = make_features(rig, test, runs[1], std::max<Eigen::Index>(1, test_rows / 8000));
+    const Eigen::MatrixXd residuals = residual_table(rig, test, runs[1], scale, unseen);
+    const double untouched =
+        std::sqrt(residuals.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, residuals.size())));
+    if (untouched > 0)
+      diagnosis.test_forest = diagnosis.test_before * left_after(forest, unseen, residuals) / untouched;
+  }
+
+  // By output.
+  std::vector<Structure> structures;
+  measure_mismatch(rig, training, simulate_all(rig, calibrated, training, rig.integration, parallel),
+                   investigation.problem.fit.weighting.sigma, investigation.noise, &structures);
+  double floor = 0;
+  for (std::size_t k = 0; k < rig.info.outputs.size(); ++k) {
+    const auto output = static_cast<Eigen::Index>(k);
+    ChannelMismatch channel;
+    channel.output = rig.info.outputs[k].name;
+    channel.unit = rig.info.outputs[k].unit;
+    double sums[3] = {}, count = 0;
+    for (std::size_t i = 0; i < test.size(); ++i) {
+      for (int m = 0; m < 3; ++m) sums[m] += series_of(rig, test[i], runs[m][i], output).squaredNorm();
+      for (const Cell& cell : cells_of(rig.recordings[test[i]])) count += cell.output == output ? 1 : 0;
+    }
+    count = std::max(count, 1.0);
+    channel.rmse_nominal = std::sqrt(sums[0] / count);
+    channel.rmse_calibrated = std::sqrt(sums[1] / count);
+    channel.rmse_after = std::sqrt(sums[2] / count);
+    const double stated = rig.info.outputs[k].noise;
+    channel.noise = stated > 0 ? stated : std::min(fast_noise(rig, training, output), channel.rmse_after);
+    channel.p_value = structures[k].p_value;
+    floor +=
+        channel.noise * channel.noise / (scale[output] * scale[output]) / static_cast<double>(rig.info.outputs.size());
+    diagnosis.channels.push_back(channel);
+  }
+  diagnosis.noise_floor = std::sqrt(floor);
+}
+
+}  // namespace surefoot::detail

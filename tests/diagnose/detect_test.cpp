@@ -1,0 +1,102 @@
+// Detection: noise is not taken for something missing, and what is missing not for noise.
+#include "surefoot/diagnose/detect.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
+#include "tests/diagnose/small_simulators.hpp"
+
+namespace surefoot {
+namespace {
+
+// Four recordings of 600 rows whose residuals are noise of deviation 0.01 m that is correlated by `memory` from row to
+// row, and on top of it a sine of 0.5 Hz.
+struct Remains {
+  Rig rig;
+  std::vector<SimulatedRun> runs;
+  std::vector<std::size_t> all{0, 1, 2, 3};
+};
+Remains remains(double memory, double sine, std::uint64_t seed) {
+  std::vector<Recording> recordings;
+  std::vector<SimulatedRun> runs;
+  for (int r = 0; r < 4; ++r) {
+    Recording recording = toys::blank_recording(toys::LeakyTank{}.info(), 600, 0.02);
+    Rng rng(seed, static_cast<std::uint64_t>(r));
+    double noise = 0;
+    for (Eigen::Index i = 0; i < 600; ++i) {
+      noise = memory * noise + 0.01 * std::sqrt(1 - memory * memory) * rng.normal();
+      recording.outputs(0, i) = noise + sine * std::sin(std::numbers::pi * recording.time[i] + r);
+    }
+    recordings.push_back(std::move(recording));
+    runs.push_back({Eigen::MatrixXd::Zero(1, 600), Eigen::MatrixXd::Zero(1, 600)});
+  }
+  return {make_rig(toys::LeakyTank{}, std::move(recordings)), std::move(runs)};
+}
+
+Structure structure_of(const Remains& r) { return residual_structure(r.rig, r.all, r.runs, 0, 6, 12); }
+
+TEST_CASE("noise has no structure, even if it is correlated from row to row") {
+  for (const double memory : {0.0, 0.6}) {
+    int alarms = 0;
+    double share = 0;
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+      const Structure one = structure_of(remains(memory, 0, seed));
+      alarms += one.p_value < 0.01 ? 1 : 0;
+      share += one.share / 200;
+    }
+    INFO("memory " << memory << ": " << alarms << " alarms, share " << share);
+    CHECK(alarms <= (memory > 0 ? 16 : 8));
+    CHECK(share < 0.03);
+  }
+}
+
+TEST_CASE("a slow error has structure, and the share of it is told") {
+  for (const double sine : {0.005, 0.01, 0.05}) {
+    const double truth = 0.5 * sine * sine / (0.5 * sine * sine + 1e-4);
+    int found = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      const Structure one = structure_of(remains(0.3, sine, seed));
+      found += one.p_value < 0.001 ? 1 : 0;
+      CHECK(one.share == doctest::Approx(0.86 * truth).epsilon(0.35));  // the sine forgets a little in 9 rows
+      CHECK(one.rms == doctest::Approx(std::sqrt(0.5 * sine * sine + 1e-4)).epsilon(0.15));
+    }
+    INFO("sine " << sine << ": found " << found << " of 20");
+    CHECK(found >= 19);
+  }
+}
+
+TEST_CASE("wild single samples and gaps are no structure") {
+  Remains r = remains(0, 0, 1);
+  for (Recording& recording : r.rig.recordings) {
+    for (Eigen::Index i = 50; i < 600; i += 100) recording.outputs(0, i) = 5;
+    for (Eigen::Index i = 300; i < 330; ++i) recording.outputs(0, i) = std::numeric_limits<double>::quiet_NaN();
+  }
+  CHECK(structure_of(r).p_value > 0.01);
+}
+
+TEST_CASE("recordings too short to tell are not judged") {
+  Remains r = remains(0, 0.05, 1);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Recording whole = r.rig.recordings[i];
+    r.rig.recordings[i] = part_of(whole, 0, 40, whole.initial, whole.initial_scale);
+    r.runs[i].outputs = r.runs[i].outputs.leftCols(40).eval();
+  }
+  CHECK(structure_of(r).p_value == 1);
+  CHECK(structure_of(r).rms > 0);
+}
+
+TEST_CASE("the noise of a sensor is seen through motion that is smooth") {
+  Remains r = remains(0, 0.5, 2);
+  CHECK(fast_noise(r.rig, r.all, 0) == doctest::Approx(0.01).epsilon(0.1));
+  r = remains(0.6, 0.5, 2);
+  CHECK(fast_noise(r.rig, r.all, 0) < 0.01);  // of correlated noise less is seen
+  CHECK(fast_noise(r.rig, {}, 0) == 0);
+}
+
+}  // namespace
+}  // namespace surefoot

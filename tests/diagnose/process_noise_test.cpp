@@ -1,0 +1,111 @@
+// Noise that accumulates is told from noise of measurement, and final poses are weighed by what it leaves in them.
+#include "surefoot/diagnose/process_noise.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
+#include "tests/diagnose/small_simulators.hpp"
+#include "tests/support/walking_robot.hpp"
+
+namespace surefoot {
+namespace {
+
+using toys::WalkingRobot;
+
+std::vector<Recording> walks(bool final_pose_only, int count, std::uint64_t seed) {
+  return toys::walk_recordings([](Pose2 moved, double) { return moved; }, final_pose_only, count, seed);
+}
+
+Hypothesis with_gains(const Rig& rig, const Vec<3>& gains) {
+  Hypothesis hypothesis = nominal_hypothesis(rig);
+  hypothesis.parameters = gains;
+  return hypothesis;
+}
+
+std::vector<std::size_t> first(std::size_t from, std::size_t to) {
+  std::vector<std::size_t> result;
+  for (std::size_t i = from; i < to; ++i) result.push_back(i);
+  return result;
+}
+
+// Walks without noise of the steps, measured with some (5 mm, 20 mrad).
+std::vector<Recording> exact_walks(int count) {
+  auto recordings = walks(false, count, 3);
+  Rng rng(3);
+  for (Recording& recording : recordings) {
+    recording.outputs = simulate_augmented(WalkingRobot{}, toys::machine({1.2, 0.9, 1.1}), recording).outputs;
+    for (Eigen::Index i = 1; i < recording.rows(); ++i) {
+      recording.outputs.col(i) += Vec<3>(0.005 * rng.normal(), 0.005 * rng.normal(), 0.02 * rng.normal());
+    }
+  }
+  return recordings;
+}
+
+TEST_CASE("steps that are noisy are noise of the process, poses that are noise of the measurement") {
+  const Rig walking = make_rig(WalkingRobot{}, walks(false, 20, 1)),
+            measuring = make_rig(WalkingRobot{}, exact_walks(20));
+  for (const Vec<3>& gains : {Vec<3>(1.2, 0.9, 1.1), Vec<3>(1, 1, 1)}) {  // also before the gains are known
+    CHECK(noise_kind(walking, with_gains(walking, gains), first(0, 20)) == NoiseKind::process);
+    CHECK(noise_kind(measuring, with_gains(measuring, gains), first(0, 20)) == NoiseKind::measurement);
+  }
+  const Vec<3> truth(1.2, 0.9, 1.1);
+  CHECK(std::abs(neighbour_correlation(walking, with_gains(walking, truth), first(0, 20))) < 0.1);
+  CHECK(neighbour_correlation(measuring, with_gains(measuring, truth), first(0, 20)) ==
+        doctest::Approx(-0.5).epsilon(0.2));
+}
+
+TEST_CASE("walks of which only the end was measured are recognized, and machines with rates never are walks") {
+  const Rig ends = make_rig(WalkingRobot{}, walks(true, 5, 1));
+  CHECK(only_final_pose(ends));
+  CHECK(noise_kind(ends, nominal_hypothesis(ends), first(0, 5)) == NoiseKind::final_pose);
+  auto mixed = walks(true, 5, 1);
+  mixed[2] = walks(false, 1, 1)[0];
+  CHECK_FALSE(only_final_pose(make_rig(WalkingRobot{}, mixed)));
+  const Rig tank = make_rig(toys::LeakyTank{}, {toys::tank_recording(0, 50)});
+  CHECK(noise_kind(tank, nominal_hypothesis(tank), {0}) == NoiseKind::measurement);
+}
+
+TEST_CASE("whitened final poses have unit variance and no correlation, also those that were not looked at") {
+  const Rig rig = make_rig(WalkingRobot{}, walks(true, 300, 7));
+  const Hypothesis truth = with_gains(rig, {1.2, 0.9, 1.1});
+  const auto whitening = final_pose_whitening(rig, truth, first(0, 150), {});
+  REQUIRE(whitening.size() == 300);
+  for (const auto& some : {first(0, 150), first(150, 300)}) {
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero(), raw = covariance;
+    for (const std::size_t r : some) {
+      const std::vector<Cell> cells = cells_of(rig.recordings[r]);
+      const SimulatedRun run = simulate(rig, truth, r, {});
+      const Eigen::VectorXd white =
+          weighed_residuals(rig, r, run, cells, {.sigma = Vec<3>(1, 1, 1), .whitening = whitening});
+      const Eigen::VectorXd off = raw_residuals(rig, r, run, cells);
+      REQUIRE(white.size() == 3);
+      covariance += white * white.transpose() / 150;
+      raw += off * off.transpose() / 150;
+    }
+    CHECK(covariance.diagonal().minCoeff() > 0.7);
+    CHECK(covariance.diagonal().maxCoeff() < 1.4);
+    CHECK(covariance.trace() / 3 == doctest::Approx(1).epsilon(0.15));
+    covariance.diagonal().setZero();
+    CHECK(covariance.cwiseAbs().maxCoeff() < 0.3);
+    CHECK(raw(2, 2) == doctest::Approx(25 * 1e-4 + 4e-4).epsilon(0.3));  // 25 steps of 10 mrad and 20 mrad of tape
+  }
+}
+
+TEST_CASE("a longer walk counts less") {
+  auto recordings = walks(true, 60, 8);
+  for (std::size_t r = 0; r < 30; ++r) {  // stands still after five steps, and there is measured
+    Recording& recording = recordings[r];
+    const Eigen::VectorXd end = walks(false, 60, 8)[r].outputs.col(5);
+    recording = part_of(recording, 0, 6, recording.initial, recording.initial_scale);
+    recording.outputs.col(5) = end;
+  }
+  const Rig rig = make_rig(WalkingRobot{}, recordings);
+  const auto whitening = final_pose_whitening(rig, with_gains(rig, {1.2, 0.9, 1.1}), first(0, 60), {});
+  CHECK(whitening[0].norm() > 1.3 * whitening[59].norm());
+}
+
+}  // namespace
+}  // namespace surefoot

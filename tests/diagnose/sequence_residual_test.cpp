@@ -1,0 +1,46 @@
+#include "surefoot/diagnose/sequence_residual.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "surefoot/diagnose/process_noise.hpp"
+#include "surefoot/diagnose/split.hpp"
+#include "tests/support/walking_robot.hpp"
+
+using surefoot::Pose2;
+
+namespace {
+
+template <class Change>
+surefoot::Comparison structure_of(Change&& change, std::uint64_t seed) {
+  surefoot::Rig rig = surefoot::make_rig(toys::WalkingRobot{}, toys::walk_recordings(change, true, 60, seed));
+  const auto split = surefoot::split_recordings(rig.recordings, {}, 0.2, 4, seed);
+  surefoot::FitProblem problem;
+  problem.recordings = split.training;
+  const auto parallel = surefoot::serially();
+  surefoot::Fit fitted = surefoot::calibrate(rig, surefoot::nominal_hypothesis(rig), problem, 8, seed, parallel);
+  problem.weighting.whitening = surefoot::final_pose_whitening(rig, fitted.hypothesis, split.training, rig.integration);
+  fitted = surefoot::fit(rig, fitted.hypothesis, problem, parallel);
+  return surefoot::sequence_structure(rig, fitted.hypothesis, problem, split.folds, parallel);
+}
+
+}  // namespace
+
+TEST_CASE("errors of a walk that obeys its model cannot be predicted") {
+  int alarms = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto found = structure_of([](Pose2 moved, double) { return moved; }, seed);
+    alarms += found.gain > 0.05 && found.p_value < 0.01 ? 1 : 0;
+  }
+  CHECK(alarms <= 1);
+}
+
+TEST_CASE("errors that depend on the orders can be predicted") {
+  const auto stumble = [](Pose2 moved, double) {
+    return Pose2{moved.x, moved.y, moved.angle + (moved.x > 0.03 ? 0.05 : 0.0)};
+  };
+  const auto found = structure_of(stumble, 3);
+  CHECK(found.gain > 0.05);
+  CHECK(found.p_value < 0.01);
+}
