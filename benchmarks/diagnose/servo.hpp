@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <ctime>
 #include <string>
 #include <utility>
 #include <vector>
@@ -85,6 +86,14 @@ inline std::vector<surefoot::Recording> servo_recordings(const std::string& effe
     recordings.push_back(std::move(recording));
   }
   return recordings;
+}
+
+/// CPU time that a job takes in all threads [s].
+template <class Job>
+double cpu_time(Job&& job) {
+  const std::clock_t begin = std::clock();
+  job();
+  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
 inline double row_count(const std::vector<surefoot::Recording>& recordings) {

@@ -27,15 +27,17 @@ Hypothesis with_effect(const Rig& rig, const std::string& effect) {
   return hypothesis;
 }
 
+void simulate_all(const Rig& rig, const Hypothesis& hypothesis) {
+  for (std::size_t r = 0; r < rig.recordings.size(); ++r) {
+    benchmark::DoNotOptimize(surefoot::simulate(rig, hypothesis, r, rig.integration));
+  }
+}
+
 template <surefoot::Simulator S>
 void simulations(benchmark::State& state, const S& simulator, const std::string& effect) {
   const Rig rig = surefoot::make_rig(simulator, diagnose_benchmarks::servo_recordings("", 1));
   const Hypothesis hypothesis = with_effect(rig, effect);
-  for (auto _ : state) {
-    for (std::size_t r = 0; r < rig.recordings.size(); ++r) {
-      benchmark::DoNotOptimize(surefoot::simulate(rig, hypothesis, r, rig.integration));
-    }
-  }
+  for (auto _ : state) simulate_all(rig, hypothesis);
   using benchmark::Counter;
   const auto recordings = static_cast<double>(rig.recordings.size());
   state.counters["simulations"] = Counter(recordings, Counter::kIsIterationInvariantRate);
@@ -60,6 +62,22 @@ void simulations_of_equations(benchmark::State& state, const std::string& effect
 BENCHMARK_CAPTURE(simulations_of_equations, none, "");
 BENCHMARK_CAPTURE(simulations_of_equations, coulomb_friction, "coulomb_friction");
 BENCHMARK_CAPTURE(simulations_of_equations, input_delay, "input_delay");
+
+// Both in turn, so that whatever else the computer does slows both down: how many times as long the equations take.
+void equations_against_native(benchmark::State& state, const std::string& effect) {
+  const auto recordings = diagnose_benchmarks::servo_recordings("", 1);
+  const Rig compiled = surefoot::make_rig(native, recordings), read = surefoot::make_rig(equations(), recordings);
+  const Hypothesis of_compiled = with_effect(compiled, effect), of_read = with_effect(read, effect);
+  double compiled_time = 0, read_time = 0;
+  for (auto _ : state) {
+    compiled_time += diagnose_benchmarks::cpu_time([&] { simulate_all(compiled, of_compiled); });
+    read_time += diagnose_benchmarks::cpu_time([&] { simulate_all(read, of_read); });
+  }
+  state.counters["ratio"] = read_time / compiled_time;
+}
+BENCHMARK_CAPTURE(equations_against_native, none, "");
+BENCHMARK_CAPTURE(equations_against_native, coulomb_friction, "coulomb_friction");
+BENCHMARK_CAPTURE(equations_against_native, input_delay, "input_delay");
 #endif
 
 }  // namespace

@@ -12,7 +12,8 @@ constexpr const char* example = R"(Example:
   surefoot-diagnose --model servo.toml --out diagnosis rec_1.csv rec_2.csv rec_3.csv rec_4.csv
 
 Says what physics the model leaves out of what the recordings show, or that nothing is missing. Writes into the folder
-of --out: report.html (read this), diagnosis.json, augmented.toml, augmented.hpp, pictures.
+of --out: report.html (read this), diagnosis.json, augmented.toml, augmented.hpp, pictures, and residual.forest if
+nothing explains what is missing but a forest on the residuals helps.
 Exit codes: 0 a verdict was reached; 2 wrong options or files; 130 stopped by Ctrl-C, what was known by then is kept.)";
 
 }  // namespace

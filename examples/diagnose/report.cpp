@@ -179,6 +179,39 @@ std::string next_part(const Diagnosis& d) {
   return html;
 }
 
+std::string forest_part(const surefoot::ForestResidual& forest) {
+  if (!forest.tried) return "";
+  std::string html = "<h2>A forest in place of physics</h2>\n";
+  const std::string figures = "On the recordings kept aside the error is " + rounded(forest.heldout_after) +
+                              " with it and " + rounded(forest.heldout_before) + " without.";
+  if (!forest.kept) {
+    return html + paragraph(
+                      "A forest that corrects the simulated outputs by what it learned from the residuals does "
+                      "not clearly improve simulations of recordings it has not seen, and is not kept. " +
+                      figures);
+  }
+  return html + paragraph(std::string(residual_file) +
+                          " corrects the simulated outputs by what a forest learned from the residuals: no explanation,"
+                          " but closer. " +
+                          figures + " In simulations of other recordings it has not seen it took away " +
+                          percent(forest.gain) + " (standard error " + percent(forest.gain_stderr) + ").");
+}
+
+std::string noise_part(const Diagnosis& d) {
+  if (d.noise_findings.empty()) return "";
+  std::string html = "<h2>What the noise is like</h2>\n";
+  for (const auto& noise : d.noise_findings) {
+    html +=
+        "<div class=\"card\">" + element("h3", noise.sentence) + element("p class=\"note\"", noise.name) + "<table>\n";
+    for (const auto& fit : noise.parameters) html += row({fit.name, with_interval(fit)});
+    html += "</table>\n" +
+            element("p", "Log-likelihood on recordings not used for the fit: " + rounded(noise.gain, 2) +
+                             " more per sample than without it, " + p_text(noise.p_value) + ".") +
+            "</div>\n";
+  }
+  return html;
+}
+
 std::string parameters_part(const Diagnosis& d) {
   const auto& fitted = d.augmented_parameters.empty() ? d.parameters : d.augmented_parameters;
   if (fitted.empty()) return "";
@@ -236,8 +269,9 @@ Report make_report(const Diagnosis& d, const surefoot::SimulatorInfo& info) {
       escaped(d.model) + ": " + escaped(headline(d.verdict)) + "</title>\n<style>" + report_style +
       "</style>\n</head>\n<body>\n<main>\n" + verdict_part(d) +
       where_part(d, info.kind == surefoot::SimulatorKind::ode ? " s" : "") + what_part(d) + limits_part(d) +
-      curves_part(d, report.pictures) + ranking_part(d) + next_part(d) + parameters_part(d) + remarks_part(d) +
-      "<footer>" + escaped("Computed in " + duration_text(d.seconds) + " with seed " + std::to_string(d.seed) + ".") +
+      curves_part(d, report.pictures) + ranking_part(d) + next_part(d) + forest_part(d.forest_residual) +
+      parameters_part(d) + noise_part(d) + remarks_part(d) + "<footer>" +
+      escaped("Computed in " + duration_text(d.seconds) + " with seed " + std::to_string(d.seed) + ".") +
       "</footer>\n</main>\n</body>\n</html>\n";
   return report;
 }

@@ -39,6 +39,11 @@ void write_results(const surefoot::Diagnosis& diagnosis, const surefoot::Simulat
     surefoot::write_file_atomically(folder / "augmented.toml", head + model_text(augmented));
     surefoot::write_file_atomically(folder / "augmented.hpp", model_header(augmented, diagnosis));
   }
+  std::error_code none;
+  std::filesystem::remove(folder / residual_file, none);  // of an earlier diagnosis
+  if (diagnosis.forest_residual.kept) {
+    surefoot::save_residual_model(diagnosis.forest_residual.model, folder / residual_file);
+  }
   surefoot::write_file_atomically(folder / "diagnosis.json", diagnosis_json(diagnosis));  // last: all is there
 }
 

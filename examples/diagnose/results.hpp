@@ -13,7 +13,8 @@ namespace diagnose_program {
 /// work.
 void prepare_folder(const std::filesystem::path& folder);
 
-/// diagnosis.json, report.html with its pictures, and with a model file augmented.toml and augmented.hpp.
+/// diagnosis.json, report.html with its pictures, with a model file augmented.toml and augmented.hpp, and the residual
+/// forest where one is kept.
 void write_results(const surefoot::Diagnosis& diagnosis, const surefoot::SimulatorInfo& info,
                    const std::filesystem::path& folder, const ModelFile* model);
 

@@ -5,6 +5,7 @@
 
 #include "progress.hpp"
 #include "wording.hpp"
+#include "write_json.hpp"
 
 namespace diagnose_program {
 
@@ -35,6 +36,14 @@ std::string summary(const surefoot::Diagnosis& d, const std::filesystem::path& o
     if (!d.effects.empty()) text << " before, " << rounded(d.test_after) << " after";
     text << "; forest " << rounded(d.test_forest) << ", noise floor " << rounded(d.noise_floor) << '\n';
   }
+  if (d.forest_residual.kept) {
+    text << "  offered  " << residual_file << ", a forest that corrects what is simulated: error "
+         << rounded(d.forest_residual.heldout_after) << " instead of " << rounded(d.forest_residual.heldout_before)
+         << '\n';
+  }
+  std::string noise;
+  for (const auto& one : d.noise_findings) noise += (noise.empty() ? "" : "; ") + one.sentence;
+  if (!noise.empty()) text << "  " << noise << '\n';
   const auto twins = std::ranges::count_if(d.alternatives, [](const auto& one) { return one.indistinguishable; });
   if (twins > 0) {
     const auto twin = std::ranges::find_if(d.alternatives, [](const auto& one) { return one.indistinguishable; });

@@ -53,18 +53,21 @@ Json mismatch_json(const Diagnosis& diagnosis) {
   return {{"channels", channels}, {"regions", regions}, {"intervals", intervals}};
 }
 
+Json fitted_json(const std::vector<surefoot::FittedValue>& values) {
+  Json list = Json::array();
+  for (const auto& fit : values) {
+    list.push_back({{"name", fit.name}, {"value", number(fit.value)}, {"ci95", interval(fit)}, {"unit", fit.unit}});
+  }
+  return list;
+}
+
 Json effects_json(const std::vector<surefoot::FoundEffect>& effects) {
   Json list = Json::array();
   for (const auto& effect : effects) {
-    Json parameters = Json::array();
-    for (const auto& fit : effect.parameters) {
-      parameters.push_back(
-          {{"name", fit.name}, {"value", number(fit.value)}, {"ci95", interval(fit)}, {"unit", fit.unit}});
-    }
     Json one = {{"name", effect.name}, {"attached_to", effect.attached_to}, {"sentence", effect.sentence}};
     if (!effect.form.empty()) one["form"] = effect.form;
     if (!effect.other.empty()) one["with"] = effect.other;
-    one["parameters"] = parameters;
+    one["parameters"] = fitted_json(effect.parameters);
     one["evidence"] = {{"heldout_gain", number(effect.evidence.heldout_gain)},
                        {"gain_stderr", number(effect.evidence.gain_stderr)},
                        {"p_value", number(effect.evidence.p_value)},
@@ -115,6 +118,28 @@ Json limits_json(const Diagnosis& diagnosis) {
   return list;
 }
 
+Json noise_json(const Diagnosis& diagnosis) {
+  Json list = Json::array();
+  for (const auto& noise : diagnosis.noise_findings) {
+    list.push_back({{"name", noise.name},
+                    {"output", noise.output},
+                    {"parameters", fitted_json(noise.parameters)},
+                    {"evidence", {{"likelihood_gain", number(noise.gain)}, {"p_value", number(noise.p_value)}}},
+                    {"sentence", noise.sentence}});
+  }
+  return list;
+}
+
+Json forest_json(const surefoot::ForestResidual& forest) {
+  Json json = {{"kept", forest.kept},
+               {"heldout_rmse", number(forest.heldout_after)},
+               {"heldout_rmse_without", number(forest.heldout_before)}};
+  if (forest.tried) json["gain"] = number(forest.gain);
+  if (forest.tried) json["gain_stderr"] = number(forest.gain_stderr);
+  if (forest.kept) json["file"] = residual_file;
+  return json;
+}
+
 Json remarks_json(const Diagnosis& diagnosis) {
   Json list = Json::array();
   for (const auto& remark : diagnosis.remarks) list.push_back({{"recording", remark.recording}, {"text", remark.text}});
@@ -147,7 +172,8 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                      {"parameters", parameters_json(diagnosis.parameters)},
                      {"augmented_parameters", parameters_json(diagnosis.augmented_parameters)},
                      {"correlated", diagnosis.correlated},
-                     {"noise", diagnosis.noise_sentence},
+                     {"noise", noise_json(diagnosis)},
+                     {"noise_sentence", diagnosis.noise_sentence},
                      {"mismatch", mismatch_json(diagnosis)},
                      {"effects", effects_json(diagnosis.effects)},
                      {"known_effects", effects_json(diagnosis.known_effects)},
@@ -155,6 +181,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                      {"limits", limits_json(diagnosis)},
                      {"next_experiment", diagnosis.next_experiment},
                      {"fit", fit_json(diagnosis)},
+                     {"forest_residual", forest_json(diagnosis.forest_residual)},
                      {"remarks", remarks_json(diagnosis)},
                      {"seconds", number(diagnosis.seconds)},
                      {"seed", diagnosis.seed}};

@@ -7,6 +7,9 @@
 
 namespace diagnose_program {
 
+/// File of the residual forest, where one is kept.
+inline constexpr const char* residual_file = "residual.forest";
+
 /// Numbers that are not finite become null.
 std::string diagnosis_json(const surefoot::Diagnosis& diagnosis);
 

@@ -38,19 +38,22 @@ Remains remains(double memory, double sine, std::uint64_t seed) {
   return {make_rig(toys::LeakyTank{}, std::move(recordings)), std::move(runs)};
 }
 
-Structure structure_of(const Remains& r) { return residual_structure(r.rig, r.all, r.runs, 0, 6, 12); }
+Structure structure_of(const Remains& r) { return residual_structure(r.rig, r.all, r.runs, 0, 8, 80); }
 
 TEST_CASE("noise has no structure, even if it is correlated from row to row") {
   for (const double memory : {0.0, 0.6}) {
-    int alarms = 0;
+    int alarms = 0, unexplained = 0;
     double share = 0;
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
       const Structure one = structure_of(remains(memory, 0, seed));
       alarms += one.p_value < 0.01 ? 1 : 0;
+      unexplained += one.p_value < 0.001 && one.share > 0.12 ? 1 : 0;
       share += one.share / 200;
     }
     INFO("memory " << memory << ": " << alarms << " alarms, share " << share);
-    CHECK(alarms <= (memory > 0 ? 16 : 8));
+    CHECK(alarms <=
+          (memory > 0 ? 30 : 8));  // noise that is not forgotten for a long time looks like a little structure
+    CHECK(unexplained == 0);       // but not like enough of it to call a model wrong
     CHECK(share < 0.03);
   }
 }
@@ -62,11 +65,26 @@ TEST_CASE("a slow error has structure, and the share of it is told") {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
       const Structure one = structure_of(remains(0.3, sine, seed));
       found += one.p_value < 0.001 ? 1 : 0;
-      CHECK(one.share == doctest::Approx(0.86 * truth).epsilon(0.35));  // the sine forgets a little in 9 rows
+      CHECK(one.share == doctest::Approx(truth).epsilon(0.35));
       CHECK(one.rms == doctest::Approx(std::sqrt(0.5 * sine * sine + 1e-4)).epsilon(0.15));
     }
     INFO("sine " << sine << ": found " << found << " of 20");
     CHECK(found >= 19);
+  }
+}
+
+TEST_CASE("an oscillation has structure, whatever its period") {
+  for (const double rows_per_turn : {14.0, 36.0, 50.0}) {  // some are at right angles to themselves 6 to 12 rows later
+    Remains r = remains(0.3, 0, 7);
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (Eigen::Index i = 0; i < 600; ++i) {
+        r.rig.recordings[k].outputs(0, i) +=
+            0.01 * std::sin(2 * std::numbers::pi * static_cast<double>(i) / rows_per_turn);
+      }
+    }
+    INFO(rows_per_turn << " rows");
+    CHECK(structure_of(r).p_value < 1e-4);
+    CHECK(structure_of(r).share == doctest::Approx(1.0 / 3).epsilon(0.3));
   }
 }
 

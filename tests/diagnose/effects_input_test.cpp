@@ -131,7 +131,7 @@ TEST_CASE("a delayed step comes later by exactly the delay") {
     const auto x = simulated(Integrator{}, "u", effects::input_delay(), {delay}, step_recording(101, 0.01, 20));
     CHECK(x[100] == doctest::Approx(0.8 - delay).epsilon(1e-9));
   }
-  const auto x = simulated(Adder{}, "u", effects::input_delay_long(), {2}, step_recording(11, 1, 3));
+  const auto x = simulated(Adder{}, "u", effects::input_delay(), {2}, step_recording(11, 1, 3));
   CHECK(x[5] == 0);
   CHECK(x[10] == doctest::Approx(5));
 }

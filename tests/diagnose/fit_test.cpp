@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/attachments.hpp"
 #include "surefoot/diagnose/effects.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 #include "tests/support/servo_pendulum.hpp"
@@ -111,7 +112,7 @@ TEST_CASE("bounds hold, and what is not free stays") {
   const Hypothesis nominal = nominal_hypothesis(rig);
   FitProblem problem = problem_of(2, 0.01);
   CHECK(fit(rig, nominal, problem, serially()).hypothesis.parameters[0] == doctest::Approx(5));
-  problem.free = Free::effects_only;
+  problem.free = Free::initial_only;
   CHECK(fit(rig, nominal, problem, serially()).hypothesis.parameters == nominal.parameters);
   Rig fixed = rig;
   fixed.info.parameters[0].fixed = true;
@@ -119,6 +120,15 @@ TEST_CASE("bounds hold, and what is not free stays") {
   const Fit fitted = fit(fixed, nominal, problem, serially());
   CHECK(fitted.hypothesis.parameters[0] == 1);
   CHECK(fitted.hypothesis.parameters[1] != 1);
+
+  Hypothesis leaking = nominal;
+  leaking.effects = attachments(rig, {effects::leak()}, {});
+  REQUIRE(leaking.effects.size() == 1);
+  leaking.values.emplace_back(Eigen::VectorXd::Constant(1, 0.01));
+  problem.free = Free::all_but_effects;
+  const Fit around = fit(rig, leaking, problem, serially());
+  CHECK(around.hypothesis.values[0][0] == 0.01);
+  CHECK(around.hypothesis.parameters != nominal.parameters);
 }
 
 TEST_CASE("a few wild samples hardly move a fit") {

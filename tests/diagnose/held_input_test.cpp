@@ -43,6 +43,43 @@ TEST_CASE("inputs that are not late are held, or interpolated, anywhere in a row
   CHECK(u.at_row(3) == Vec<2>(2, 5));
 }
 
+TEST_CASE("it is known when a late held input changes next") {
+  const SimulatorInfo info = two_inputs();
+  const Recording recording = unequal();
+  HeldInput<Vec<2>> u(info, recording);
+  CHECK_FALSE(u.late());
+  u.delay(0, 0.15);
+  CHECK(u.late());
+  u.go_to(2);  // changes at 2.25, 2.55, 2.65 and 3.15
+  CHECK(u.next_change(2.4, 2.5) == 2.5);
+  u.go_to(3);
+  CHECK(u.next_change(2.5, 3.0) == doctest::Approx(2.55));
+  CHECK(u.next_change(2.55, 3.0) == doctest::Approx(2.65));
+  CHECK(u.next_change(2.65, 3.0) == 3.0);
+}
+
+TEST_CASE("a late input never changes at the time it is asked from, however it is rounded") {
+  const SimulatorInfo info = two_inputs();
+  Recording recording;
+  recording.time.setLinSpaced(600, 0, 3);
+  recording.inputs.setRandom(2, 600);
+  Rng rng(2);
+  for (int k = 0; k < 200; ++k) {
+    HeldInput<Vec<2>> u(info, recording);
+    u.delay(0, 0.05 * rng.uniform());
+    for (const Eigen::Index row : {Eigen::Index{20}, Eigen::Index{300}, Eigen::Index{598}}) {
+      u.go_to(row);
+      double t = recording.time[row];
+      int changes = 0;
+      for (double next = t; (next = u.next_change(t, recording.time[row + 1])) < recording.time[row + 1]; ++changes) {
+        REQUIRE(next > t);
+        t = next;
+      }
+      CHECK(changes <= 1);
+    }
+  }
+}
+
 TEST_CASE("a late held input is its mean over the step, a late interpolated one its value") {
   const SimulatorInfo info = two_inputs();
   const Recording recording = unequal();

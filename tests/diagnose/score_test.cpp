@@ -55,6 +55,26 @@ TEST_CASE("a hypothesis that is better everywhere is believed, and its gain is t
   CHECK(worse.p_value > 0.99);
 }
 
+TEST_CASE("a gain that each recording has in a few of its blocks is believed") {
+  Rng rng(3);
+  Score before, after;
+  for (int recording = 0; recording < 12; ++recording) {
+    for (int block = 0; block < 8; ++block) {
+      const double loss = 100 * (1 + 0.3 * rng.uniform());
+      before.blocks.push_back(block == 0 ? loss + 60 : loss);
+      after.blocks.push_back(100 * (1 + 0.3 * rng.uniform()));
+      before.counts.push_back(60);
+      after.counts.push_back(60);
+    }
+    before.ends.push_back(before.blocks.size());
+    after.ends.push_back(after.blocks.size());
+  }
+  const double by_recording = compare_scores(before, after).p_value;
+  before.ends.clear();
+  CHECK(by_recording < 0.5 * compare_scores(before, after).p_value);
+  CHECK(by_recording < 0.005);
+}
+
 TEST_CASE("one block alone convinces nobody, and no blocks do not either") {
   CHECK(compare_scores(score_of({100, 100, 100, 900, 100, 100}), score_of({101, 99, 100, 100, 99, 101})).p_value >
         0.05);

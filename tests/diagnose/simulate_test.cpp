@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Core>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -36,6 +37,40 @@ TEST_CASE("halving the step divides the error by 16 with order 4 and by 4 with o
 TEST_CASE("a step of 0 means one per row, and rows longer than the step are divided evenly") {
   CHECK(swing_error(4, 0) == swing_error(4, 2.0));
   CHECK(swing_error(4, 0.6) == swing_error(4, 0.5));
+}
+
+// The same block with vectors whose size is known only when it runs.
+struct DynamicBlock {
+  using State = Eigen::VectorXd;
+  using Input = Eigen::VectorXd;
+  using Output = Eigen::VectorXd;
+
+  SimulatorInfo info() const { return SlidingBlock{}.info(); }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& p) const {
+    return SlidingBlock{}.derivative(x, Vec<1>(u[0]), p);
+  }
+  State effort(const State& x, const Input& u, const Eigen::VectorXd& p) const {
+    return SlidingBlock{}.effort(x, Vec<1>(u[0]), p);
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return x; }
+};
+static_assert(Simulator<DynamicBlock>);
+
+TEST_CASE("vectors of fixed and of dynamic size give the same bits, with effects and without") {
+  Recording recording = blank_recording(SlidingBlock{}.info(), 200, 0.02);
+  for (Eigen::Index i = 0; i < 200; ++i) recording.inputs(0, i) = 4 * std::sin(0.1 * static_cast<double>(i));
+  for (const bool rubbing : {false, true}) {
+    Augmented block = machine({2, 0.3, 8});
+    if (rubbing) {
+      block.effects = {{.name = "coulomb_friction", .attached_to = "v", .values = {1.5}},
+                       {.name = "hysteresis", .attached_to = "v", .values = {0.5, 0.1}}};
+    }
+    const SimulatedRun fixed = simulate_augmented(SlidingBlock{}, block, recording);
+    const SimulatedRun dynamic = simulate_augmented(DynamicBlock{}, block, recording);
+    CHECK(fixed.states == dynamic.states);
+    CHECK(fixed.outputs == dynamic.outputs);
+    CHECK(fixed.states.row(0).cwiseAbs().maxCoeff() > 0.01);
+  }
 }
 
 TEST_CASE("held inputs are exact in between rows of any length") {

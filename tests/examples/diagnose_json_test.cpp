@@ -1,14 +1,19 @@
 // The result as JSON, and the page for people.
 #include <doctest/doctest.h>
 
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "examples/diagnose/report.hpp"
+#include "examples/diagnose/results.hpp"
 #include "examples/diagnose/summary.hpp"
 #include "examples/diagnose/write_json.hpp"
+#include "surefoot/diagnose/residual_model.hpp"
+#include "surefoot/forest/extra_trees.hpp"
 #include "tests/examples/diagnose_result.hpp"
+#include "tests/examples/program.hpp"
 
 using diagnose_test::some_diagnosis;
 using nlohmann::json;
@@ -47,6 +52,19 @@ TEST_CASE("the JSON holds every key of the schema with the values of the diagnos
   CHECK(fit.at("heldout").at("rmse_before") == 0.052);
   CHECK(fit.at("heldout").at("per_recording").at(1) ==
         json({{"recording", "rec_2.csv"}, {"before", 0.06}, {"after", 0.005}}));
+  CHECK(fit.at("heldout").at("rmse_forest") == 0.011);
+  CHECK(result.at("noise").at(0) ==
+        json({{"name", "correlated_noise"},
+              {"output", "theta_rad"},
+              {"parameters", {{{"name", "time"}, {"value", 0.03}, {"ci95", {0.025, 0.036}}, {"unit", "s"}}}},
+              {"evidence", {{"likelihood_gain", 0.12}, {"p_value", 1e-6}}},
+              {"sentence", "noise of theta_rad is correlated over 0.03 s"}}));
+  CHECK(result.at("forest_residual") == json({{"kept", true},
+                                              {"heldout_rmse", 0.0021},
+                                              {"heldout_rmse_without", 0.0041},
+                                              {"gain", 0.4},
+                                              {"gain_stderr", 0.05},
+                                              {"file", "residual.forest"}}));
   CHECK(result.at("seconds") == 12.3);
   CHECK(result.at("seed") == 7);
 }
@@ -71,7 +89,10 @@ TEST_CASE("every verdict has its name") {
 
 TEST_CASE("an empty diagnosis is written without a complaint") {
   const surefoot::Diagnosis nothing;
-  CHECK(json::parse(diagnose_program::diagnosis_json(nothing)).at("effects").empty());
+  const json result = json::parse(diagnose_program::diagnosis_json(nothing));
+  CHECK(result.at("effects").empty());
+  CHECK(result.at("noise").empty());
+  CHECK(result.at("forest_residual").at("kept") == false);
   CHECK(diagnose_program::make_report(nothing, {}).html.find("</html>") != std::string::npos);
   CHECK(!diagnose_program::summary(nothing, "out").empty());
 }
@@ -79,6 +100,8 @@ TEST_CASE("an empty diagnosis is written without a complaint") {
 TEST_CASE("the summary fits on a screen and names the effect with its interval") {
   const std::string text = diagnose_program::summary(some_diagnosis(), "out");
   CHECK(std::count(text.begin(), text.end(), '\n') <= 15);
+  CHECK(text.find("noise of theta_rad is correlated over 0.03 s") != std::string::npos);
+  CHECK(text.find("residual.forest, a forest that corrects") != std::string::npos);
   CHECK(text.find("coulomb_friction at omega, level 0.121 N m (0.115 to 0.127)") != std::string::npos);
 }
 
@@ -87,7 +110,8 @@ TEST_CASE("the page holds all parts, escapes names and needs nothing from outsid
   const std::string& html = report.html;
   for (const char* part :
        {"Physics is missing", "Where the model is off", "What is missing", "Before and after", "Other candidates",
-        "Next experiment", "Parameters", "The recordings", "servo &lt;pendulum&gt;", "width=device-width"}) {
+        "Next experiment", "Parameters", "The recordings", "What the noise is like", "A forest in place of physics",
+        "servo &lt;pendulum&gt;", "width=device-width"}) {
     CAPTURE(part);
     CHECK(html.find(part) != std::string::npos);
   }
@@ -98,4 +122,23 @@ TEST_CASE("the page holds all parts, escapes names and needs nothing from outsid
   CHECK(report.pictures[0].svg.starts_with("<svg"));
   CHECK(report.pictures[0].svg.find("class=\"mark\"") != std::string::npos);
   CHECK(report.pictures[0].svg.find("nan") == std::string::npos);
+}
+
+TEST_CASE("a residual forest is written only where one is kept, and one of an earlier diagnosis goes") {
+  const approach_program::ScratchFolder folder;
+  const std::string file = folder.file("residual.forest");
+  surefoot::Diagnosis diagnosis = some_diagnosis();
+  auto& model = diagnosis.forest_residual.model;
+  model.features = {"theta"};
+  model.outputs = {"theta_rad"};
+  model.scale = Eigen::VectorXd::Constant(1, 0.01);
+  surefoot::Dataset<Eigen::Dynamic, Eigen::Dynamic> samples;
+  samples.inputs = Eigen::MatrixXf::Random(1, 50);
+  samples.outputs = Eigen::MatrixXd::Random(1, 50);
+  model.forest = surefoot::train_extra_trees(samples, {.trees = 3}, surefoot::Serial{}, 1);
+  diagnose_program::write_results(diagnosis, diagnose_test::some_simulator(), folder.path(), nullptr);
+  CHECK(surefoot::load_residual_model(file).forest == model.forest);
+  diagnosis.forest_residual.kept = false;
+  diagnose_program::write_results(diagnosis, diagnose_test::some_simulator(), folder.path(), nullptr);
+  CHECK(!std::filesystem::exists(file));
 }

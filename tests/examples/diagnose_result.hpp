@@ -42,6 +42,13 @@ inline surefoot::Diagnosis some_diagnosis() {
   d.augmented_parameters = d.parameters;
   d.correlated = {"kt and R (0.98)"};
   d.noise_sentence = "The noise is measurement noise.";
+  d.noise_findings = {{"theta_rad",
+                       "correlated_noise",
+                       {{"time", "s", 0.03, 0.025, 0.036}},
+                       0.12,
+                       1e-6,
+                       "noise of theta_rad is correlated over 0.03 s"}};
+  d.forest_residual = {true, true, 0.4, 0.05, 0.0041, 0.0021, {}};
   d.channels = {{"theta_rad", "rad", 0.09, 0.05, 0.004, 0.001, 1e-9}};
   d.regions = {{"abs(omega) < 0.12 and since_reversal < 0.06", 0.71, 0.09, 0.002}};
   d.intervals = {{"rec_1.csv", 0.5, 0.9, 0.05}, {"rec_2.csv", 1.0, 1.2, 0.03}};

@@ -153,7 +153,12 @@ inline Sizes measure_sizes(const Rig& rig, const Hypothesis& hypothesis, const s
       }
     }
   };
-  double rows = 0;
+  double rows = 0, intervals = 0, duration = 0;
+  for (const std::size_t r : recordings) {
+    intervals += static_cast<double>(rig.recordings[r].rows() - 1);
+    duration += rig.recordings[r].duration();
+  }
+  sizes.time = intervals > 0 && duration > 0 ? 200 * duration / intervals : 1;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     const Recording& recording = rig.recordings[recordings[i]];
     const Eigen::MatrixXd& states = trajectories[i].states;
@@ -177,8 +182,6 @@ inline Sizes measure_sizes(const Rig& rig, const Hypothesis& hypothesis, const s
     raise(sizes.state_peak, states);
     raise(sizes.input_peak, recording.inputs);
     raise(sizes.signal_peak, signals);
-    sizes.duration = std::max(sizes.duration, recording.duration());
-    if (recording.rows() > 1) sizes.step = recording.duration() / static_cast<double>(recording.rows() - 1);
   }
   const auto finish = [&](std::vector<double>& to, const std::vector<double>& sums) {
     for (std::size_t k = 0; k < sums.size(); ++k) {

@@ -14,6 +14,8 @@
 #include "surefoot/diagnose/investigation.hpp"
 #include "surefoot/diagnose/locate.hpp"
 #include "surefoot/diagnose/mismatch.hpp"
+#include "surefoot/diagnose/noise.hpp"
+#include "surefoot/diagnose/predictability.hpp"
 #include "surefoot/diagnose/prove.hpp"
 #include "surefoot/diagnose/sequence_residual.hpp"
 #include "surefoot/diagnose/wording.hpp"
@@ -46,6 +48,26 @@ inline std::string names_of(const Hypothesis& hypothesis) {
 
 }  // namespace detail
 
+namespace detail {
+
+/// Whether effects lower the error of the test recordings, in the units in which they were chosen. Unknown initial
+/// states are estimated.
+inline bool confirmed(const Investigation& investigation, const Hypothesis& calibrated, const Hypothesis& chosen,
+                      const Parallel& parallel) {
+  const Rig& rig = investigation.rig;
+  FitProblem problem = investigation.problem.fit;
+  problem.recordings = investigation.split.test;
+  problem.free = Free::initial_only;
+  const auto error = [&](const Hypothesis& hypothesis) {
+    const bool free = free_start(rig, problem.recordings);
+    const Hypothesis ready = free ? fit(rig, hypothesis, problem, parallel).hypothesis : hypothesis;
+    return score(rig, ready, problem.recordings, problem.weighting, problem.integration, parallel).rms();
+  };
+  return error(chosen) < 0.98 * error(calibrated);
+}
+
+}  // namespace detail
+
 /// Fills in the diagnosis from what the search found.
 inline void conclude(Investigation& investigation, const std::vector<AttachedEffect>& candidates,
                      const Parallel& parallel, std::uint64_t seed) {
@@ -55,8 +77,17 @@ inline void conclude(Investigation& investigation, const std::vector<AttachedEff
   Selection& selection = investigation.selection;
   const auto& training = investigation.split.training;
   const Hypothesis calibrated = selection.nominal.hypothesis;
-  const Hypothesis chosen = selection.chosen.hypothesis;
   const std::size_t known = calibrated.effects.size();
+  const bool refuted = selection.chosen.hypothesis.effects.size() > known &&
+                       !detail::confirmed(investigation, calibrated, selection.chosen.hypothesis, parallel);
+  if (refuted) {
+    selection.alternatives.assign(1, selection.chosen);
+    selection.chosen = selection.nominal;
+    diagnosis.remarks.push_back({"",
+                                 "effects that seemed to explain the mismatch did not lower the error on the test "
+                                 "recordings, and were dropped"});
+  }
+  const Hypothesis chosen = selection.chosen.hypothesis;
   const bool found_any = chosen.effects.size() > known;
   diagnosis.integration_order = rig.integration.order;
   diagnosis.integration_step = rig.integration.step;
@@ -71,11 +102,14 @@ inline void conclude(Investigation& investigation, const std::vector<AttachedEff
     left = measure_mismatch(rig, training, after, sigma, investigation.noise);
   }
   const double still = missing.energy > 0 ? left.energy / missing.energy : 0;
-  const double tolerated = investigation.noise == NoiseKind::process ? 0.12 : 0.3;
-  bool open = left.p_value < 0.01 && left.share > tolerated && (!found_any || still > 0.2);
+  const double tolerated = found_any && investigation.noise != NoiseKind::process ? 0.3 : 0.12;
+  bool open = left.p_value < 0.001 && left.share > tolerated && (!found_any || still > 0.2);
+  const auto& folds = investigation.problem.folds;
   if (investigation.noise == NoiseKind::final_pose) {
-    const Comparison pattern = sequence_structure(rig, chosen, problem, investigation.problem.folds, parallel);
-    open = pattern.gain > 0.05 && pattern.p_value < 0.01;
+    open = sequence_structure(rig, chosen, problem, folds, parallel).p_value < 0.005;
+  } else if (investigation.noise == NoiseKind::process) {
+    const Comparison pattern = residual_predictability(rig, chosen, problem, folds, parallel, seed);
+    open = open || (pattern.gain > 0.03 && pattern.p_value < 0.005);
   }
   if (open) {
     diagnosis.verdict = Verdict::unexplained;
@@ -198,6 +232,9 @@ inline void conclude(Investigation& investigation, const std::vector<AttachedEff
   }
   if (!twins.empty() && diagnosis.verdict == Verdict::missing_physics) {
     diagnosis.sentence += " These recordings cannot tell it from " + in_list(twins) + ".";
+  }
+  if (diagnosis.verdict != Verdict::unexplained) {
+    diagnosis.noise_findings = find_noise(rig, chosen, training, investigation.noise, parallel);
   }
 }
 

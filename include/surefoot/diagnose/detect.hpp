@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/score.hpp"
 
 namespace surefoot {
@@ -34,15 +35,43 @@ inline Eigen::VectorXd series_of(const Rig& rig, std::size_t r, const SimulatedR
 
 }  // namespace detail
 
-/// Correlation of residuals over lags of `from` to `to` rows, tested over blocks. Wild single samples are cut off.
+namespace detail {
+
+/// Sums of products of neighbours `lag` rows apart, by lag, over all series.
+inline Eigen::VectorXd lagged_products(const std::vector<Eigen::VectorXd>& series, Eigen::Index from, Eigen::Index to) {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(to - from + 1);
+  for (const Eigen::VectorXd& one : series) {
+    for (Eigen::Index lag = from; lag <= std::min(to, one.size() - 1); ++lag) {
+      sums[lag - from] += one.head(one.size() - lag).dot(one.tail(one.size() - lag));
+    }
+  }
+  return sums;
+}
+
+/// Upper tail of a sum of squares with this mean and variance, as a scaled chi-square (Wilson & Hilferty 1931).
+inline double chi_square_tail(double value, double mean, double variance) {
+  if (!(mean > 0) || !(variance > 0)) return 1;
+  const double spread = variance / (9 * mean * mean);  // 2 / (9 k), for k = 2 mean^2 / variance degrees of freedom
+  return normal_tail((std::cbrt(value / mean) - (1 - spread)) / std::sqrt(spread));
+}
+
+}  // namespace detail
+
+/// Squared correlations of residuals over all lags of `from` to `to` rows (a portmanteau, after Box & Pierce 1970), so
+/// that slow errors and oscillations count alike. What noise alone would give is found by turning the signs of chunks
+/// of `from` rows at random, which keeps noise as it is if it forgets itself within that many. Wild single samples are
+/// cut off. Cost: 40 * rows * lags.
 inline Structure residual_structure(const Rig& rig, const std::vector<std::size_t>& recordings,
                                     const std::vector<SimulatedRun>& trajectories, Eigen::Index output,
                                     Eigen::Index from, Eigen::Index to) {
+  constexpr int draws = 40;
   Structure result;
   std::vector<Eigen::VectorXd> all;
   double sum = 0, count = 0;
+  Eigen::Index longest = 0;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     all.push_back(detail::series_of(rig, recordings[i], trajectories[i], output));
+    longest = std::max(longest, all.back().size());
     for (const double value : all.back()) {
       if (value == 0 || !std::isfinite(value)) continue;
       sum += value * value;
@@ -51,32 +80,34 @@ inline Structure residual_structure(const Rig& rig, const std::vector<std::size_
   }
   if (count < 1) return result;
   result.rms = std::sqrt(sum / count);
-  std::vector<double> blocks;
+  to = std::min(to, longest / 4);
+  if (to < from || longest < 6 * from) return result;
   double squares = 0;
   for (Eigen::VectorXd& series : all) {
     series = series.unaryExpr(
         [&](double v) { return std::isfinite(v) ? std::clamp(v, -5 * result.rms, 5 * result.rms) : 0.0; });
-    if (series.size() < 4 * to) continue;
-    const Eigen::Index parts = std::clamp<Eigen::Index>(series.size() / (5 * to), 1, 8);
-    for (Eigen::Index part = 0; part < parts; ++part) {
-      const Eigen::Index a = series.size() * part / parts, b = series.size() * (part + 1) / parts;
-      double product = 0;
-      for (Eigen::Index lag = from; lag <= to; ++lag) {
-        product += series.segment(a, b - a - lag).dot(series.segment(a + lag, b - a - lag)) *
-                   static_cast<double>(b - a) / static_cast<double>(b - a - lag);
-      }
-      blocks.push_back(product / static_cast<double>(to - from + 1));
-      squares += series.segment(a, b - a).squaredNorm();
-    }
+    squares += series.squaredNorm();
   }
-  if (blocks.size() < 3 || !(squares > 0)) return result;
-  double mean = 0, spread = 0;
-  for (const double block : blocks) mean += block / static_cast<double>(blocks.size());
-  for (const double block : blocks) spread += (block - mean) * (block - mean);
-  const auto n = static_cast<double>(blocks.size());
-  const double deviation = std::sqrt(spread / (n - 1) / n);
-  result.share = std::max(0.0, mean * n / squares);
-  result.p_value = deviation > 0 ? normal_tail(mean / deviation) : 1;
+  if (!(squares > 0)) return result;
+  const Eigen::VectorXd correlation = detail::lagged_products(all, from, to) / squares;
+  Rng rng(1);
+  double mean = 0, variance = 0;
+  std::vector<double> nulls;
+  std::vector<Eigen::VectorXd> turned = all;
+  for (int draw = 0; draw < draws; ++draw) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      for (Eigen::Index row = 0; row < all[i].size(); row += from) {
+        const Eigen::Index length = std::min(from, all[i].size() - row);
+        turned[i].segment(row, length) = all[i].segment(row, length) * (rng.uniform() < 0.5 ? -1.0 : 1.0);
+      }
+    }
+    nulls.push_back((detail::lagged_products(turned, from, to) / squares).squaredNorm());
+    mean += nulls.back() / draws;
+  }
+  for (const double null : nulls) variance += (null - mean) * (null - mean) / (draws - 1);
+  result.p_value = detail::chi_square_tail(correlation.squaredNorm(), mean, variance);
+  const double excess = std::max(0.0, correlation.squaredNorm() - mean) / static_cast<double>(correlation.size());
+  result.share = std::min(std::sqrt(2 * excess), correlation.cwiseAbs().maxCoeff());  // of a sine: half its square
   return result;
 }
 

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/diagnose/residual_model.hpp"
+
 namespace surefoot {
 
 enum class Verdict : std::uint8_t {
@@ -87,10 +89,28 @@ struct Remark {
   std::string recording, text;
 };
 
+/// What the noise of an output is like beyond white and of constant size.
+struct NoiseFinding {
+  std::string output, name;  // speed_dependent_noise or correlated_noise
+  std::vector<FittedValue> parameters;
+  double gain = 0;  // in log-likelihood on held-out recordings over noise without it [nat per sample]
+  double p_value = 1;
+  std::string sentence;
+};
+
 /// The smallest effect that would have been found, for a clean verdict.
 struct DetectionLimit {
   std::string name, attached_to;
   FittedValue smallest;
+};
+
+/// A forest that corrects what is simulated, offered where no effect explains a mismatch.
+struct ForestResidual {
+  bool tried = false, kept = false;  // kept only if recordings it has not seen are simulated better with it
+  double gain = 0, gain_stderr = 0;  // share of the error that goes, cross-validated on the recordings to fit
+  double heldout_before = std::numeric_limits<double>::quiet_NaN();  // errors on the test recordings
+  double heldout_after = std::numeric_limits<double>::quiet_NaN();
+  ResidualModel model;  // of the model with the effects that were found
 };
 
 struct Diagnosis {
@@ -104,6 +124,7 @@ struct Diagnosis {
   std::vector<CalibratedParameter> augmented_parameters;
   std::vector<std::string> correlated;  // pairs of parameters the recordings hardly separate
   std::string noise_sentence;           // measurement noise, or noise that accumulates
+  std::vector<NoiseFinding> noise_findings;
   std::vector<ChannelMismatch> channels;
   std::vector<MismatchRegion> regions;
   std::vector<MismatchInterval> intervals;
@@ -115,6 +136,7 @@ struct Diagnosis {
   double train_before = 0, train_after = 0;
   double test_before = 0, test_after = 0;
   double test_forest = std::numeric_limits<double>::quiet_NaN();  // a forest on residuals instead of effects
+  ForestResidual forest_residual;
   double noise_floor = std::numeric_limits<double>::quiet_NaN();
   double gain_low = 0, gain_high = 0;  // 95 % interval of test_after / test_before over recordings
   std::vector<RecordingFit> per_recording;

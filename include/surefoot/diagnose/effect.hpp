@@ -27,7 +27,7 @@ enum class Place : std::uint8_t {
 
 /// Powers of the natural measures at the place of attachment; the measure of a parameter is their product. `value`
 /// belongs to the thing attached to (velocity or state, input, output, parameter), `position` to what a velocity is the
-/// speed of, `effort` to the force on it, `time` is in seconds (steps of a map).
+/// speed of, `effort` to the force on it, `time` is that of 200 rows.
 struct Measure {
   int effort = 0, value = 0, position = 0, time = 0;
 };
@@ -93,12 +93,13 @@ struct Effect {
   std::function<double(const Moment&, Values p, Values memory)> signal = {};
   /// Delay of an input [s, or steps].
   std::function<double(Values p)> delay = {};
+  /// Starting values of the first parameter, in place of `starts`, that readings suggest: those of the sensor attached
+  /// to, or of one that reads the state attached to (for a velocity: what it is the speed of).
+  std::function<std::vector<double>(Values readings)> suggest = {};
   /// What position the equations see, for Place::velocity.
   std::function<double(const Moment&, Values p, Values memory)> seen_position = {};
   /// After each step: the state attached to, what it is the speed of, and for effects that spill another state.
   std::function<void(Values p, double& value, double& position, double& other)> limit = {};
-  /// Starting values of the first parameter, in the unit of the sensor, that its readings suggest; beside `starts`.
-  std::function<std::vector<double>(Values readings)> suggest = {};
   /// What a sensor reads.
   std::function<void(const Series&, Values p)> sensor = {};
   /// Displacement of a step from one pose (its heading is in the world) [m, m, rad].

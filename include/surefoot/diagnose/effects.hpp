@@ -72,15 +72,15 @@ inline std::vector<Effect> state_effects() {
 
 /// On the way of an input to the machine.
 inline std::vector<Effect> input_effects() {
-  return {effects::input_gain(),       effects::input_asymmetry(), effects::dead_zone(),  effects::dead_zone_step(),
-          effects::saturation(),       effects::saturation_soft(), effects::rate_limit(), effects::input_delay(),
-          effects::input_delay_long(), effects::first_order_lag(), effects::supply_sag()};
+  return {effects::input_gain(),      effects::input_asymmetry(), effects::dead_zone(),  effects::dead_zone_step(),
+          effects::saturation(),      effects::saturation_soft(), effects::rate_limit(), effects::input_delay(),
+          effects::first_order_lag(), effects::supply_sag()};
 }
 
 /// In a sensor.
 inline std::vector<Effect> sensor_effects() {
-  return {effects::sensor_bias(),  effects::sensor_scale(), effects::sensor_delay(),       effects::sensor_delay_long(),
-          effects::sensor_drift(), effects::quantization(), effects::quantization_floor(), effects::backlash_sensor()};
+  return {effects::sensor_bias(),  effects::sensor_scale(),       effects::sensor_delay(),   effects::sensor_drift(),
+          effects::quantization(), effects::quantization_floor(), effects::backlash_sensor()};
 }
 
 /// On the displacement of each step in the plane.

@@ -29,8 +29,7 @@ struct Sizes {
   std::vector<double> effort;                               // by state: of rate * effort
   std::vector<double> position;                             // by state: deviation from its mean
   std::vector<double> state_peak, input_peak, signal_peak;  // largest absolute values
-  double step = 0;                                          // median interval between rows [s]
-  double duration = 0;                                      // longest recording [s], or steps
+  double time = 1;                                          // of 200 rows [s], or steps
 };
 
 /// All sizes 1: where nothing has been simulated yet.

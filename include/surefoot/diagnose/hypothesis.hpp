@@ -58,7 +58,8 @@ inline double measure_size(const Rig& rig, const AttachedEffect& attached, const
     case Place::parameter:
       break;
   }
-  return std::pow(effort, measure.effort) * std::pow(value, measure.value) * std::pow(position, measure.position);
+  return std::pow(effort, measure.effort) * std::pow(value, measure.value) * std::pow(position, measure.position) *
+         std::pow(rig.sizes.time, measure.time);
 }
 
 namespace detail {
@@ -143,13 +144,14 @@ inline double from_search(const Variable& variable, double z) {
   return std::clamp(value, variable.low, variable.high);
 }
 
-enum class Free : unsigned char { everything, effects_only, initial_only };
+/// What a fit may change. all_but_effects: the parameters of the simulator and initial states.
+enum class Free : unsigned char { everything, all_but_effects, initial_only };
 
 /// What a fit of this hypothesis to these recordings may change, initial states last.
 inline std::vector<Variable> variables_of(const Rig& rig, const Hypothesis& hypothesis,
                                           const std::vector<std::size_t>& recordings, Free free = Free::everything) {
   std::vector<Variable> variables;
-  if (free == Free::everything) {
+  if (free != Free::initial_only) {
     for (std::size_t i = 0; i < rig.info.parameters.size(); ++i) {
       const ParameterInfo& info = rig.info.parameters[i];
       if (info.fixed || !(info.high > info.low)) continue;
@@ -159,7 +161,7 @@ inline std::vector<Variable> variables_of(const Rig& rig, const Hypothesis& hypo
                            std::max(now, 0.02 * (info.high - info.low)), logarithmic});
     }
   }
-  if (free != Free::initial_only) {
+  if (free == Free::everything) {
     for (std::size_t e = 0; e < hypothesis.effects.size(); ++e) {
       const auto& parameters = hypothesis.effects[e].effect->parameters;
       for (std::size_t k = 0; k < parameters.size(); ++k) {

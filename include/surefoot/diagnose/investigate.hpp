@@ -55,6 +55,24 @@ inline std::vector<Recording> cut_recordings(const Rig& rig, const Hypothesis& h
   return result;
 }
 
+/// An initial state that was read off a sensor is known as well as that sensor reads: it is estimated, within its
+/// noise.
+inline void free_measured_starts(Rig& rig, const std::vector<std::size_t>& training) {
+  for (std::size_t i = 0; i < rig.info.states.size(); ++i) {
+    const int output = rig.facts.output_of[i];
+    if (output < 0) continue;
+    const double stated = rig.info.outputs[static_cast<std::size_t>(output)].noise;
+    const double noise = stated > 0 ? stated : fast_noise(rig, training, output);
+    for (Recording& recording : rig.recordings) {
+      const auto state = static_cast<Eigen::Index>(i);
+      if (recording.initial_scale.size() == 0)
+        recording.initial_scale = Eigen::VectorXd::Zero(recording.initial.size());
+      if (recording.initial_scale[state] > 0 || recording.initial[state] != recording.outputs(output, 0)) continue;
+      recording.initial_scale[state] = noise;
+    }
+  }
+}
+
 /// At most `count` recordings, evenly chosen.
 inline std::vector<std::size_t> some_of(const std::vector<std::size_t>& recordings, std::size_t count) {
   if (recordings.size() <= count) return recordings;
@@ -135,6 +153,7 @@ inline Investigation investigate(const std::function<Rig(std::vector<Recording>)
   Hypothesis nominal = with_known(nominal_hypothesis(rig));
   result.noise = noise_kind(rig, nominal, split.training);
   rig.integration.restart = result.noise == NoiseKind::process ? 1 : 0;
+  if (result.noise == NoiseKind::measurement) detail::free_measured_starts(rig, split.training);
   problem.fit.integration = rig.integration;
   Fit calibrated = calibrate(rig, nominal, problem.fit, options.starts, seed, parallel);
   rig.integration = choose_integration(rig, calibrated.hypothesis, problem.fit.weighting.sigma, rig.integration,
@@ -155,6 +174,7 @@ inline Investigation investigate(const std::function<Rig(std::vector<Recording>)
 
   // Propose, fit and select.
   problem.folds = split.folds;
+  problem.known = options.known.size();
   problem.screened = detail::some_of(split.training, result.noise == NoiseKind::final_pose ? 1000 : 5);
   problem.progress = [&](const std::string& stage, double share) { progress(stage, 0.15 + 0.7 * share, ""); };
   problem.stopped = [&] {
@@ -184,7 +204,6 @@ inline Investigation investigate(const std::function<Rig(std::vector<Recording>)
       attachments(rig, effects, distinct_inputs(rig, calibrated.hypothesis, split.training, trajectories));
   SelectOptions search;
   search.max_effects = options.max_effects;
-  search.known = options.known.size();
   double rows = 1;  // small problems can afford a longer list
   for (const std::size_t r : split.training) rows += static_cast<double>(rig.recordings[r].rows());
   search.shortlist = static_cast<std::size_t>(std::clamp(14 * 6000 / rows, 14.0, 50.0));

@@ -23,17 +23,8 @@ inline Mismatch measure_mismatch(const Rig& rig, const std::vector<std::size_t>&
                                  NoiseKind noise, std::vector<Structure>* by_output = nullptr) {
   Mismatch result;
   for (Eigen::Index k = 0; k < sigma.size(); ++k) {
-    Structure structure;
-    if (noise == NoiseKind::process) {  // errors of single steps: any lag may show it, a gait has a period
-      constexpr Eigen::Index lags = 4;
-      for (Eigen::Index lag = 1; lag <= lags; ++lag) {
-        Structure one = residual_structure(rig, recordings, trajectories, k, lag, lag);
-        one.p_value = std::min(1.0, one.p_value * lags);
-        if (one.p_value < structure.p_value || lag == 1) structure = one;
-      }
-    } else {
-      structure = residual_structure(rig, recordings, trajectories, k, 6, 12);
-    }
+    const Eigen::Index memory = noise == NoiseKind::process ? 3 : 8;  // rows over which noise may be correlated
+    const Structure structure = residual_structure(rig, recordings, trajectories, k, memory, 10 * memory);
     if (by_output != nullptr) by_output->push_back(structure);
     result.energy += structure.share * structure.rms * structure.rms / (sigma[k] * sigma[k]);
     if (structure.p_value < 0.01) result.share = std::max(result.share, structure.share);

@@ -55,6 +55,18 @@ struct ParallelExecutor {
   }
 };
 
+/// The unit of errors, by output: its stated noise or, where none is stated, its spread over the recordings.
+inline Eigen::VectorXd error_scale(const Rig& rig) {
+  std::vector<std::size_t> all(rig.recordings.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  Eigen::VectorXd scale = output_spreads(rig, all);
+  for (Eigen::Index k = 0; k < scale.size(); ++k) {
+    const double noise = rig.info.outputs[static_cast<std::size_t>(k)].noise;
+    if (noise > 0) scale[k] = noise;
+  }
+  return scale;
+}
+
 /// Errors on the test recordings: whole recordings are simulated, whatever the fit did.
 inline void prove(Investigation& investigation, const Hypothesis& calibrated, const Hypothesis& chosen,
                   const Parallel& parallel, std::uint64_t seed) {
@@ -64,14 +76,7 @@ inline void prove(Investigation& investigation, const Hypothesis& calibrated, co
   const auto& test = investigation.split.test;
   Integration whole = rig.integration;
   whole.restart = 0;
-  std::vector<std::size_t> all(rig.recordings.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  const Eigen::VectorXd spreads = output_spreads(rig, all);
-  Eigen::VectorXd scale = spreads;
-  for (Eigen::Index k = 0; k < scale.size(); ++k) {
-    const double noise = rig.info.outputs[static_cast<std::size_t>(k)].noise;
-    if (noise > 0) scale[k] = noise;
-  }
+  const Eigen::VectorXd scale = error_scale(rig);
   // Unknown initial states of test recordings are estimated for each model alike.
   FitProblem initial = investigation.problem.fit;
   initial.recordings = test;
@@ -120,20 +125,32 @@ inline void prove(Investigation& investigation, const Hypothesis& calibrated, co
   diagnosis.gain_low = ratios[9];
   diagnosis.gain_high = ratios[389];
 
-  // A forest on the residuals of the calibrated model instead.
-  Eigen::Index rows = 0, test_rows = 0;
-  for (const std::size_t r : training) rows += rig.recordings[r].rows();
-  for (const std::size_t r : test) test_rows += rig.recordings[r].rows();
   if (investigation.noise != NoiseKind::final_pose) {
-    const FeatureTable table = make_features(rig, training, before, std::max<Eigen::Index>(1, rows / 8000));
-    const ResidualForest forest = train_residual_forest(table, residual_table(rig, training, before, scale, table),
-                                                        ParallelExecutor{&parallel}, seed);
-    const FeatureTable unseen = make_features(rig, test, runs[1], std::max<Eigen::Index>(1, test_rows / 8000));
-    const Eigen::MatrixXd residuals = residual_table(rig, test, runs[1], scale, unseen);
-    const double untouched =
-        std::sqrt(residuals.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, residuals.size())));
-    if (untouched > 0)
-      diagnosis.test_forest = diagnosis.test_before * left_after(forest, unseen, residuals) / untouched;
+    const ParallelExecutor executor{&parallel};
+    const auto corrected_error = [&](const std::vector<SimulatedRun>& simulated, const ResidualModel& model) {
+      std::vector<double> left;
+      for (std::size_t i = 0; i < test.size(); ++i) {
+        left.push_back(recording_error(rig, test[i], corrected(rig, test[i], simulated[i], model), scale));
+      }
+      return over_all(left, counts);
+    };
+    // A forest on the residuals of the calibrated model instead of effects.
+    diagnosis.test_forest = corrected_error(runs[1], train_residual_model(rig, training, before, executor, seed));
+    // And beside them, where they do not explain everything.
+    if (diagnosis.verdict == Verdict::unexplained) {
+      ForestResidual& offer = diagnosis.forest_residual;
+      Weighting weighting = investigation.problem.fit.weighting;
+      weighting.sigma = residual_sizes(rig, training, after);
+      const Comparison unseen =
+          cross_validate_residual(rig, training, after, investigation.split.folds, weighting, executor, seed);
+      offer.tried = true;
+      offer.gain = unseen.gain;
+      offer.gain_stderr = unseen.stderr_;
+      offer.model = train_residual_model(rig, training, after, executor, seed);
+      offer.heldout_before = diagnosis.test_after;
+      offer.heldout_after = corrected_error(runs[2], offer.model);
+      offer.kept = unseen.gain > 0.03 && unseen.t > 2.5 && offer.heldout_after < offer.heldout_before;
+    }
   }
 
   // By output.

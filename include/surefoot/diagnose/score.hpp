@@ -13,7 +13,8 @@ namespace surefoot {
 
 /// Robust squared residuals summed over blocks of the recordings; the blocks are the same for every hypothesis.
 struct Score {
-  std::vector<double> blocks, counts;
+  std::vector<double> blocks = {}, counts = {};
+  std::vector<std::size_t> ends = {};  // by recording: of its blocks
 
   double total() const {
     double sum = 0;
@@ -24,6 +25,18 @@ struct Score {
     double sum = 0;
     for (const double count : counts) sum += count;
     return sum;
+  }
+  std::vector<double> by_recording() const {
+    std::vector<double> sums(ends.size(), 0.0);
+    for (std::size_t r = 0; r < ends.size(); ++r) {
+      for (std::size_t b = r == 0 ? 0 : ends[r - 1]; b < ends[r]; ++b) sums[r] += blocks[b];
+    }
+    return sums;
+  }
+  void append(const Score& other) {
+    for (const std::size_t end : other.ends) ends.push_back(blocks.size() + end);
+    blocks.insert(blocks.end(), other.blocks.begin(), other.blocks.end());
+    counts.insert(counts.end(), other.counts.begin(), other.counts.end());
   }
   /// Root mean square in units of the weighting.
   double rms() const { return cells() > 0 ? std::sqrt(total() / cells()) : 0; }
@@ -42,6 +55,7 @@ inline void add_to_score(Score& score, const Eigen::VectorXd& residuals, double 
     score.blocks.push_back(loss);
     score.counts.push_back(static_cast<double>(part.size()));
   }
+  score.ends.push_back(score.blocks.size());
 }
 
 /// Score of a hypothesis as it is, on some recordings.
@@ -86,24 +100,47 @@ inline double t_value(const std::vector<double>& differences) {
   return deviation > 0 ? std::clamp(mean / deviation, -1e3, 1e3) : (mean > 0 ? 1e3 : mean < 0 ? -1e3 : 0);
 }
 
-/// Paired over blocks, twice: by the losses themselves, and by their relative differences (a - b) / (a + b), which a
-/// few blocks with large losses cannot decide. The better of both counts, and pays for the choice.
+namespace detail {
+
+/// One more way to test the differences between two lists of losses; the best one counts.
+inline void test_losses(const std::vector<double>& before, const std::vector<double>& after, Comparison& best) {
+  std::vector<double> absolute, relative;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double d = before[i] - after[i], sum = before[i] + after[i];
+    absolute.push_back(d);
+    relative.push_back(sum > 0 ? d / sum : 0);
+  }
+  const auto dof = static_cast<double>(before.size()) - 1;
+  for (const double t : {t_value(absolute), t_value(relative)}) {
+    const double p = student_tail(t, dof);
+    if (p >= best.p_value) continue;
+    best.p_value = p;
+    best.t = t;
+  }
+}
+
+}  // namespace detail
+
+/// Paired over blocks, and over whole recordings where there are at least six: by the losses themselves, and by their
+/// relative differences (a - b) / (a + b), which a few with large losses cannot decide. The best counts, and pays for
+/// the choice.
 inline Comparison compare_scores(const Score& before, const Score& after) {
   Comparison result;
   const double a = before.total(), b = after.total();
   if (before.blocks.empty() || !(a > 0)) return result;
   result.gain = 1 - std::sqrt(b / a);
-  std::vector<double> absolute, relative;
-  for (std::size_t i = 0; i < before.blocks.size(); ++i) {
-    const double d = before.blocks[i] - after.blocks[i], sum = before.blocks[i] + after.blocks[i];
-    absolute.push_back(d);
-    relative.push_back(sum > 0 ? d / sum : 0);
-  }
-  const double t_absolute = t_value(absolute), t_relative = t_value(relative);
-  result.t = a > b ? std::max(t_absolute, t_relative) : t_absolute;
   const auto n = static_cast<double>(before.blocks.size());
-  result.p_value = std::min(1.0, 2 * student_tail(result.t, n - 1));
   if (n < 2) return result;
+  if (b < a) {
+    const bool by_recording = before.ends.size() >= 6;
+    detail::test_losses(before.blocks, after.blocks, result);
+    if (by_recording) detail::test_losses(before.by_recording(), after.by_recording(), result);
+    result.p_value = std::min(1.0, (by_recording ? 4 : 2) * result.p_value);
+  } else {
+    std::vector<double> differences;
+    for (std::size_t i = 0; i < before.blocks.size(); ++i) differences.push_back(before.blocks[i] - after.blocks[i]);
+    result.t = t_value(differences);
+  }
   double squares = 0;  // of the ratio b / a, which the gain is the root of
   for (std::size_t i = 0; i < before.blocks.size(); ++i) {
     const double off = after.blocks[i] - b / a * before.blocks[i];
@@ -135,8 +172,7 @@ inline CrossValidation cross_validate(const Rig& rig, const Hypothesis& start, c
     initial.free = Free::initial_only;
     if (free_start(rig, folds[k])) fitted = fit(rig, fitted.hypothesis, initial, parallel);
     const Score one = score(rig, fitted.hypothesis, folds[k], problem.weighting, problem.integration, parallel);
-    result.score.blocks.insert(result.score.blocks.end(), one.blocks.begin(), one.blocks.end());
-    result.score.counts.insert(result.score.counts.end(), one.counts.begin(), one.counts.end());
+    result.score.append(one);
     result.folds.push_back(fitted.hypothesis);
   }
   return result;

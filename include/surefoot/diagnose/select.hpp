@@ -5,43 +5,15 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "surefoot/diagnose/judge.hpp"
 #include "surefoot/diagnose/propose.hpp"
-#include "surefoot/diagnose/score.hpp"
 
 namespace surefoot {
-
-struct SelectOptions {
-  int max_effects = 4;
-  double min_gain = 0.03;      // share of the held-out error that an effect must take away
-  double min_t = 2.5;          // and in standard errors of that gain
-  double significance = 0.02;  // after correction for the number of candidates
-  double least_share = 0.03;   // of the error without effects, that an effect must take away
-  double decisive_gain = 0.5;  // or of the error that is left
-  double large_gain = 0.1;     // is believed at 0.005 without that correction: it may come from few recordings
-  std::size_t known = 0;       // effects that are part of the model already: the first ones, never removed
-  std::size_t shortlist = 14;  // proposals that get a fit
-  std::size_t finalists = 4;   // fits that are judged on held-out recordings
-};
-
-/// A hypothesis with its held-out score.
-struct Judged {
-  Hypothesis hypothesis;
-  double loss = 0;  // on the recordings of the fit
-  Score heldout;
-  Comparison gain;  // against its parent
-
-  std::size_t numbers() const {
-    std::size_t count = 0;
-    for (const Eigen::VectorXd& values : hypothesis.values) count += static_cast<std::size_t>(values.size());
-    return count;
-  }
-};
 
 struct Selection {
   Judged nominal;  // without effects
@@ -51,27 +23,7 @@ struct Selection {
   std::size_t candidates = 0;        // how many were tried
 };
 
-/// What a search works on.
-struct SelectProblem {
-  FitProblem fit;                               // all recordings but the test
-  std::vector<std::vector<std::size_t>> folds;  // of the same recordings
-  std::vector<std::size_t> screened;            // the part of them that screens proposals
-  /// Whether the residuals of a hypothesis still hold what noise does not; where not, only strong proposals get a fit.
-  std::function<bool(const Hypothesis&)> structured = [](const Hypothesis&) { return true; };
-  std::function<void(const std::string&, double)> progress = [](const std::string&, double) {};
-  std::function<bool()> stopped = [] { return false; };
-};
-
 namespace detail {
-
-inline Judged judge(const Rig& rig, const Fit& fitted, const SelectProblem& problem, const Parallel& parallel) {
-  Judged result{fitted.hypothesis, fitted.loss, {}, {}};
-  FitProblem quick = problem.fit;
-  quick.max_iterations = 6;
-  quick.tolerance = 1e-3;
-  result.heldout = cross_validate(rig, fitted.hypothesis, quick, problem.folds, parallel).score;
-  return result;
-}
 
 /// Fits parent plus proposals, all at once in parallel; the weakest are given up after a few iterations.
 inline std::vector<Fit> fit_children(const Rig& rig, const Hypothesis& parent,
@@ -83,11 +35,16 @@ inline std::vector<Fit> fit_children(const Rig& rig, const Hypothesis& parent,
     FitProblem quick = problem.fit;
     quick.recordings = problem.screened;
     quick.max_iterations = 3;
-    const auto attempt = [&](const std::vector<Eigen::VectorXd>& starts) {
+    const auto attempt = [&](const std::vector<Eigen::VectorXd>& starts, bool settle = false) {
       Hypothesis child = parent;
       for (std::size_t k = 0; k < starts.size(); ++k) {
         child.effects.push_back(additions[i][k].effect);
         child.values.push_back(starts[k]);
+      }
+      if (settle) {
+        FitProblem around = quick;
+        around.free = Free::all_but_effects;
+        child = fit(rig, child, around, serially()).hypothesis;
       }
       const Fit one = fit(rig, child, quick, serially());
       if (one.ok && one.loss < fits[i].loss) fits[i] = one;
@@ -100,12 +57,12 @@ inline std::vector<Fit> fit_children(const Rig& rig, const Hypothesis& parent,
         if (addition.effect.effect->parameters[k].strength) weak.back()[static_cast<Eigen::Index>(k)] *= 0.3;
       }
     }
-    attempt(best);
     const bool scalable = best != weak;
+    attempt(best, !scalable);  // what cannot grow from nothing begins with everything else settled around it
     if (scalable && !(fits[i].loss < 0.97)) attempt(weak);  // the linear guess may have been too bold
     if (!scalable && additions[i].size() == 1) {
       const auto& others = additions[i].front().more_starts;
-      for (std::size_t k = 0; k < std::min<std::size_t>(2, others.size()); ++k) attempt({others[k]});
+      for (std::size_t k = 0; k < std::min<std::size_t>(2, others.size()); ++k) attempt({others[k]}, true);
     }
   });
   std::erase_if(fits, [](const Fit& one) { return !one.ok; });
@@ -118,44 +75,6 @@ inline std::vector<Fit> fit_children(const Rig& rig, const Hypothesis& parent,
   return fits;
 }
 
-/// Fewer numbers, or as many with effects that stand earlier in the catalogue (which begins with the simplest).
-inline bool simpler(const Hypothesis& a, const Hypothesis& b) {
-  const auto measure = [](const Hypothesis& h) {
-    std::pair<std::size_t, int> sum{0, 0};
-    for (std::size_t e = 0; e < h.effects.size(); ++e) {
-      sum.first += static_cast<std::size_t>(h.values[e].size());
-      sum.second += h.effects[e].rank;
-    }
-    return sum;
-  };
-  return measure(a) < measure(b);
-}
-
-/// The best of some judged hypotheses: the fewest numbers among those that are not clearly worse than the best.
-inline std::size_t most_plausible(const std::vector<Judged>& judged) {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < judged.size(); ++i) {
-    if (judged[i].heldout.total() < judged[best].heldout.total()) best = i;
-  }
-  std::size_t choice = best;
-  for (std::size_t i = 0; i < judged.size(); ++i) {
-    if (i == best || !simpler(judged[i].hypothesis, judged[choice].hypothesis)) continue;
-    const Comparison lead = compare_scores(judged[i].heldout, judged[best].heldout);
-    const bool fewer = judged[i].numbers() < judged[choice].numbers();
-    const bool all_but = judged[i].gain.gain >= 0.985 * judged[best].gain.gain && judged[i].gain.gain > 0;
-    if (lead.gain < 0.01 || (fewer && lead.t < 1.5) || all_but) choice = i;
-  }
-  return choice;
-}
-
-/// `parent` is the error before, as a share of the error without effects.
-inline bool accepted(const Comparison& gain, std::size_t tried, double parent, const SelectOptions& options) {
-  if (gain.gain * parent < options.least_share && gain.gain < options.decisive_gain) return false;
-  const bool significant = gain.p_value * static_cast<double>(std::max<std::size_t>(1, tried)) <= options.significance;
-  return gain.gain >= options.min_gain && gain.t >= options.min_t &&
-         (significant || (gain.gain >= options.large_gain && gain.p_value <= 0.005));
-}
-
 inline std::vector<Judged> judge_all(const Rig& rig, const std::vector<Fit>& fits, const Judged& parent,
                                      const SelectProblem& problem, std::size_t keep, const Parallel& parallel) {
   while (keep < fits.size() && fits[keep].loss < 1.05 * fits.front().loss + 1e-300 && keep < 9) ++keep;  // near ties
@@ -164,6 +83,8 @@ inline std::vector<Judged> judge_all(const Rig& rig, const std::vector<Fit>& fit
     if (problem.stopped()) return;
     judged[i] = judge(rig, fits[i], problem, serially());
     judged[i].gain = compare_scores(parent.heldout, judged[i].heldout);
+    // numbers that cannot be told from zero speak against what was added, and against what that leaves undetermined
+    if (!determined(rig, fits[i].hypothesis, problem.known, problem.fit, serially())) judged[i].heldout = {};
   });
   std::erase_if(judged, [](const Judged& one) { return one.heldout.blocks.empty(); });
   return judged;
@@ -243,7 +164,7 @@ inline Selection select_effects(const Rig& rig, const Fit& calibrated, SelectPro
   selection.nominal = detail::judge(rig, calibrated, problem, parallel);
   selection.chosen = selection.nominal;
   std::vector<Judged> refused;
-  const std::size_t known = options.known, most = known + static_cast<std::size_t>(options.max_effects);
+  const std::size_t known = problem.known, most = known + static_cast<std::size_t>(options.max_effects);
   while (selection.chosen.hypothesis.effects.size() < most && !problem.stopped()) {
     const auto depth = static_cast<double>(selection.chosen.hypothesis.effects.size() - known);
     problem.progress("searching effect " + std::to_string(static_cast<int>(depth) + 1), depth / options.max_effects);
@@ -251,27 +172,18 @@ inline Selection select_effects(const Rig& rig, const Fit& calibrated, SelectPro
     std::vector<Judged> next =
         next_effects(rig, selection.chosen, problem, candidates, options, least_gain(structured), parallel);
     const double share = selection.chosen.heldout.rms() / std::max(selection.nominal.heldout.rms(), 1e-300);
-    std::size_t tried = candidates.size(), choice = next.empty() ? 0 : detail::most_plausible(next);
-    if ((next.empty() || !detail::accepted(next[choice].gain, tried, share, options)) && structured &&
-        selection.chosen.hypothesis.effects.size() + 2 <= most && !problem.stopped()) {
+    std::optional<std::size_t> choice = detail::most_plausible_accepted(next, candidates.size(), share, options);
+    if (!choice && structured && selection.chosen.hypothesis.effects.size() + 2 <= most && !problem.stopped()) {
       const std::vector<Judged> pairs = next_pairs(rig, selection.chosen, problem, candidates, parallel);
-      if (!pairs.empty()) {
-        const std::size_t pair = detail::most_plausible(pairs);
-        if (detail::accepted(pairs[pair].gain, tried * 15, share, options)) {
-          next = pairs;
-          choice = pair;
-          tried *= 15;
-        }
-      }
+      choice = detail::most_plausible_accepted(pairs, 15 * candidates.size(), share, options);
+      if (choice) next = pairs;
     }
-    if (next.empty()) break;
-    if (!detail::accepted(next[choice].gain, tried, share, options)) {
+    if (!choice) {
       refused = next;
       break;
     }
-    selection.chosen = next[choice];
-    refused.clear();
-    next.erase(next.begin() + static_cast<std::ptrdiff_t>(choice));
+    selection.chosen = next[*choice];
+    next.erase(next.begin() + static_cast<std::ptrdiff_t>(*choice));
     selection.alternatives = next;
     // Backward: whatever is no longer worth its numbers goes.
     for (std::size_t i = known;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/extremes.hpp"
 
 namespace surefoot::effects {
 
@@ -17,13 +18,14 @@ Effect end_stop_of(std::string form) {
           .place = Place::velocity,
           .parameters = {{.name = "level",
                           .measure = {.position = 1},
-                          .low = -6,
-                          .high = 6,
+                          .low = -12,
+                          .high = 12,
                           .starts = {0.6 * Side, 1.0 * Side, 1.5 * Side}},
                          {.name = "restitution", .measure = {}, .low = 0, .high = 0.95, .starts = {0.1}}},
           .confusable_with = {"saturation", "cubic_stiffness", "coulomb_friction"},
           .experiment = "push slowly against the suspected stop, then hit it at two speeds",
           .form = std::move(form),
+          .suggest = Side > 0 ? near_largest : near_smallest,
           .limit = [](Values p, double& value, double& position, double&) {
             if (Side * (position - p[0]) <= 0) return;
             position = p[0];

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/extremes.hpp"
 
 namespace surefoot::effects {
 
@@ -18,6 +19,7 @@ inline Effect overflow() {
                           .of_peak = true}},
           .confusable_with = {"saturation", "leak"},
           .experiment = "fill it well beyond the suspected level, slowly and quickly, and let it fall again",
+          .suggest = detail::near_largest,
           .limit = [](Values p, double& value, double&, double&) {
             if (value > p[0]) value = p[0];
           }};
@@ -38,6 +40,7 @@ inline Effect overflow_spill() {
           .experiment = "fill it well beyond the suspected level, slowly and quickly, and watch where it goes",
           .form = "spill",
           .spills = true,
+          .suggest = detail::near_largest,
           .limit = [](Values p, double& value, double&, double& other) {
             if (value <= p[0]) return;
             other += p[1] * (value - p[0]);

@@ -14,7 +14,7 @@ inline Effect parameter_drift() {
           .sentence = "parameter {at} changes by a share of {rate}",
           .place = Place::parameter,
           .parameters =
-              {{.name = "rate", .measure = {.time = -1}, .low = -1, .high = 1, .starts = {0.001}, .strength = true}},
+              {{.name = "rate", .measure = {.time = -1}, .low = -20, .high = 20, .starts = {0.001}, .strength = true}},
           .confusable_with = {"sensor_drift", "supply_sag", "leak"},
           .experiment = "repeat one and the same motion for as long as the machine runs, without a break",
           .factor = [](const Moment& m, Values p) { return std::max(0.05, 1 + p[0] * m.time); }};

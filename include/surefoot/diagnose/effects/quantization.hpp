@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <vector>
 
@@ -42,15 +43,40 @@ inline std::vector<double> lattice_steps(Values readings) {
     if (seen[part] > 0) one_per_part.push_back(kept[part]);
   }
   if (one_per_part.size() < 8) return {};
-  for (double step = range / 6; step > range / 1000; step *= 1 - 0.1 * step / range) {
+  const auto crowding = [&](double step) {
     double cosine = 0, sine = 0;
     for (const double reading : one_per_part) {
       const double angle = 2 * std::numbers::pi * reading / step;
       cosine += std::cos(angle);
       sine += std::sin(angle);
     }
-    const double share = std::hypot(cosine, sine) / static_cast<double>(one_per_part.size());
-    if (share > 0.5 && share * share * static_cast<double>(one_per_part.size()) > 25) return {step};
+    return std::hypot(cosine, sine) / static_cast<double>(one_per_part.size());
+  };
+  // Directions of all readings, turned on from one frequency to the next.
+  std::vector<std::complex<double>> direction, turn;
+  for (const double reading : one_per_part) {
+    const double at = 2 * std::numbers::pi * (reading - least) / range;
+    direction.push_back(std::polar(1.0, 6 * at));
+    turn.push_back(std::polar(1.0, 0.1 * at));
+  }
+  const auto count = static_cast<double>(one_per_part.size());
+  for (double frequency = 6; frequency < 1000; frequency += 0.1) {  // steps in the range
+    std::complex<double> sum = 0;
+    for (std::size_t i = 0; i < direction.size(); ++i) {
+      sum += direction[i];
+      direction[i] *= turn[i];
+    }
+    double share = std::abs(sum) / count, step = range / frequency;
+    if (share < 0.5 || share * share * count < 25) continue;
+    for (double width = 0.1 / frequency; width > 1e-5; width *= 0.5) {  // uphill to the top of the peak
+      for (const double next : {step * (1 - width), step * (1 + width)}) {
+        const double there = crowding(next);
+        if (there <= share) continue;
+        share = there;
+        step = next;
+      }
+    }
+    return {step};
   }
   return {};
 }

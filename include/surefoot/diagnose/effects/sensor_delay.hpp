@@ -1,5 +1,5 @@
 // A sensor that reads late: y(t - delay), interpolated between rows; before the first row its value there counts. Delay
-// in seconds, for maps in steps. Form "long": seconds instead of hundredths. Cost: linear in the rows.
+// in seconds, for maps in steps. Cost: linear in the rows.
 // Confusable with a late input (the near twin unless the sensor is fed back) and with a lag.
 #pragma once
 
@@ -31,26 +31,21 @@ inline void read_late(const Series& series, double delay) {
   }
 }
 
-inline Effect sensor_delay_of(std::string form, double high, std::vector<double> starts) {
+}  // namespace detail
+
+inline Effect sensor_delay() {
   return {.name = "sensor_delay",
           .sentence = "the sensor {at} reads {delay} late",
           .place = Place::output,
           .parameters = {{.name = "delay",
                           .measure = {.time = 1},
                           .low = 0,
-                          .high = high,
-                          .starts = std::move(starts),
+                          .high = 0.5,
+                          .starts = {0.002, 0.01, 0.05},
                           .strength = true}},
           .confusable_with = {"input_delay", "first_order_lag", "backlash"},
           .experiment = "move it by hand, or by a known drive, past a mark seen by a second sensor",
-          .form = std::move(form),
-          .sensor = [](const Series& series, Values p) { read_late(series, p[0]); }};
+          .sensor = [](const Series& series, Values p) { detail::read_late(series, p[0]); }};
 }
-
-}  // namespace detail
-
-inline Effect sensor_delay() { return detail::sensor_delay_of("", 0.3, {0.002, 0.01, 0.05}); }
-
-inline Effect sensor_delay_long() { return detail::sensor_delay_of("long", 10, {1, 3}); }
 
 }  // namespace surefoot::effects

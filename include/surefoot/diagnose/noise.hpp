@@ -1,0 +1,266 @@
+// What the noise of an output is like: white and of constant size, growing with speed, correlated from row to row. The
+// likelihood decides, on recordings not used for the fit; an error in the mean cannot show it.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "surefoot/diagnose/calibrate.hpp"
+#include "surefoot/diagnose/diagnosis.hpp"
+#include "surefoot/diagnose/noise_model.hpp"
+#include "surefoot/diagnose/process_noise.hpp"
+#include "surefoot/diagnose/score.hpp"
+#include "surefoot/diagnose/wording.hpp"
+
+namespace surefoot {
+
+/// When to speak of more than white noise.
+struct NoiseCriteria {
+  double gain = 0.01;            // least gain in log-likelihood [nat per sample]
+  double p_value = 1e-3;         // largest, over held-out blocks
+  double rows = 8;               // what is correlated for longer is no noise but missing physics (see detect.hpp)
+  double rows_beside_white = 4;  // the same where only a part is correlated: noise, and the rest of a model error
+};
+
+namespace detail {
+
+inline NoiseSeries part_of(const NoiseSeries& whole, Eigen::Index from, Eigen::Index length) {
+  return {whole.time.segment(from, length), whole.value.segment(from, length), whole.speed.segment(from, length)};
+}
+
+/// Few series are cut, so that some can be held out.
+inline std::vector<NoiseSeries> noise_parts(const std::vector<NoiseSeries>& series, std::size_t wanted) {
+  std::vector<NoiseSeries> parts;
+  for (const NoiseSeries& one : series) {
+    const Eigen::Index size = one.value.size();
+    const auto most = static_cast<Eigen::Index>((wanted + series.size() - 1) / series.size());
+    const Eigen::Index count = std::clamp<Eigen::Index>(size / 40, 1, most);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Eigen::Index from = size * i / count, length = size * (i + 1) / count - from;
+      parts.push_back(part_of(one, from, length));
+    }
+  }
+  return parts;
+}
+
+/// Log-likelihood of held-out blocks, each by a fit to the other folds, close to that to all; and how many samples.
+inline std::pair<std::vector<double>, double> heldout_likelihood(const std::vector<NoiseSeries>& parts,
+                                                                 const NoiseFit& all) {
+  constexpr std::size_t folds = 4;
+  std::vector<double> blocks;
+  double samples = 0;
+  for (std::size_t fold = 0; fold < folds; ++fold) {
+    std::vector<NoiseSeries> others;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      if (i % folds != fold) others.push_back(parts[i]);
+    }
+    const NoiseModel model = refit_noise(others, all);
+    for (std::size_t i = fold; i < parts.size(); i += folds) {
+      const Eigen::VectorXd each = log_likelihoods(model, parts[i]);
+      const Eigen::Index count = blocks_of(each.size());
+      for (Eigen::Index b = 0; b < count; ++b) {
+        const Eigen::Index from = each.size() * b / count, to = each.size() * (b + 1) / count;
+        blocks.push_back(each.segment(from, to - from).sum());
+      }
+      samples += static_cast<double>(each.size());
+    }
+  }
+  return {blocks, samples};
+}
+
+struct NoiseEvidence {
+  double gain = 0, p_value = 1;
+};
+
+/// Evidence for `with` against `without`, both fitted to all parts, in pairs over held-out blocks.
+inline NoiseEvidence noise_evidence(const std::vector<NoiseSeries>& parts, const NoiseFit& with,
+                                    const NoiseFit& without) {
+  const auto [after, samples] = heldout_likelihood(parts, with);
+  const auto [before, same] = heldout_likelihood(parts, without);
+  std::vector<double> gains;
+  double sum = 0;
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    gains.push_back(after[i] - before[i]);
+    sum += gains.back();
+  }
+  if (gains.size() < 6 || !(samples > 0)) return {};
+  return {sum / samples, student_tail(t_value(gains), static_cast<double>(gains.size()) - 1)};
+}
+
+/// `white`, or a fit with a memory that explains all series better, by the Bayesian information criterion.
+inline NoiseFit best_memory(const std::vector<NoiseSeries>& series, const NoiseFit& white) {
+  double samples = 0;
+  for (const NoiseSeries& one : series) samples += static_cast<double>(one.value.size());
+  const auto criterion = [&](const NoiseFit& fit) {
+    return fit.shape.numbers() * std::log(samples) - 2 * fit.log_likelihood;
+  };
+  NoiseFit best = white;
+  for (const NoiseMemory memory : {NoiseMemory::fading, NoiseMemory::fading_and_white}) {
+    const NoiseFit one = fit_noise(series, {memory, white.shape.grows});
+    if (criterion(one) < criterion(best)) best = one;
+  }
+  return best;
+}
+
+/// Typical interval between samples.
+inline double row_interval(const std::vector<NoiseSeries>& series) { return NoiseCoordinates({}, series).row(); }
+
+inline double typical_speed(const std::vector<NoiseSeries>& series) {
+  double sum = 0, count = 0;
+  for (const NoiseSeries& one : series) {
+    sum += one.speed.squaredNorm();
+    count += static_cast<double>(one.speed.size());
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+}  // namespace detail
+
+/// Finds what the noise of one output is like from its residuals. `tests`: how many outputs are asked about. Not for
+/// residuals that hold missing physics, which looks like either.
+inline std::vector<NoiseFinding> find_noise(const std::vector<NoiseSeries>& series, const OutputInfo& output,
+                                            SimulatorKind kind, std::size_t tests = 1,
+                                            const NoiseCriteria& criteria = {}) {
+  const std::vector<NoiseSeries> parts = detail::noise_parts(series, 8);
+  if (parts.size() < 4) return {};
+  const std::string time_unit = kind == SimulatorKind::ode ? "s" : "rows";
+  const NoiseFit white = fit_noise(parts, {NoiseMemory::none, true}), remembering = detail::best_memory(parts, white);
+  const NoiseMemory memory = remembering.shape.memory;
+  const auto convincing = [&](detail::NoiseEvidence& evidence) {
+    evidence.p_value = std::min(1.0, evidence.p_value * 2 * static_cast<double>(tests));
+    return evidence.gain > criteria.gain && evidence.p_value < criteria.p_value;
+  };
+
+  detail::NoiseEvidence remembers;
+  bool correlated = false;
+  if (memory != NoiseMemory::none) {
+    remembers = detail::noise_evidence(parts, remembering, white);
+    correlated = convincing(remembers);
+  }
+  const NoiseFit& grown = correlated ? remembering : white;
+  const NoiseFit constant = fit_noise(parts, {grown.shape.memory, false});
+  detail::NoiseEvidence grows = detail::noise_evidence(parts, grown, constant);
+  const bool growing = convincing(grows);
+  const NoiseFit& fit = growing ? grown : constant;
+  const double longest = fit.shape.memory == NoiseMemory::fading ? criteria.rows : criteria.rows_beside_white;
+  const bool too_long = fit.model.time > longest * detail::row_interval(series);
+  if (correlated && too_long) return {};
+
+  std::vector<NoiseFinding> findings;
+  const auto number = [&fit](const char* name, const std::string& unit, double NoiseModel::* of) {
+    return FittedValue{name, unit, fit.model.*of, fit.low.*of, fit.high.*of};
+  };
+  if (growing) {
+    const double speed = detail::typical_speed(series);
+    const bool compound = output.unit.find('/') != std::string::npos;
+    const std::string per = (compound              ? "(" + output.unit + ")"
+                             : output.unit.empty() ? "1"
+                                                   : output.unit) +
+                            (kind == SimulatorKind::ode ? "/s" : "/row");
+    NoiseFinding one{output.name, "speed_dependent_noise", {}, grows.gain, grows.p_value, ""};
+    one.parameters = {number("rest", output.unit, &NoiseModel::rest), number("growth", time_unit, &NoiseModel::growth)};
+    one.sentence = "noise of " + output.name + " grows with its speed, from " + with_unit(fit.model.rest, output.unit) +
+                   " at rest to " + with_unit(std::hypot(fit.model.rest, fit.model.growth * speed), output.unit) +
+                   " at " + with_unit(speed, per);
+    findings.push_back(std::move(one));
+  }
+  if (correlated) {
+    NoiseFinding one{output.name, "correlated_noise", {}, remembers.gain, remembers.p_value, ""};
+    one.parameters = {number("time", time_unit, &NoiseModel::time)};
+    if (memory == NoiseMemory::fading_and_white) one.parameters.push_back(number("share", "1", &NoiseModel::share));
+    one.sentence = "noise of " + output.name + " is correlated over " + with_unit(fit.model.time, time_unit);
+    findings.push_back(std::move(one));
+  }
+  return findings;
+}
+
+namespace detail {
+
+/// Residuals of one output about their mean, with its simulated speed; without samples beyond six times `size`.
+inline NoiseSeries noise_series(const Rig& rig, std::size_t r, const SimulatedRun& run, Eigen::Index output,
+                                double size, bool stepwise) {
+  const Recording& recording = rig.recordings[r];
+  const std::vector<Cell> cells = cells_of(recording);
+  const Eigen::VectorXd off = raw_residuals(rig, r, run, cells);
+  const bool wrapped = rig.wrapped[static_cast<std::size_t>(output)];
+  const auto speed = [&](Eigen::Index row) {
+    const Eigen::Index from = std::max<Eigen::Index>(row - 1, 0);
+    const Eigen::Index to = stepwise ? row : std::min(row + 1, recording.rows() - 1);
+    double before = run.outputs(output, from);
+    if (stepwise && std::isfinite(recording.outputs(output, from))) before = recording.outputs(output, from);
+    const double moved = run.outputs(output, to) - before, time = recording.time[to] - recording.time[from];
+    return time > 0 ? (wrapped ? wrap_angle(moved) : moved) / time : 0.0;
+  };
+  std::vector<double> times, values, speeds;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double value = off[static_cast<Eigen::Index>(i)];
+    if (cells[i].output != output || !(std::abs(value) <= 6 * size)) continue;
+    times.push_back(recording.time[cells[i].row]);
+    values.push_back(value);
+    speeds.push_back(speed(cells[i].row));
+  }
+  const auto vector = [](const std::vector<double>& v) -> Eigen::VectorXd {
+    return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
+  };
+  NoiseSeries series{vector(times), vector(values), vector(speeds)};
+  if (series.value.size() > 0) series.value.array() -= series.value.mean();
+  return series;
+}
+
+/// Share of neighbouring readings that are equal: above 0.4 the steps of the reading hide what the noise is like.
+inline double equal_readings(const Rig& rig, const std::vector<std::size_t>& recordings, Eigen::Index output) {
+  double equal = 0, count = 0;
+  for (const std::size_t r : recordings) {
+    const auto y = rig.recordings[r].outputs.row(output);
+    for (Eigen::Index i = 1; i < y.size(); ++i) {
+      if (!std::isfinite(y[i]) || !std::isfinite(y[i - 1])) continue;
+      equal += y[i] == y[i - 1] ? 1 : 0;
+      ++count;
+    }
+  }
+  return count > 0 ? equal / count : 1;
+}
+
+}  // namespace detail
+
+/// What the noise of each output is like, from what a hypothesis that leaves nothing unexplained leaves of the
+/// recordings. Where noise accumulates the errors of single steps are judged; final poses are too few to tell.
+inline std::vector<NoiseFinding> find_noise(const Rig& rig, const Hypothesis& hypothesis,
+                                            const std::vector<std::size_t>& recordings, NoiseKind noise,
+                                            const Parallel& parallel) {
+  if (noise == NoiseKind::final_pose) return {};
+  constexpr Eigen::Index most = 6000;  // samples of an output; more tell nothing new
+  std::vector<std::size_t> some;
+  Eigen::Index rows = 0;
+  for (const std::size_t r : recordings) {
+    if (rows > 0 && rows + rig.recordings[r].rows() > most) continue;
+    some.push_back(r);
+    rows += rig.recordings[r].rows();
+  }
+  const auto runs = simulate_all(rig, hypothesis, some, rig.integration, parallel);
+  if (!std::all_of(runs.begin(), runs.end(), [](const SimulatedRun& run) { return run.finite; })) return {};
+  const Eigen::VectorXd sizes = residual_sizes(rig, some, runs);
+  const std::size_t outputs = rig.info.outputs.size();
+  std::vector<std::vector<NoiseFinding>> found(outputs);
+  parallel(outputs, [&](std::size_t k) {
+    const auto output = static_cast<Eigen::Index>(k);
+    if (detail::equal_readings(rig, some, output) > 0.4) return;
+    std::vector<NoiseSeries> series;
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      NoiseSeries one = detail::noise_series(rig, some[i], runs[i], output, sizes[output], noise == NoiseKind::process);
+      if (one.value.size() > most) one = detail::part_of(one, 0, most);
+      if (one.value.size() >= 8) series.push_back(std::move(one));
+    }
+    if (!series.empty()) found[k] = find_noise(series, rig.info.outputs[k], rig.info.kind, outputs);
+  });
+  std::vector<NoiseFinding> findings;
+  for (const auto& one : found) findings.insert(findings.end(), one.begin(), one.end());
+  return findings;
+}
+
+}  // namespace surefoot

@@ -1,0 +1,89 @@
+// What numbers the fit of an effect starts from: its own starting values in the units of the model, or what readings
+// suggest.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "surefoot/diagnose/hypothesis.hpp"
+
+namespace surefoot {
+
+namespace detail {
+
+/// Largest absolute value of what an effect is attached to: of its position if it is a velocity.
+inline double peak_at(const Rig& rig, const AttachedEffect& attached) {
+  const auto at = static_cast<std::size_t>(attached.at);
+  const std::size_t inputs = rig.info.inputs.size();
+  double peak = 1;
+  if (attached.effect->place == Place::velocity) {
+    const int position = rig.facts.position_of[at];
+    peak = rig.sizes.state_peak[position >= 0 ? static_cast<std::size_t>(position) : at];
+  } else if (attached.effect->place == Place::state) {
+    peak = rig.sizes.state_peak[at];
+  } else if (attached.effect->place == Place::input) {
+    peak = at < inputs ? rig.sizes.input_peak[at] : rig.sizes.signal_peak[at - inputs];
+  }
+  return peak > 0 ? peak : 1;
+}
+
+/// The output that reads what an effect is attached to (of a velocity: what it is the speed of), or -1.
+inline int output_watching(const Rig& rig, const AttachedEffect& attached) {
+  const auto at = static_cast<std::size_t>(attached.at);
+  switch (attached.effect->place) {
+    case Place::output:
+      return attached.at;
+    case Place::state:
+      return rig.facts.output_of[at];
+    case Place::velocity:
+      return rig.facts.position_of[at] < 0 ? -1
+                                           : rig.facts.output_of[static_cast<std::size_t>(rig.facts.position_of[at])];
+    default:
+      return -1;
+  }
+}
+
+/// Every combination of the starting values, in units of the model.
+inline std::vector<Eigen::VectorXd> starts_of(const Rig& rig, const AttachedEffect& attached) {
+  const auto& parameters = attached.effect->parameters;
+  std::vector<Eigen::VectorXd> result{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters.size()))};
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const double unit =
+        parameters[k].of_peak ? peak_at(rig, attached) : measure_size(rig, attached, parameters[k].measure);
+    std::vector<Eigen::VectorXd> longer;
+    for (const Eigen::VectorXd& one : result) {
+      for (const double start : parameters[k].starts) {
+        longer.push_back(one);
+        longer.back()[static_cast<Eigen::Index>(k)] = start * unit;
+      }
+    }
+    result = std::move(longer);
+  }
+  const int output = output_watching(rig, attached);
+  if (!attached.effect->suggest || output < 0) return result;
+  std::vector<double> readings;
+  for (const Recording& recording : rig.recordings) {
+    for (const double value : recording.outputs.row(output)) {
+      if (std::isfinite(value)) readings.push_back(value);
+    }
+  }
+  const std::vector<double> suggested = attached.effect->suggest(readings);
+  if (suggested.empty()) return result;
+  std::vector<Eigen::VectorXd> better;
+  for (const Eigen::VectorXd& one : result) {
+    if (one[0] != result.front()[0]) continue;  // each combination of the other parameters once
+    for (const double value : suggested) {
+      better.push_back(one);
+      better.back()[0] = value;
+    }
+  }
+  return better;
+}
+
+}  // namespace detail
+
+}  // namespace surefoot

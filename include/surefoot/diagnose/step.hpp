@@ -1,0 +1,87 @@
+// One step of an ODE with effects: Runge-Kutta of order 4 or 2 (midpoint), cut where dry friction stops a velocity.
+#pragma once
+
+#include <span>
+
+#include "surefoot/diagnose/dry_friction.hpp"
+#include "surefoot/diagnose/held_input.hpp"
+
+namespace surefoot {
+
+struct Integration {
+  int order = 4;    // 4, or 2
+  double step = 0;  // longest step [s]; 0: one step per row
+  int restart = 0;  // begin again from the measured state every so many rows; 0: never (all states must be measured)
+};
+
+namespace detail {
+
+template <Simulator S>
+void assign(Point<S>& to, const Point<S>& from) {
+  assign(to.x, from.x);
+  assign(to.z, from.z);
+}
+
+template <Simulator S>
+Point<S> moved(const Point<S>& from, double h, const Point<S>& rate) {
+  return {moved(from.x, h, rate.x), moved(from.z, h, rate.z)};
+}
+
+template <Simulator S>
+Point<S> moved(const Point<S>& from, double h, const Point<S>& k1, const Point<S>& k2, const Point<S>& k3,
+               const Point<S>& k4) {
+  return {moved(from.x, h, k1.x, k2.x, k3.x, k4.x), moved(from.z, h, k1.z, k2.z, k3.z, k4.z)};
+}
+
+/// rate(at, input, time) of states, or of states and hidden states.
+template <class At, class Input, class Rate>
+At runge_kutta(const At& at, const HeldInput<Input>& u, int order, double t, double h, Rate&& rate) {
+  const At k1 = rate(at, u.between(t, h, 0), t);
+  const Input middle = u.between(t, h, 0.5);
+  const At k2 = rate(moved(at, 0.5 * h, k1), middle, t + 0.5 * h);
+  if (order == 2) return moved(at, h, k2);
+  const At k3 = rate(moved(at, 0.5 * h, k2), middle, t + 0.5 * h);
+  const At k4 = rate(moved(at, h, k3), u.between(t, h, 1), t + h);
+  return moved(at, h, k1, k2, k3, k4);
+}
+
+/// Without effects on rates.
+template <Simulator S>
+void plain_step(const AugmentedSimulator<S>& m, const HeldInput<typename S::Input>& u, int order, typename S::State& x,
+                double t, double h) {
+  assign(x, runge_kutta(x, u, order, t, h, [&m](const typename S::State& at, const typename S::Input& now, double) {
+           return typename S::State(evaluate(m.simulator, at, now, m.p, NoTap{}));
+         }));
+}
+
+/// `modes` is room for one mode per dry friction.
+template <Simulator S>
+void step(AugmentedSimulator<S>& m, const HeldInput<typename S::Input>& u, int order, Point<S>& now, double t, double h,
+          std::span<Mode> modes, int depth = 0) {
+  if (m.slots.plain_rates) return plain_step(m, u, order, now.x, t, h);
+  const auto slide_for = [&](double length) {
+    return runge_kutta(now, u, order, t, length, [&](const Point<S>& at, const typename S::Input& input, double time) {
+      return rates(m, at, input, time, length, modes);
+    });
+  };
+  if (modes.empty()) {
+    assign(now, slide_for(h));
+    return;
+  }
+  decide_modes(m, now, u.between(t, h, 0), t, h, modes);
+  Point<S> next = slide_for(h);
+  const Stop stop = first_stop(m.slots, modes, now.x, next.x);
+  if (stop.at < 0) {
+    assign(now, next);
+    return;
+  }
+  if (stop.share > 0) assign(next, slide_for(stop.share * h));
+  next.x[stop.at] = 0;
+  assign(now, next);
+  const double rest = (1 - stop.share) * h;
+  if (depth < 4 && rest > 1e-9 * h) step(m, u, order, now, t + stop.share * h, rest, modes, depth + 1);
+}
+
+}  // namespace detail
+
+}  // namespace surefoot

@@ -1,0 +1,60 @@
+// Residuals without memory that still depend on what the machine did.
+#include "surefoot/diagnose/predictability.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "surefoot/diagnose/split.hpp"
+#include "tests/support/walking_robot.hpp"
+
+namespace surefoot {
+namespace {
+
+template <class Change>
+Comparison predicted(Change&& change, std::uint64_t seed) {
+  Rig rig = make_rig(toys::WalkingRobot{}, toys::walk_recordings(change, false, 40, seed));
+  rig.integration.restart = 1;
+  const RecordingSplit split = split_recordings(rig.recordings, {}, 0.2, 4, seed);
+  FitProblem problem;
+  problem.recordings = split.training;
+  problem.integration = rig.integration;
+  const Fit fitted = calibrate(rig, nominal_hypothesis(rig), problem, 8, seed, serially());
+  return residual_predictability(rig, fitted.hypothesis, problem, split.folds, serially(), seed);
+}
+
+TEST_CASE("steps that are as ordered but for noise cannot be predicted better") {
+  int alarms = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Comparison found = predicted([](Pose2 moved, double) { return moved; }, seed);
+    alarms += found.gain > 0.03 && found.p_value < 0.005 ? 1 : 0;
+  }
+  CHECK(alarms == 0);
+}
+
+TEST_CASE("a twist that depends on the heading is predicted") {
+  const auto twist = [](Pose2 moved, double heading) {
+    return Pose2{moved.x, moved.y, moved.angle + 0.05 * std::cos(heading)};
+  };
+  const Comparison found = predicted(twist, 3);
+  CHECK(found.gain > 0.1);
+  CHECK(found.p_value < 0.005);
+}
+
+TEST_CASE("the same seed gives the same bits on any number of threads") {
+  Rig rig =
+      make_rig(toys::WalkingRobot{}, toys::walk_recordings([](Pose2 moved, double) { return moved; }, false, 12, 1));
+  rig.integration.restart = 1;
+  FitProblem problem;
+  problem.integration = rig.integration;
+  problem.weighting.sigma = Eigen::Vector3d(0.003, 0.003, 0.01);
+  const std::vector<std::vector<std::size_t>> folds{{0, 1, 2, 3}, {4, 5, 6, 7}, {8, 9, 10, 11}};
+  const Threads two(2);
+  const Parallel shared = [&](std::size_t count, const std::function<void(std::size_t)>& job) { two.run(count, job); };
+  const Hypothesis nominal = nominal_hypothesis(rig);
+  CHECK(residual_predictability(rig, nominal, problem, folds, serially(), 5).gain ==
+        residual_predictability(rig, nominal, problem, folds, shared, 5).gain);
+}
+
+}  // namespace
+}  // namespace surefoot

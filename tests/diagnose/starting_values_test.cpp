@@ -1,0 +1,52 @@
+// Where the fit of an effect starts.
+#include "surefoot/diagnose/starting_values.hpp"
+
+#include <doctest/doctest.h>
+
+#include "surefoot/diagnose/attachments.hpp"
+#include "surefoot/diagnose/calibrate.hpp"
+#include "surefoot/diagnose/effects.hpp"
+#include "tests/diagnose/small_simulators.hpp"
+
+namespace surefoot {
+namespace {
+
+AttachedEffect attached(const Rig& rig, const Effect& effect) {
+  return attachments(rig, {effect}, std::vector<bool>(rig.info.inputs.size(), true)).front();
+}
+
+Rig tank(double interval) {
+  Recording recording = toys::blank_recording(toys::LeakyTank{}.info(), 400, interval);
+  for (Eigen::Index i = 0; i < 400; ++i) recording.outputs(0, i) = std::min(2.0, 0.01 * static_cast<double>(i));
+  Rig rig = make_rig(toys::LeakyTank{}, {recording});
+  const Hypothesis nominal = nominal_hypothesis(rig);
+  rig.sizes = measure_sizes(rig, nominal, {0}, simulate_all(rig, nominal, {0}, {}, serially()));
+  return rig;
+}
+
+TEST_CASE("a level that readings never pass is where an overflow starts") {
+  const Rig rig = tank(0.05);
+  const auto starts = detail::starts_of(rig, attached(rig, effects::overflow()));
+  REQUIRE_FALSE(starts.empty());
+  for (const Eigen::VectorXd& start : starts) CHECK(start[0] == doctest::Approx(2.0));
+}
+
+TEST_CASE("times start as shares of 200 rows, fast or slow") {
+  for (const double interval : {0.001, 2.0}) {
+    const Rig rig = tank(interval);
+    const auto starts = detail::starts_of(rig, attached(rig, effects::first_order_lag()));
+    REQUIRE(starts.size() == effects::first_order_lag().parameters[0].starts.size());
+    CHECK(starts[1][0] == doctest::Approx(200 * interval * effects::first_order_lag().parameters[0].starts[1]));
+  }
+}
+
+TEST_CASE("every combination of starting values is tried once") {
+  const Rig rig = make_rig(toys::SlidingBlock{}, {toys::blank_recording(toys::SlidingBlock{}.info(), 100, 0.01)});
+  const Effect effect = effects::stribeck_friction();
+  std::size_t combinations = 1;
+  for (const EffectParameter& parameter : effect.parameters) combinations *= parameter.starts.size();
+  CHECK(detail::starts_of(rig, attached(rig, effect)).size() == combinations);
+}
+
+}  // namespace
+}  // namespace surefoot
