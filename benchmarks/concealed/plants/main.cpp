@@ -79,7 +79,7 @@ void generate(const Options& options) {
     one.name = name;
     plants::write_case(one, options.out / "cases");
     plants::write_truth(one, options.out / "truth" / (one.name + ".json"));
-    std::printf("\rplants: %zu of %zu cases", i + 1, options.cases);
+    if ((i + 1) % 20 == 0) std::printf("plants: %zu of %zu cases\n", i + 1, options.cases);
     std::fflush(stdout);
   }
   std::printf("\n");

@@ -42,6 +42,50 @@ inline Eigen::VectorXd output_spreads(const Rig& rig, const std::vector<std::siz
   return spreads;
 }
 
+/// The same hypothesis from other parameters of the simulator: Latin-hypercube points over their bounds.
+inline std::vector<Hypothesis> scattered(const Rig& rig, const Hypothesis& around, std::size_t points,
+                                         std::uint64_t seed) {
+  std::vector<Variable> variables = variables_of(rig, around, {});
+  std::erase_if(variables, [](const Variable& one) { return one.kind != Variable::Kind::parameter; });
+  std::vector<Hypothesis> starts;
+  if (variables.empty()) return starts;
+  Rng rng(seed, 0xca1u);
+  for (std::size_t k = 0; k < points; ++k) {
+    Hypothesis start = around;
+    for (std::size_t i = 0; i < variables.size(); ++i) {
+      const double low = to_search(variables[i], variables[i].low), high = to_search(variables[i], variables[i].high);
+      // one stratum per point and variable, dealt by a cyclic shift that differs between variables
+      const auto cell = static_cast<double>((k * (2 * i + 1) + i) % points);
+      const double share = (cell + rng.uniform()) / static_cast<double>(points);
+      value_of(start, variables[i]) = from_search(variables[i], low + share * (high - low));
+    }
+    starts.push_back(start);
+  }
+  return starts;
+}
+
+/// `best`, or a clearly better fit from one of the two best such points around a hypothesis.
+inline Fit scattered_fit(const Rig& rig, Fit best, const Hypothesis& around, const FitProblem& problem,
+                         std::size_t points, std::uint64_t seed, const Parallel& parallel) {
+  const std::vector<Hypothesis> starts = scattered(rig, around, points, seed);
+  std::vector<double> losses(starts.size());
+  parallel(starts.size(), [&](std::size_t k) {
+    const detail::FitFunctions functions(rig, starts[k], problem, serially());
+    const Eigen::VectorXd residuals = functions.residuals(functions.start());
+    losses[k] = residuals.allFinite() ? mean_loss(residuals, problem.weighting.robust)
+                                      : std::numeric_limits<double>::infinity();
+  });
+  std::vector<std::size_t> order(starts.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return losses[a] < losses[b]; });
+  std::vector<Fit> fits(std::min<std::size_t>(2, order.size()));
+  parallel(fits.size(), [&](std::size_t k) { fits[k] = fit(rig, starts[order[k]], problem, serially()); });
+  for (const Fit& other : fits) {
+    if (other.ok && other.loss < 0.98 * best.loss) best = other;
+  }
+  return best;
+}
+
 /// Global start: Latin-hypercube points over the bounds beside the nominal one; the best few are fitted, the best of
 /// those kept. Then twice more with each output weighed by what is left of it.
 inline Fit calibrate(const Rig& rig, const Hypothesis& nominal, FitProblem& problem, std::size_t points,
@@ -56,43 +100,7 @@ inline Fit calibrate(const Rig& rig, const Hypothesis& nominal, FitProblem& prob
   first.max_iterations = 20;
   Fit best = fit(rig, nominal, first, parallel);
 
-  const std::vector<Variable> variables = variables_of(rig, nominal, {});
-  std::vector<Hypothesis> starts;
-  if (!variables.empty()) {
-    Rng rng(seed, 0xca1u);
-    Eigen::VectorXd low(static_cast<Eigen::Index>(variables.size())), high = low;
-    for (std::size_t i = 0; i < variables.size(); ++i) {
-      low[static_cast<Eigen::Index>(i)] = to_search(variables[i], variables[i].low);
-      high[static_cast<Eigen::Index>(i)] = to_search(variables[i], variables[i].high);
-    }
-    for (std::size_t k = 0; k < points; ++k) {
-      Hypothesis start = nominal;
-      for (std::size_t i = 0; i < variables.size(); ++i) {
-        const auto j = static_cast<Eigen::Index>(i);
-        // one stratum per point and variable, dealt by a cyclic shift that differs between variables
-        const double cell = static_cast<double>((k * (2 * i + 1) + i) % points);
-        const double share = (cell + rng.uniform()) / static_cast<double>(points);
-        value_of(start, variables[i]) = from_search(variables[i], low[j] + share * (high[j] - low[j]));
-      }
-      starts.push_back(start);
-    }
-    std::vector<double> losses(starts.size());
-    parallel(starts.size(), [&](std::size_t k) {
-      const detail::FitFunctions functions(rig, starts[k], problem, serially());
-      const Eigen::VectorXd residuals = functions.residuals(functions.start());
-      losses[k] = residuals.allFinite() ? mean_loss(residuals, problem.weighting.robust)
-                                        : std::numeric_limits<double>::infinity();
-    });
-    std::vector<std::size_t> order(starts.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return losses[a] < losses[b]; });
-    const std::size_t fitted = std::min<std::size_t>(2, order.size());
-    std::vector<Fit> fits(fitted);
-    parallel(fitted, [&](std::size_t k) { fits[k] = fit(rig, starts[order[k]], first, serially()); });
-    for (const Fit& other : fits) {
-      if (other.ok && other.loss < 0.98 * best.loss) best = other;
-    }
-  }
+  best = scattered_fit(rig, best, nominal, first, points, seed, parallel);
   if (!best.ok) {
     throw DiagnoseError(
         "the model cannot be simulated over the recordings with any parameters that were tried: check "

@@ -58,17 +58,18 @@ inline std::vector<Recording> cut_recordings(const Rig& rig, const Hypothesis& h
 /// An initial state that was read off a sensor is known as well as that sensor reads: it is estimated, within its
 /// noise.
 inline void free_measured_starts(Rig& rig, const std::vector<std::size_t>& training) {
+  const Eigen::VectorXd spreads = output_spreads(rig, training);
   for (std::size_t i = 0; i < rig.info.states.size(); ++i) {
     const int output = rig.facts.output_of[i];
     if (output < 0) continue;
     const double stated = rig.info.outputs[static_cast<std::size_t>(output)].noise;
-    const double noise = stated > 0 ? stated : fast_noise(rig, training, output);
+    const double noise = stated > 0 ? stated : fast_noise(rig, training, output), spread = spreads[output];
     for (Recording& recording : rig.recordings) {
       const auto state = static_cast<Eigen::Index>(i);
       if (recording.initial_scale.size() == 0)
         recording.initial_scale = Eigen::VectorXd::Zero(recording.initial.size());
       if (recording.initial_scale[state] > 0 || recording.initial[state] != recording.outputs(output, 0)) continue;
-      recording.initial_scale[state] = noise;
+      if (noise > 1e-6 * spread) recording.initial_scale[state] = noise;
     }
   }
 }

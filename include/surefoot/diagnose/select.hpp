@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "surefoot/diagnose/calibrate.hpp"
 #include "surefoot/diagnose/judge.hpp"
 #include "surefoot/diagnose/propose.hpp"
 
@@ -69,7 +70,12 @@ inline std::vector<Fit> fit_children(const Rig& rig, const Hypothesis& parent,
   std::ranges::sort(fits, [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
   if (fits.size() > keep) fits.resize(keep);
   parallel(fits.size(), [&](std::size_t i) {
-    if (!problem.stopped()) fits[i] = fit(rig, fits[i].hypothesis, problem.fit, serially());
+    if (problem.stopped()) return;
+    fits[i] = fit(rig, fits[i].hypothesis, problem.fit, serially());
+    // what is missing may have pushed the calibrated parameters where no fit finds back from
+    if (parent.effects.size() == problem.known) {
+      fits[i] = scattered_fit(rig, fits[i], fits[i].hypothesis, problem.fit, 12, 1, serially());
+    }
   });
   std::ranges::sort(fits, [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
   return fits;
