@@ -19,6 +19,7 @@
 #include "surefoot/diagnose/calibrate.hpp"
 #include "surefoot/diagnose/components.hpp"
 #include "surefoot/diagnose/conclude.hpp"
+#include "surefoot/diagnose/confirm.hpp"
 #include "surefoot/diagnose/describe.hpp"
 #include "surefoot/diagnose/detect.hpp"
 #include "surefoot/diagnose/diagnose.hpp"

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/diagnose/confirm.hpp"
 #include "surefoot/diagnose/describe.hpp"
 #include "surefoot/diagnose/investigation.hpp"
 #include "surefoot/diagnose/locate.hpp"
@@ -48,59 +49,6 @@ inline std::string names_of(const Hypothesis& hypothesis) {
 
 }  // namespace detail
 
-namespace detail {
-
-/// Whether effects lower the error of the test recordings, in the units in which they were chosen. Unknown initial
-/// states are estimated.
-inline bool confirmed(const Investigation& investigation, const Hypothesis& calibrated, const Hypothesis& chosen,
-                      const Parallel& parallel) {
-  const Rig& rig = investigation.rig;
-  FitProblem problem = investigation.problem.fit;
-  problem.recordings = investigation.split.test;
-  problem.free = Free::initial_only;
-  const auto error = [&](const Hypothesis& hypothesis) {
-    const bool free = free_start(rig, problem.recordings);
-    const Hypothesis ready = free ? fit(rig, hypothesis, problem, parallel).hypothesis : hypothesis;
-    return score(rig, ready, problem.recordings, problem.weighting, problem.integration, parallel).rms();
-  };
-  return error(chosen) < 0.98 * error(calibrated);
-}
-
-/// What effects leave of the test recordings' squared errors beyond noise, over whole simulations.
-struct Remainder {
-  double share = 0;  // of what there was without them
-  double times = 0;  // root mean square, in units of the noise
-};
-
-inline Remainder remainder_on_test(const Investigation& investigation, const Hypothesis& calibrated,
-                                   const Hypothesis& chosen, const Parallel& parallel) {
-  const Rig& rig = investigation.rig;
-  FitProblem problem = investigation.problem.fit;
-  problem.recordings = investigation.split.test;
-  problem.free = Free::initial_only;
-  const auto runs_of = [&](const Hypothesis& hypothesis) {
-    const bool free = free_start(rig, problem.recordings);
-    const Hypothesis ready = free ? fit(rig, hypothesis, problem, parallel).hypothesis : hypothesis;
-    return simulate_all(rig, ready, problem.recordings, problem.integration, parallel);
-  };
-  const auto before = runs_of(calibrated), after = runs_of(chosen);
-  const Eigen::VectorXd was = residual_sizes(rig, problem.recordings, before),
-                        is = residual_sizes(rig, problem.recordings, after);
-  const Eigen::VectorXd spreads = output_spreads(rig, problem.recordings);
-  double missed = 0, left = 0, squares = 0;
-  for (Eigen::Index k = 0; k < was.size(); ++k) {
-    const double stated = rig.info.outputs[static_cast<std::size_t>(k)].noise;
-    const double noise = stated > 0 ? stated : std::max(fast_noise(rig, problem.recordings, k), 1e-3 * spreads[k]);
-    const double a = was[k] / noise, b = is[k] / noise;
-    missed += std::max(0.0, a * a - 1);
-    left += std::max(0.0, b * b - 1);
-    squares += b * b / static_cast<double>(was.size());
-  }
-  return {missed > 0 ? left / missed : 0, std::sqrt(squares)};
-}
-
-}  // namespace detail
-
 /// Fills in the diagnosis from what the search found.
 inline void conclude(Investigation& investigation, const std::vector<AttachedEffect>& candidates,
                      const Parallel& parallel, std::uint64_t seed) {
@@ -112,7 +60,7 @@ inline void conclude(Investigation& investigation, const std::vector<AttachedEff
   const Hypothesis calibrated = selection.nominal.hypothesis;
   const std::size_t known = calibrated.effects.size();
   const bool refuted = selection.chosen.hypothesis.effects.size() > known &&
-                       !detail::confirmed(investigation, calibrated, selection.chosen.hypothesis, parallel);
+                       !confirmed(investigation, calibrated, selection.chosen.hypothesis, parallel);
   if (refuted) {
     selection.alternatives.assign(1, selection.chosen);
     selection.chosen = selection.nominal;
@@ -138,7 +86,7 @@ inline void conclude(Investigation& investigation, const std::vector<AttachedEff
   const double tolerated = found_any && investigation.noise != NoiseKind::process ? 0.3 : 0.12;
   bool open = left.p_value < 0.001 && left.share > tolerated && (!found_any || still > 0.2);
   if (found_any && investigation.noise == NoiseKind::measurement) {
-    const detail::Remainder rest = detail::remainder_on_test(investigation, calibrated, chosen, parallel);
+    const Remainder rest = remainder_on_test(investigation, calibrated, chosen, parallel);
     open = open || (rest.share > 0.2 && rest.times > 3);
   }
   const auto& folds = investigation.problem.folds;

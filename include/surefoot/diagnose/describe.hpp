@@ -12,7 +12,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/diagnosis.hpp"
 #include "surefoot/diagnose/fit.hpp"
-#include "surefoot/diagnose/select.hpp"
+#include "surefoot/diagnose/judge.hpp"
 #include "surefoot/diagnose/wording.hpp"
 
 namespace surefoot::detail {

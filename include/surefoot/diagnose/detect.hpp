@@ -128,4 +128,10 @@ inline double fast_noise(const Rig& rig, const std::vector<std::size_t>& recordi
   return *middle / 0.6745 / std::sqrt(20.0);
 }
 
+/// Standard deviation of the noise of one output: as stated, or as far as it is fast.
+inline double noise_of(const Rig& rig, const std::vector<std::size_t>& recordings, Eigen::Index output) {
+  const double stated = rig.info.outputs[static_cast<std::size_t>(output)].noise;
+  return stated > 0 ? stated : fast_noise(rig, recordings, output);
+}
+
 }  // namespace surefoot

@@ -179,6 +179,16 @@ inline Fit fit(const Rig& rig, const Hypothesis& start, const FitProblem& proble
   return result;
 }
 
+/// A hypothesis with the unknown initial states of some recordings estimated, and all else as it is.
+inline Hypothesis with_estimated_starts(const Rig& rig, const Hypothesis& hypothesis,
+                                        const std::vector<std::size_t>& recordings, FitProblem problem,
+                                        const Parallel& parallel) {
+  if (!free_start(rig, recordings)) return hypothesis;
+  problem.recordings = recordings;
+  problem.free = Free::initial_only;
+  return fit(rig, hypothesis, problem, parallel).hypothesis;
+}
+
 /// Standard errors of the fitted numbers that hold for residuals that are not independent: the covariance of the
 /// gradient is estimated over blocks of the recordings (sandwich; Huber 1967, White 1980).
 struct StandardErrors {

@@ -18,10 +18,10 @@
 
 namespace surefoot {
 
-/// Residuals of the table's samples, in units of sigma; 0 where nothing was measured.
+/// Residuals of the table's samples, in units of sigma, cut off at `limit`; 0 where nothing was measured.
 inline Eigen::MatrixXd residual_table(const Rig& rig, const std::vector<std::size_t>& recordings,
                                       const std::vector<SimulatedRun>& trajectories, const Eigen::VectorXd& sigma,
-                                      const FeatureTable& table) {
+                                      const FeatureTable& table, double limit = 10) {
   Eigen::MatrixXd residuals = Eigen::MatrixXd::Zero(sigma.size(), table.values.cols());
   for (Eigen::Index j = 0; j < residuals.cols(); ++j) {
     const std::size_t i = table.recording[static_cast<std::size_t>(j)];
@@ -29,7 +29,7 @@ inline Eigen::MatrixXd residual_table(const Rig& rig, const std::vector<std::siz
     for (Eigen::Index k = 0; k < sigma.size(); ++k) {
       double off = trajectories[i].outputs(k, row) - rig.recordings[recordings[i]].outputs(k, row);
       if (rig.wrapped[static_cast<std::size_t>(k)]) off = wrap_angle(off);
-      if (std::isfinite(off)) residuals(k, j) = std::clamp(off / sigma[k], -10.0, 10.0);
+      if (std::isfinite(off)) residuals(k, j) = std::clamp(off / sigma[k], -limit, limit);
     }
   }
   return residuals;

@@ -62,12 +62,9 @@ inline void free_measured_starts(Rig& rig, const std::vector<std::size_t>& train
   for (std::size_t i = 0; i < rig.info.states.size(); ++i) {
     const int output = rig.facts.output_of[i];
     if (output < 0) continue;
-    const double stated = rig.info.outputs[static_cast<std::size_t>(output)].noise;
-    const double noise = stated > 0 ? stated : fast_noise(rig, training, output), spread = spreads[output];
+    const double noise = noise_of(rig, training, output), spread = spreads[output];
     for (Recording& recording : rig.recordings) {
       const auto state = static_cast<Eigen::Index>(i);
-      if (recording.initial_scale.size() == 0)
-        recording.initial_scale = Eigen::VectorXd::Zero(recording.initial.size());
       if (recording.initial_scale[state] > 0 || recording.initial[state] != recording.outputs(output, 0)) continue;
       if (noise > 1e-6 * spread) recording.initial_scale[state] = noise;
     }
@@ -168,9 +165,7 @@ inline Investigation investigate(const std::function<Rig(std::vector<Recording>)
   rig.sizes = measure_sizes(rig, calibrated.hypothesis, split.training, trajectories);
 
   // Is the nominal simulator good enough as it is?
-  FitProblem initial_only = problem.fit;
-  initial_only.free = Free::initial_only;
-  if (free_start(rig, split.training)) nominal = fit(rig, nominal, initial_only, parallel).hypothesis;
+  nominal = with_estimated_starts(rig, nominal, split.training, problem.fit, parallel);
   const Score before = score(rig, nominal, split.training, problem.fit.weighting, rig.integration, parallel);
 
   // Propose, fit and select.

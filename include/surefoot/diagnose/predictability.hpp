@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "surefoot/core/executor.hpp"
-#include "surefoot/diagnose/features.hpp"
+#include "surefoot/diagnose/forest_residual.hpp"
 #include "surefoot/diagnose/score.hpp"
 #include "surefoot/forest/extra_trees.hpp"
 
@@ -33,16 +33,7 @@ inline Comparison residual_predictability(const Rig& rig, const Hypothesis& hypo
   for (std::size_t f = 0; f < folds.size(); ++f) {
     const auto runs = simulate_all(rig, hypothesis, folds[f], problem.integration, parallel);
     tables[f] = make_features(rig, folds[f], runs, stride);
-    residuals[f].resize(sigma.size(), tables[f].values.cols());
-    for (Eigen::Index j = 0; j < residuals[f].cols(); ++j) {
-      const std::size_t i = tables[f].recording[static_cast<std::size_t>(j)];
-      const Eigen::Index row = tables[f].row[static_cast<std::size_t>(j)];
-      for (Eigen::Index k = 0; k < sigma.size(); ++k) {
-        double off = runs[i].outputs(k, row) - rig.recordings[folds[f][i]].outputs(k, row);
-        if (rig.wrapped[static_cast<std::size_t>(k)]) off = wrap_angle(off);
-        residuals[f](k, j) = std::isfinite(off) ? std::clamp(off / sigma[k], -limit, limit) : 0;
-      }
-    }
+    residuals[f] = residual_table(rig, folds[f], runs, sigma, tables[f], limit);
   }
   std::vector<Eigen::MatrixXd> left = residuals;
   parallel(folds.size(), [&](std::size_t f) {

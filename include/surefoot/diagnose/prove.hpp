@@ -78,11 +78,9 @@ inline void prove(Investigation& investigation, const Hypothesis& calibrated, co
   whole.restart = 0;
   const Eigen::VectorXd scale = error_scale(rig);
   // Unknown initial states of test recordings are estimated for each model alike.
-  FitProblem initial = investigation.problem.fit;
-  initial.recordings = test;
-  initial.free = Free::initial_only;
-  const bool free = free_start(rig, test);
-  const auto ready = [&](const Hypothesis& h) { return free ? fit(rig, h, initial, parallel).hypothesis : h; };
+  const auto ready = [&](const Hypothesis& h) {
+    return with_estimated_starts(rig, h, test, investigation.problem.fit, parallel);
+  };
   const Hypothesis models[3] = {ready(investigation.nominal), ready(calibrated), ready(chosen)};
   std::vector<SimulatedRun> runs[3];
   for (int m = 0; m < 3; ++m) runs[m] = simulate_all(rig, models[m], test, whole, parallel);

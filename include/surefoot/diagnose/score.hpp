@@ -166,14 +166,11 @@ inline CrossValidation cross_validate(const Rig& rig, const Hypothesis& start, c
     for (std::size_t j = 0; j < folds.size(); ++j) {
       if (j != k) others.recordings.insert(others.recordings.end(), folds[j].begin(), folds[j].end());
     }
-    Fit fitted = fit(rig, start, others, parallel);
-    FitProblem initial = problem;
-    initial.recordings = folds[k];
-    initial.free = Free::initial_only;
-    if (free_start(rig, folds[k])) fitted = fit(rig, fitted.hypothesis, initial, parallel);
-    const Score one = score(rig, fitted.hypothesis, folds[k], problem.weighting, problem.integration, parallel);
+    const Hypothesis fitted =
+        with_estimated_starts(rig, fit(rig, start, others, parallel).hypothesis, folds[k], problem, parallel);
+    const Score one = score(rig, fitted, folds[k], problem.weighting, problem.integration, parallel);
     result.score.append(one);
-    result.folds.push_back(fitted.hypothesis);
+    result.folds.push_back(fitted);
   }
   return result;
 }
