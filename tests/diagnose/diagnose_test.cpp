@@ -124,7 +124,7 @@ TEST_CASE("the same seed gives the same diagnosis for any number of threads") {
   const auto recordings =
       toys::servo_recordings(machine({{.name = "dead_zone", .attached_to = "duty", .values = {0.1}}}), 5, 9);
   const Diagnosis one = diagnose(ServoPendulum{}, recordings, {}, surefoot::Serial{}, 9);
-  for (const std::size_t threads : {2, 3}) {
+  for (const std::size_t threads : {std::size_t{2}, std::size_t{3}}) {
     const Diagnosis other = diagnose(ServoPendulum{}, recordings, {}, surefoot::Threads{threads}, 9);
     CHECK(other.sentence == one.sentence);
     CHECK(other.test_after == one.test_after);

@@ -43,6 +43,19 @@ TEST_CASE("inputs that are not late are held, or interpolated, anywhere in a row
   CHECK(u.at_row(3) == Vec<2>(2, 5));
 }
 
+TEST_CASE("inputs are steady during a step unless one is interpolated") {
+  SimulatorInfo info = two_inputs();
+  const Recording recording = unequal();
+  CHECK_FALSE(HeldInput<Vec<2>>(info, recording).steady());
+  info.inputs[1].linear = false;
+  HeldInput<Vec<2>> u(info, recording);
+  CHECK(u.steady());
+  u.delay(0, 0.15);
+  CHECK(u.steady());
+  u.go_to(2);
+  CHECK(u.between(2.4, 0.1, 0) == u.between(2.4, 0.1, 1));
+}
+
 TEST_CASE("it is known when a late held input changes next") {
   const SimulatorInfo info = two_inputs();
   const Recording recording = unequal();

@@ -52,9 +52,25 @@ TEST_CASE("steps that are noisy are noise of the process, poses that are noise o
     CHECK(noise_kind(measuring, with_gains(measuring, gains), first(0, 20)) == NoiseKind::measurement);
   }
   const Vec<3> truth(1.2, 0.9, 1.1);
-  CHECK(std::abs(neighbour_correlation(walking, with_gains(walking, truth), first(0, 20))) < 0.1);
-  CHECK(neighbour_correlation(measuring, with_gains(measuring, truth), first(0, 20)) ==
+  CHECK(std::abs(step_correlations(walking, with_gains(walking, truth), first(0, 20)).col(0).mean()) < 0.1);
+  CHECK(step_correlations(measuring, with_gains(measuring, truth), first(0, 20)).col(0).mean() ==
         doctest::Approx(-0.5).epsilon(0.2));
+}
+
+TEST_CASE("steps that differ in turn are not taken for noise of the measurement") {
+  for (const int period : {2, 3}) {
+    CAPTURE(period);
+    auto recordings = exact_walks(20);
+    for (Recording& recording : recordings) {
+      double turned = 0;
+      for (Eigen::Index i = 1; i < recording.rows(); ++i) {
+        turned += i % period == 0 ? 0.2 : -0.2 / (period - 1);
+        recording.outputs(2, i) += turned;
+      }
+    }
+    const Rig limping = make_rig(WalkingRobot{}, recordings);
+    CHECK(noise_kind(limping, with_gains(limping, {1.2, 0.9, 1.1}), first(0, 20)) == NoiseKind::process);
+  }
 }
 
 TEST_CASE("walks of which only the end was measured are recognized, and machines with rates never are walks") {

@@ -24,9 +24,13 @@ Rig tank(double interval) {
   return rig;
 }
 
+std::vector<detail::Observed> observed(const Rig& rig) {
+  return detail::observe(rig, {0}, simulate_all(rig, nominal_hypothesis(rig), {0}, {}, serially()));
+}
+
 TEST_CASE("a level that readings never pass is where an overflow starts") {
   const Rig rig = tank(0.05);
-  const auto starts = detail::starts_of(rig, attached(rig, effects::overflow()));
+  const auto starts = detail::starts_of(rig, attached(rig, effects::overflow()), observed(rig));
   REQUIRE_FALSE(starts.empty());
   for (const Eigen::VectorXd& start : starts) CHECK(start[0] == doctest::Approx(2.0));
 }
@@ -34,7 +38,7 @@ TEST_CASE("a level that readings never pass is where an overflow starts") {
 TEST_CASE("times start as shares of 200 rows, fast or slow") {
   for (const double interval : {0.001, 2.0}) {
     const Rig rig = tank(interval);
-    const auto starts = detail::starts_of(rig, attached(rig, effects::first_order_lag()));
+    const auto starts = detail::starts_of(rig, attached(rig, effects::first_order_lag()), observed(rig));
     REQUIRE(starts.size() == effects::first_order_lag().parameters[0].starts.size());
     CHECK(starts[1][0] == doctest::Approx(200 * interval * effects::first_order_lag().parameters[0].starts[1]));
   }
@@ -45,7 +49,7 @@ TEST_CASE("every combination of starting values is tried once") {
   const Effect effect = effects::stribeck_friction();
   std::size_t combinations = 1;
   for (const EffectParameter& parameter : effect.parameters) combinations *= parameter.starts.size();
-  CHECK(detail::starts_of(rig, attached(rig, effect)).size() == combinations);
+  CHECK(detail::starts_of(rig, attached(rig, effect), observed(rig)).size() == combinations);
 }
 
 }  // namespace

@@ -175,6 +175,29 @@ TEST_CASE("it says why it stopped") {
         LeastSquaresStop::cost);
 }
 
+TEST_CASE("without the covariance it goes the same way with one Jacobian fewer") {
+  const Line line(6);
+  for (const int iterations : {1, 2, 100}) {
+    int with = 0, without = 0;
+    const auto counted = [&](int& count) {
+      return [&line, &count](const VectorXd& x) -> MatrixXd {
+        ++count;
+        return numeric_jacobian(line, x, {});
+      };
+    };
+    LeastSquaresOptions options{.max_iterations = iterations, .tol_gradient = 0, .tol_step = 0, .tol_cost = 1e-3};
+    const LeastSquaresResult all = least_squares(line, VectorXd::Zero(2), options, counted(with));
+    options.covariance = false;
+    const LeastSquaresResult fast = least_squares(line, VectorXd::Zero(2), options, counted(without));
+    CHECK(fast.x == all.x);
+    CHECK(fast.residuals == all.residuals);
+    CHECK(fast.reason == all.reason);
+    CHECK(fast.iterations == all.iterations);
+    CHECK(fast.covariance.size() == 0);
+    CHECK(without == with - 1);
+  }
+}
+
 TEST_CASE("wrong starts and shapes are refused") {
   const auto f = [](const VectorXd& x) -> VectorXd { return x; };
   const auto undefined = [](const VectorXd& x) -> VectorXd {

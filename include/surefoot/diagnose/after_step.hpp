@@ -49,8 +49,8 @@ void next_values(AugmentedSimulator<S>& m, typename S::Input u, Point<S>& now, d
                  const std::optional<PlanarInfo>& planar) {
   const auto before = now.x;
   Hidden dz = Hidden::Zero(m.slots.hidden);
-  for (const Slot& slot : m.slots.orders) u[slot.at] = through(m, slot, u[slot.at], now, dz, t, 1);
-  now.x = equations(m, before, u, now, dz, t, 1);
+  for (const Slot& slot : m.slots.orders) u[slot.at] = through(m, slot, u[slot.at], now.z, dz, t, 1);
+  now.x = equations(m, before, u, now.z, dz, t, 1);
   for (const Slot& slot : m.slots.forces) {
     Moment change = moment(m, before[slot.at], t, 1);
     change.rate = now.x[slot.at] - before[slot.at];

@@ -79,6 +79,9 @@ inline std::vector<AttachedEffect> attachments(const Rig& rig, const std::vector
               info.planar && (static_cast<int>(i) == info.planar->x || static_cast<int>(i) == info.planar->y ||
                               static_cast<int>(i) == info.planar->heading);
           if (is_position || rig.facts.velocity[i] || pose) continue;  // there forces act, or walking effects
+          const std::string& unit = info.states[i].unit;
+          const bool angle = unit == "rad" || unit == "deg";
+          if (effect.stored && (angle || (info.kind == SimulatorKind::ode && !rig.facts.matters[i]))) continue;
           if (!effect.spills) {
             attach(i, info.states[i].name);
             continue;

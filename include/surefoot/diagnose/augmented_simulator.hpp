@@ -48,10 +48,10 @@ Moment moment(const AugmentedSimulator<S>& m, double value, double t, double h) 
 
 /// Of an effect on a state, whose rates and efforts are f and e.
 template <Simulator S>
-Moment moment_at_state(const AugmentedSimulator<S>& m, const Slot& slot, const Point<S>& at, const typename S::State& f,
-                       const typename S::State& e, double t, double h) {
-  Moment result = moment(m, at.x[slot.at], t, h);
-  if (slot.position >= 0) result.position = at.x[slot.position];
+Moment moment_at_state(const AugmentedSimulator<S>& m, const Slot& slot, const typename S::State& x,
+                       const typename S::State& f, const typename S::State& e, double t, double h) {
+  Moment result = moment(m, x[slot.at], t, h);
+  if (slot.position >= 0) result.position = x[slot.position];
   result.rate = f[slot.at];
   result.effort = e[slot.at];
   return result;
@@ -59,21 +59,21 @@ Moment moment_at_state(const AugmentedSimulator<S>& m, const Slot& slot, const P
 
 /// An input or signal on its way through an effect.
 template <Simulator S>
-double through(AugmentedSimulator<S>& m, const Slot& slot, double value, const Point<S>& at, Hidden& dz, double t,
+double through(AugmentedSimulator<S>& m, const Slot& slot, double value, const Hidden& z, Hidden& dz, double t,
                double h) {
   Moment now = moment(m, value, t, h);
   now.drive = value;
   m.raw[slot.number] = value;
-  if (slot.effect->memory_rate) slot.effect->memory_rate(now, slot.p, slot.hidden(at.z), slot.hidden(dz));
-  return slot.effect->signal(now, slot.p, slot.hidden(at.z));
+  if (slot.effect->memory_rate) slot.effect->memory_rate(now, slot.p, slot.hidden(z), slot.hidden(dz));
+  return slot.effect->signal(now, slot.p, slot.hidden(z));
 }
 
 /// Signals inside the equations on their way through effects, as a tap.
 template <Simulator S>
-auto tap_of(AugmentedSimulator<S>& m, const Point<S>& at, Hidden& dz, double t, double h) {
-  return [&m, &at, &dz, t, h](int signal, double value) {
+auto tap_of(AugmentedSimulator<S>& m, const Hidden& z, Hidden& dz, double t, double h) {
+  return [&m, &z, &dz, t, h](int signal, double value) {
     for (const Slot& slot : m.slots.taps) {
-      if (slot.at == signal) value = through(m, slot, value, at, dz, t, h);
+      if (slot.at == signal) value = through(m, slot, value, z, dz, t, h);
     }
     return value;
   };
@@ -82,9 +82,9 @@ auto tap_of(AugmentedSimulator<S>& m, const Point<S>& at, Hidden& dz, double t, 
 /// The simulator's own rates, or next values, at x with effects on signals.
 template <Simulator S>
 inline typename S::State equations(AugmentedSimulator<S>& m, const typename S::State& x, const typename S::Input& u,
-                                   const Point<S>& at, Hidden& dz, double t, double h) {
+                                   const Hidden& z, Hidden& dz, double t, double h) {
   if (m.slots.taps.empty()) return evaluate(m.simulator, x, u, m.p, NoTap{});
-  return evaluate(m.simulator, x, u, m.p, tap_of(m, at, dz, t, h));
+  return evaluate(m.simulator, x, u, m.p, tap_of(m, z, dz, t, h));
 }
 
 }  // namespace surefoot::detail

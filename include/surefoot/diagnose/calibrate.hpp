@@ -12,16 +12,6 @@
 
 namespace surefoot {
 
-/// Trajectories of some recordings.
-inline std::vector<SimulatedRun> simulate_all(const Rig& rig, const Hypothesis& hypothesis,
-                                              const std::vector<std::size_t>& recordings,
-                                              const Integration& integration, const Parallel& parallel) {
-  std::vector<SimulatedRun> result(recordings.size());
-  parallel(recordings.size(),
-           [&](std::size_t i) { result[i] = simulate(rig, hypothesis, recordings[i], integration); });
-  return result;
-}
-
 /// Standard deviation of each output over some recordings.
 inline Eigen::VectorXd output_spreads(const Rig& rig, const std::vector<std::size_t>& recordings) {
   Eigen::VectorXd spreads(static_cast<Eigen::Index>(rig.info.outputs.size()));
@@ -86,8 +76,28 @@ inline Fit scattered_fit(const Rig& rig, Fit best, const Hypothesis& around, con
   return best;
 }
 
+namespace detail {
+
+/// By recording: square root of the root mean square residual in units of sigma. Recordings that a model misses by far
+/// then count more than others, but do not silence them.
+inline std::vector<double> recording_scales(const Rig& rig, const FitProblem& problem,
+                                            const std::vector<SimulatedRun>& trajectories) {
+  std::vector<double> scales(rig.recordings.size(), 1.0);
+  Weighting plain = problem.weighting;
+  plain.scale.clear();
+  for (std::size_t i = 0; i < problem.recordings.size(); ++i) {
+    const std::size_t r = problem.recordings[i];
+    const Eigen::VectorXd off = weighed_residuals(rig, r, trajectories[i], cells_of(rig.recordings[r]), plain);
+    if (off.size() == 0 || !off.allFinite()) continue;
+    scales[r] = std::sqrt(std::clamp(std::sqrt(mean_loss(off, plain.robust)), 1e-3, 1e3));
+  }
+  return scales;
+}
+
+}  // namespace detail
+
 /// Global start: Latin-hypercube points over the bounds beside the nominal one; the best few are fitted, the best of
-/// those kept. Then twice more with each output weighed by what is left of it.
+/// those kept. Then twice more with each output and each recording weighed by what is left of it.
 inline Fit calibrate(const Rig& rig, const Hypothesis& nominal, FitProblem& problem, std::size_t points,
                      std::uint64_t seed, const Parallel& parallel) {
   problem.weighting.sigma = output_spreads(rig, problem.recordings);
@@ -109,6 +119,7 @@ inline Fit calibrate(const Rig& rig, const Hypothesis& nominal, FitProblem& prob
   for (int round = 0; round < 2; ++round) {
     const auto trajectories = simulate_all(rig, best.hypothesis, problem.recordings, problem.integration, parallel);
     problem.weighting.sigma = residual_sizes(rig, problem.recordings, trajectories).cwiseMax(floor);
+    problem.weighting.scale = detail::recording_scales(rig, problem, trajectories);
     best = fit(rig, best.hypothesis, problem, parallel);
   }
   return best;

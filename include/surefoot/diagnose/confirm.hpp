@@ -10,23 +10,27 @@
 #include "surefoot/diagnose/calibrate.hpp"
 #include "surefoot/diagnose/detect.hpp"
 #include "surefoot/diagnose/investigation.hpp"
+#include "surefoot/diagnose/recording_error.hpp"
 #include "surefoot/diagnose/score.hpp"
 
 namespace surefoot {
 
-/// Whether effects lower the error of the test recordings, in the units in which they were chosen. Unknown initial
-/// states are estimated.
+/// Whether effects lower the error of the test recordings in the units in which they were chosen, and do not raise it
+/// where whole recordings are simulated. Unknown initial states are estimated.
 inline bool confirmed(const Investigation& investigation, const Hypothesis& calibrated, const Hypothesis& chosen,
                       const Parallel& parallel) {
   const Rig& rig = investigation.rig;
   const FitProblem& problem = investigation.problem.fit;
   const auto& test = investigation.split.test;
-  const auto error = [&](const Hypothesis& hypothesis) {
-    return score(rig, with_estimated_starts(rig, hypothesis, test, problem, parallel), test, problem.weighting,
-                 problem.integration, parallel)
-        .rms();
+  const Hypothesis before = with_estimated_starts(rig, calibrated, test, problem, parallel);
+  const Hypothesis after = with_estimated_starts(rig, chosen, test, problem, parallel);
+  const auto error = [&](const Hypothesis& one) {
+    return score(rig, one, test, problem.weighting, problem.integration, parallel).rms();
   };
-  return error(chosen) < 0.98 * error(calibrated);
+  const auto whole = [&](const Hypothesis& one) {
+    return detail::whole_error(rig, one, test, rig.integration, parallel);
+  };
+  return error(after) < 0.98 * error(before) && whole(after) < 1.02 * whole(before);
 }
 
 /// What effects leave of the test recordings' squared errors beyond noise.

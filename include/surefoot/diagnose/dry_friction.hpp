@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <span>
 
+#include "surefoot/diagnose/held_input.hpp"
 #include "surefoot/diagnose/rates.hpp"
 
 namespace surefoot::detail {
@@ -15,8 +16,8 @@ inline bool rests(const Slot& slot, double velocity) { return !(std::abs(velocit
 
 /// Sliding or stuck, by dry friction, from the beginning of a step on. Those of one velocity add up.
 template <Simulator S>
-void decide_modes(AugmentedSimulator<S>& m, const Point<S>& at, const typename S::Input& u, double t, double h,
-                  std::span<Mode> modes) {
+void decide_modes(AugmentedSimulator<S>& m, const Point<S>& at, const HeldInput<typename S::Input>& inputs, double t,
+                  double h, std::span<Mode> modes) {
   const auto& dry = m.slots.dry;
   bool any_rests = false;
   for (std::size_t i = 0; i < dry.size(); ++i) {
@@ -25,13 +26,15 @@ void decide_modes(AugmentedSimulator<S>& m, const Point<S>& at, const typename S
     any_rests = any_rests || modes[i] == Mode::stuck;
   }
   if (!any_rests) return;
-  const auto f = rates(m, at, u, t, h, {}).x;  // without dry friction
+  const auto u = inputs.between(t, h, 0);
+  Hidden dz = Hidden::Zero(m.slots.hidden);
+  const auto f = rates(m, at.x, at.z, u, dz, t, h, {});  // without dry friction
   const auto e = effort(m, at.x, u);
   for (std::size_t i = 0; i < dry.size(); ++i) {
     if (!rests(dry[i], at.x[dry[i].at])) continue;
     double limit = 0;
     for (const Slot& other : dry) {
-      if (other.at == dry[i].at && rests(other, at.x[other.at])) limit += level(m, other, at, f, e, u, t, h);
+      if (other.at == dry[i].at && rests(other, at.x[other.at])) limit += level(m, other, at.x, f, e, u, t, h);
     }
     const double force = f[dry[i].at] * e[dry[i].at];
     if (std::abs(force) > limit) modes[i] = force > 0 ? Mode::forth : Mode::back;

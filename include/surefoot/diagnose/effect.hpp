@@ -79,7 +79,8 @@ struct Effect {
   int memories = 0;
   bool needs_drive = false;
   bool at_start = false;  // a sensor's fault that an initial state read off that sensor has, too
-  bool spills = false;    // also tried with each other state as `other` (limit)
+  bool stored = false;  // needs a state of which there is more or less (Place::state): no angle, and rates depend on it
+  bool spills = false;  // also tried with each other state as `other` (limit)
 
   /// Force on a velocity, in effort units; for Place::state the addition to the rate.
   std::function<double(const Moment&, Values p, Values memory)> force = {};
@@ -95,7 +96,8 @@ struct Effect {
   std::function<double(Values p)> delay = {};
   /// Starting values of the first parameter, in place of `starts`, that readings suggest: those of the sensor attached
   /// to, or of one that reads the state attached to (for a velocity: what it is the speed of).
-  std::function<std::vector<double>(Values readings)> suggest = {};
+  /// Beside each reading stands what was simulated without the effect.
+  std::function<std::vector<double>(Values readings, Values simulated)> suggest = {};
   /// What position the equations see, for Place::velocity.
   std::function<double(const Moment&, Values p, Values memory)> seen_position = {};
   /// After each step: the state attached to, what it is the speed of, and for effects that spill another state.

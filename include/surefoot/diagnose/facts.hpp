@@ -1,6 +1,6 @@
 // What can be learned about a simulator by asking it: which state is the speed of which, which output reads which
-// state, which signals the inputs drive. And the typical sizes of everything in a set of recordings, from which effects
-// take their scales.
+// state, which signals the inputs drive, which states any rate depends on. And the typical sizes of everything in a set
+// of recordings, from which effects take their scales.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,6 +18,7 @@ namespace surefoot {
 struct SimulatorFacts {
   std::vector<int> position_of;     // by state: the state whose rate it is, or -1
   std::vector<bool> velocity;       // by state: forces may act on it
+  std::vector<bool> matters;        // by state: some rate (map: next value of another state) depends on it
   std::vector<int> output_of;       // by state: the output that reads it directly, or -1
   std::vector<bool> driven_signal;  // by signal: changes with the inputs
   bool all_states_measured = false;
@@ -122,6 +123,7 @@ SimulatorFacts find_facts(const S& simulator, const SimulatorInfo& info, const R
   detail::prepare(s, parameters);
   SimulatorFacts facts;
   facts.driven_signal.assign(info.signals.size(), false);
+  facts.matters.assign(n, false);
   std::vector<std::vector<bool>> speed(n, std::vector<bool>(n, true)), reads(n, std::vector<bool>(k, true));
   Rng rng(1);
   std::vector<double> seen(info.signals.size());
@@ -149,6 +151,16 @@ SimulatorFacts find_facts(const S& simulator, const SimulatorInfo& info, const R
       }
       for (std::size_t j = 0; j < k; ++j) {
         if (!detail::close(y[static_cast<Eigen::Index>(j)], x[row])) reads[i][j] = false;
+      }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      auto moved = x;
+      moved[static_cast<Eigen::Index>(i)] += scale * (0.1 + rng.uniform());
+      const auto changed = detail::evaluate(s, moved, u, parameters, NoTap{});
+      for (std::size_t j = 0; j < n; ++j) {
+        const auto row = static_cast<Eigen::Index>(j);
+        if (info.kind == SimulatorKind::map && i == j) continue;
+        if (!detail::close(rate[row], changed[row])) facts.matters[i] = true;
       }
     }
     auto other = u;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -18,8 +19,11 @@ struct FeatureTable {
   std::vector<Eigen::Index> row;
 };
 
-/// Names of the features: states, sizes of velocities, time since their last reversal, inputs and their changes, time,
-/// and whatever constants differ between the recordings.
+/// Steps of a walk may differ in turn, as its legs do: by periods of up to so many.
+constexpr int longest_gait = 4;
+
+/// Names of the features: states, sizes of velocities, time since their last reversal, inputs and their changes, time
+/// (for maps also modulo 2 to 4), and whatever constants differ between the recordings.
 inline std::vector<std::string> feature_names(const Rig& rig) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < rig.info.states.size(); ++i) {
@@ -33,6 +37,9 @@ inline std::vector<std::string> feature_names(const Rig& rig) {
     names.push_back("since_change(" + input.name + ")");
   }
   names.emplace_back("time");
+  if (rig.info.kind == SimulatorKind::map) {
+    for (int period = 2; period <= longest_gait; ++period) names.push_back("step_modulo_" + std::to_string(period));
+  }
   for (const auto& [key, first] : rig.recordings.front().constants) {
     bool differs = false;
     for (const Recording& recording : rig.recordings) {
@@ -79,6 +86,9 @@ inline FeatureTable make_features(const Rig& rig, const std::vector<std::size_t>
         one.push_back(now - changed[k]);
       }
       one.push_back(now - recording.time[0]);
+      if (rig.info.kind == SimulatorKind::map) {
+        for (int period = 2; period <= longest_gait; ++period) one.push_back(static_cast<double>(row % period));
+      }
       for (std::size_t k = one.size(); k < table.names.size(); ++k) {
         const auto found = recording.constants.find(table.names[k]);
         one.push_back(found == recording.constants.end() ? 0 : found->second);
@@ -95,6 +105,19 @@ inline FeatureTable make_features(const Rig& rig, const std::vector<std::size_t>
       table.values(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(j)) = std::isfinite(value) ? value : 0;
     }
   }
+  return table;
+}
+
+/// The states alone.
+inline FeatureTable only_states(const Rig& rig, const FeatureTable& all) {
+  FeatureTable table{.names = {}, .values = {}, .recording = all.recording, .row = all.row};
+  std::vector<Eigen::Index> kept;
+  for (const StateInfo& state : rig.info.states) {
+    const auto found = std::find(all.names.begin(), all.names.end(), state.name);
+    kept.push_back(found - all.names.begin());
+    table.names.push_back(state.name);
+  }
+  table.values = all.values(kept, Eigen::all);
   return table;
 }
 

@@ -1,5 +1,6 @@
 // Fits the numbers of a hypothesis to recordings: Gauss-Newton in the simulation loop, with bounds and a robust loss.
-// Cost of an iteration: (parameters + effect parameters + free initial states + 1) simulations of all recordings.
+// Cost of an iteration: (parameters + effect parameters + free states of one recording + 1) simulations of all
+// recordings.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -95,9 +96,11 @@ class FitFunctions {
     return all;
   }
 
-  /// Forward differences. A free initial state moves the residuals of its own recording only.
-  Eigen::MatrixXd jacobian(const Eigen::VectorXd& z) const {
-    const Eigen::VectorXd here = residuals(z);
+  Eigen::MatrixXd jacobian(const Eigen::VectorXd& z) const { return jacobian(z, residuals(z)); }
+
+  /// Forward differences from z, where the residuals are `here`. A free initial state moves the residuals of its own
+  /// recording only.
+  Eigen::MatrixXd jacobian(const Eigen::VectorXd& z, const Eigen::VectorXd& here) const {
     const auto columns = static_cast<Eigen::Index>(variables_.size());
     Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(begin_.back(), columns);
     std::vector<std::pair<std::size_t, std::size_t>> jobs;  // variable, place of a recording
@@ -172,8 +175,17 @@ inline Fit fit(const Rig& rig, const Hypothesis& start, const FitProblem& proble
   options.max_iterations = problem.max_iterations;
   options.tol_cost = problem.tolerance;
   options.tol_step = 1e-6;
-  const auto fitted = least_squares([&](const Eigen::VectorXd& x) { return functions.residuals(x); }, z, options,
-                                    [&](const Eigen::VectorXd& x) { return functions.jacobian(x); });
+  options.covariance = false;
+  Eigen::VectorXd asked = z, there = first;  // the last point, whose residuals the Jacobian needs again
+  const auto residuals = [&](const Eigen::VectorXd& x) -> const Eigen::VectorXd& {
+    if (x != asked) {
+      there = functions.residuals(x);
+      asked = x;
+    }
+    return there;
+  };
+  const auto fitted = least_squares(residuals, z, options,
+                                    [&](const Eigen::VectorXd& x) { return functions.jacobian(x, residuals(x)); });
   result.hypothesis = functions.at(fitted.x);
   result.loss = mean_loss(fitted.residuals, problem.weighting.robust);
   return result;
@@ -205,7 +217,7 @@ inline StandardErrors standard_errors(const Rig& rig, const Hypothesis& hypothes
   const auto count = static_cast<Eigen::Index>(result.variables.size());
   if (count == 0) return result;
   const Eigen::VectorXd residuals = functions.residuals(z);
-  const Eigen::MatrixXd slopes = functions.jacobian(z);
+  const Eigen::MatrixXd slopes = functions.jacobian(z, residuals);
   Eigen::MatrixXd hessian = slopes.transpose() * slopes, meat = Eigen::MatrixXd::Zero(count, count);
   const Eigen::VectorXd scale = hessian.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
   double blocks = 0;

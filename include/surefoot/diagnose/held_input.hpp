@@ -23,6 +23,7 @@ class HeldInput {
     for (std::size_t i = 0; i < linear_.size(); ++i) {
       linear_[i] = info.inputs[i].linear;
       any_special_ = any_special_ || linear_[i];
+      steady_ = steady_ && !linear_[i];
     }
     held_ = at_row(0);
   }
@@ -76,6 +77,9 @@ class HeldInput {
   /// The inputs of that row as they stand in the recording.
   const Input& now() const { return held_; }
 
+  /// Whether inputs stay the same during a step: none is interpolated.
+  bool steady() const { return steady_; }
+
   /// The inputs at the share `share` of a step of length h from time t on, within the row that go_to named.
   Input between(double t, double h, double share) const { return any_special_ ? moving(t, h, share) : held_; }
 
@@ -122,7 +126,7 @@ class HeldInput {
   std::vector<std::vector<double>> integral_;
   std::vector<Eigen::Index> seen_;  // by input: the row it showed at the beginning of the present one
   Input held_;
-  bool any_special_ = false;
+  bool any_special_ = false, steady_ = true;
 };
 
 }  // namespace surefoot::detail

@@ -34,6 +34,16 @@ inline SimulatedRun simulate(const Rig& rig, const Hypothesis& hypothesis, std::
                       hypothesis.initial[recording], integration);
 }
 
+/// Trajectories of some recordings.
+inline std::vector<SimulatedRun> simulate_all(const Rig& rig, const Hypothesis& hypothesis,
+                                              const std::vector<std::size_t>& recordings,
+                                              const Integration& integration, const Parallel& parallel) {
+  std::vector<SimulatedRun> result(recordings.size());
+  parallel(recordings.size(),
+           [&](std::size_t i) { result[i] = simulate(rig, hypothesis, recordings[i], integration); });
+  return result;
+}
+
 /// Size in the recordings of a measure at the place an effect is attached to.
 inline double measure_size(const Rig& rig, const AttachedEffect& attached, const Measure& measure) {
   const auto at = static_cast<std::size_t>(attached.at);

@@ -22,7 +22,8 @@ struct SelectOptions {
   double significance = 0.02;  // after correction for the number of candidates
   double least_share = 0.03;   // of the error without effects, that an effect must take away
   double decisive_gain = 0.5;  // or of the error that is left
-  double large_gain = 0.1;     // is believed at 0.005 without that correction: it may come from few recordings
+  double large_gain = 0.1;     // is believed without that correction: it may come from few recordings
+  double large_gain_significance = 0.05;
   std::size_t shortlist = 14;  // proposals that get a fit
   std::size_t finalists = 4;   // fits that are judged on held-out recordings
 };
@@ -99,7 +100,7 @@ inline bool accepted(const Comparison& gain, std::size_t tried, double parent, c
   if (gain.gain * parent < options.least_share && gain.gain < options.decisive_gain) return false;
   const bool significant = gain.p_value * static_cast<double>(std::max<std::size_t>(1, tried)) <= options.significance;
   return gain.gain >= options.min_gain && gain.t >= options.min_t &&
-         (significant || (gain.gain >= options.large_gain && gain.p_value <= 0.005));
+         (significant || (gain.gain >= options.large_gain && gain.p_value <= options.large_gain_significance));
 }
 
 /// The most plausible of those whose gain is to be believed, if there is one.

@@ -21,26 +21,30 @@ enum class NoiseKind : unsigned char {
   final_pose,   // accumulates until the only measurement, in the last row
 };
 
-/// Correlation between neighbouring errors of predictions from one measured row to the next, about their mean: -1/2 for
-/// measurement noise, 0 for noise of the process.
-inline double neighbour_correlation(const Rig& rig, const Hypothesis& hypothesis,
-                                    const std::vector<std::size_t>& recordings) {
+/// Correlations between errors of predictions from one measured row to the next that are one, two and three rows apart,
+/// about their mean (columns), by output (rows): -1/2, 0, 0 for measurement noise, 0 for noise of the process.
+inline Eigen::MatrixX3d step_correlations(const Rig& rig, const Hypothesis& hypothesis,
+                                          const std::vector<std::size_t>& recordings) {
   Integration stepwise = rig.integration;
   stepwise.restart = 1;
-  Eigen::VectorXd product = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rig.info.outputs.size())), square = product;
+  const auto outputs = static_cast<Eigen::Index>(rig.info.outputs.size());
+  Eigen::MatrixX3d products = Eigen::MatrixX3d::Zero(outputs, 3);
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(outputs);
   for (const std::size_t r : recordings) {
     const SimulatedRun trajectory = simulate(rig, hypothesis, r, stepwise);
-    if (!trajectory.finite || rig.recordings[r].rows() < 3) continue;
-    for (Eigen::Index k = 0; k < product.size(); ++k) {
+    if (!trajectory.finite || rig.recordings[r].rows() < 5) continue;
+    for (Eigen::Index k = 0; k < outputs; ++k) {
       Eigen::RowVectorXd off = trajectory.outputs.row(k) - rig.recordings[r].outputs.row(k);
       if (rig.wrapped[static_cast<std::size_t>(k)]) off = off.unaryExpr(&wrap_angle);
       off = off.tail(off.size() - 1).unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; }).eval();
       off.array() -= off.mean();
-      product[k] += off.tail(off.size() - 1).dot(off.head(off.size() - 1));
-      square[k] += off.squaredNorm();
+      for (Eigen::Index lag = 1; lag <= 3; ++lag) {
+        products(k, lag - 1) += off.tail(off.size() - lag).dot(off.head(off.size() - lag));
+      }
+      squares[k] += off.squaredNorm();
     }
   }
-  return (product.array() / square.array().max(1e-300)).mean();
+  return products.array().colwise() / squares.array().max(1e-300);
 }
 
 inline bool only_final_pose(const Rig& rig) {
@@ -57,7 +61,9 @@ inline NoiseKind noise_kind(const Rig& rig, const Hypothesis& hypothesis, const 
   if (rig.info.kind != SimulatorKind::map) return NoiseKind::measurement;
   if (only_final_pose(rig)) return NoiseKind::final_pose;
   if (!rig.facts.all_states_measured) return NoiseKind::measurement;
-  return neighbour_correlation(rig, hypothesis, recordings) < -0.25 ? NoiseKind::measurement : NoiseKind::process;
+  const Eigen::MatrixX3d apart = step_correlations(rig, hypothesis, recordings);
+  const bool in_turn = apart.rightCols<2>().maxCoeff() > 0.3;  // every second or third step differs: that is no noise
+  return apart.col(0).mean() < -0.25 && !in_turn ? NoiseKind::measurement : NoiseKind::process;
 }
 
 /// Matrices that make final poses' residuals white: noise of each step (position, heading), carried to the end along

@@ -42,7 +42,7 @@ inline std::vector<Proposal> propose(const Rig& rig, const Hypothesis& base, con
   const Eigen::VectorXd residuals = functions.residuals(z);
   Eigen::MatrixXd basis;
   if (z.size() > 0) {
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(functions.jacobian(z));
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(functions.jacobian(z, residuals));
     basis = qr.householderQ() * Eigen::MatrixXd::Identity(residuals.size(), qr.rank());
   }
   const auto beyond_parameters = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
@@ -56,9 +56,13 @@ inline std::vector<Proposal> propose(const Rig& rig, const Hypothesis& base, con
     std::size_t candidate;
     Eigen::VectorXd start;
   };
+  const auto observed = detail::observe(rig, problem.recordings,
+                                        simulate_all(rig, base, problem.recordings, problem.integration, parallel));
+  std::vector<std::vector<Eigen::VectorXd>> starts(candidates.size());
+  parallel(candidates.size(), [&](std::size_t c) { starts[c] = detail::starts_of(rig, candidates[c], observed); });
   std::vector<Job> jobs;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
-    for (const Eigen::VectorXd& start : detail::starts_of(rig, candidates[c])) jobs.push_back({c, start});
+    for (const Eigen::VectorXd& start : starts[c]) jobs.push_back({c, start});
   }
   std::vector<Proposal> tried(jobs.size());
   parallel(jobs.size(), [&](std::size_t j) {

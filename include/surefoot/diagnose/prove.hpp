@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <stop_token>
 #include <utility>
 #include <vector>
@@ -17,32 +16,9 @@
 #include "surefoot/diagnose/forest_residual.hpp"
 #include "surefoot/diagnose/investigation.hpp"
 #include "surefoot/diagnose/mismatch.hpp"
+#include "surefoot/diagnose/recording_error.hpp"
 
 namespace surefoot::detail {
-
-/// Error of one recording over outputs, each in units of its scale; by output in `by_output` as sums of squares.
-inline double recording_error(const Rig& rig, std::size_t r, const SimulatedRun& trajectory,
-                              const Eigen::VectorXd& scale) {
-  const std::vector<Cell> cells = cells_of(rig.recordings[r]);
-  Eigen::VectorXd off = raw_residuals(rig, r, trajectory, cells);
-  for (std::size_t i = 0; i < cells.size(); ++i) off[static_cast<Eigen::Index>(i)] /= scale[cells[i].output];
-  return off.size() > 0 ? std::sqrt(off.squaredNorm() / static_cast<double>(off.size())) : 0;
-}
-
-inline double over_all(const std::vector<double>& errors, const std::vector<double>& counts) {
-  double sum = 0, count = 0;
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    sum += errors[i] * errors[i] * counts[i];
-    count += counts[i];
-  }
-  return count > 0 ? std::sqrt(sum / count) : 0;
-}
-
-inline std::vector<double> cell_counts(const Rig& rig, const std::vector<std::size_t>& recordings) {
-  std::vector<double> counts;
-  for (const std::size_t r : recordings) counts.push_back(static_cast<double>(cells_of(rig.recordings[r]).size()));
-  return counts;
-}
 
 /// Executor on top of Parallel, for the forest.
 struct ParallelExecutor {
@@ -54,18 +30,6 @@ struct ParallelExecutor {
     return true;
   }
 };
-
-/// The unit of errors, by output: its stated noise or, where none is stated, its spread over the recordings.
-inline Eigen::VectorXd error_scale(const Rig& rig) {
-  std::vector<std::size_t> all(rig.recordings.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  Eigen::VectorXd scale = output_spreads(rig, all);
-  for (Eigen::Index k = 0; k < scale.size(); ++k) {
-    const double noise = rig.info.outputs[static_cast<std::size_t>(k)].noise;
-    if (noise > 0) scale[k] = noise;
-  }
-  return scale;
-}
 
 /// Errors on the test recordings: whole recordings are simulated, whatever the fit did.
 inline void prove(Investigation& investigation, const Hypothesis& calibrated, const Hypothesis& chosen,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -12,12 +13,14 @@
 
 namespace surefoot {
 
-/// How residuals are weighed: divided by sigma, by output; or, where noise accumulates until a late measurement,
-/// multiplied by a matrix for each recording (the inverse of a square root of their covariance).
+/// How residuals are weighed: divided by sigma, by output, and by the scale of their recording; or, where noise
+/// accumulates until a late measurement, multiplied by a matrix for each recording (the inverse of a square root of
+/// their covariance).
 struct Weighting {
   Eigen::VectorXd sigma;
-  std::vector<Eigen::MatrixXd> whitening;  // by recording of the rig, or empty
-  double robust = 4;                       // residuals beyond this count less (Huber)
+  std::vector<double> scale = {};               // by recording of the rig, or empty: 1
+  std::vector<Eigen::MatrixXd> whitening = {};  // by recording of the rig, or empty
+  double robust = 4;                            // residuals beyond this count less (Huber)
 };
 
 /// Where residuals of one recording come from, in their order.
@@ -61,12 +64,15 @@ inline Eigen::VectorXd weighed_residuals(const Rig& rig, std::size_t r, const Si
   if (!weighting.whitening.empty() && weighting.whitening[r].rows() == residuals.size()) {
     return weighting.whitening[r] * residuals;
   }
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    residuals[static_cast<Eigen::Index>(i)] /= weighting.sigma[cells[i].output];
+  const double scale = weighting.scale.empty() ? 1 : weighting.scale[r];
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    residuals[static_cast<Eigen::Index>(i)] /= scale * weighting.sigma[cells[i].output];
+  }
   return residuals;
 }
 
-/// Root mean square of the raw residuals by output over some recordings; far outliers are left out.
+/// Root mean square of the raw residuals by output over some recordings. Far outliers are left out, at most one in a
+/// hundred: what is far off more often than that is not an accident.
 inline Eigen::VectorXd residual_sizes(const Rig& rig, const std::vector<std::size_t>& recordings,
                                       const std::vector<SimulatedRun>& trajectories) {
   std::vector<std::vector<double>> by_output(rig.info.outputs.size());
@@ -79,11 +85,16 @@ inline Eigen::VectorXd residual_sizes(const Rig& rig, const std::vector<std::siz
   }
   Eigen::VectorXd sizes(static_cast<Eigen::Index>(by_output.size()));
   for (std::size_t k = 0; k < by_output.size(); ++k) {
+    std::vector<double> absolute;
+    for (const double value : by_output[k]) absolute.push_back(std::abs(value));
+    const auto rare = absolute.begin() + static_cast<std::ptrdiff_t>(absolute.size() * 99 / 100);
+    if (rare != absolute.end()) std::nth_element(absolute.begin(), rare, absolute.end());
+    const double common = rare != absolute.end() ? *rare : 0;
     double size = std::numeric_limits<double>::infinity();
     for (int round = 0; round < 3; ++round) {  // without what lies beyond six times the size so far
       double sum = 0, count = 0;
       for (const double value : by_output[k]) {
-        if (std::abs(value) > 6 * size) continue;
+        if (std::abs(value) > std::max(6 * size, common)) continue;
         sum += value * value;
         ++count;
       }

@@ -161,97 +161,134 @@ inline std::vector<Judged> next_pairs(const Rig& rig, const Judged& parent, cons
   return detail::judge_all(rig, fits, parent, problem, 2, parallel);
 }
 
-/// The whole search, from a fitted hypothesis without effects.
-inline Selection select_effects(const Rig& rig, const Fit& calibrated, SelectProblem problem,
-                                const std::vector<AttachedEffect>& candidates, const SelectOptions& options,
-                                const Parallel& parallel) {
-  Selection selection;
-  selection.candidates = candidates.size();
-  selection.nominal = detail::judge(rig, calibrated, problem, parallel);
-  selection.chosen = selection.nominal;
-  std::vector<Judged> refused;
-  const std::size_t known = problem.known, most = known + static_cast<std::size_t>(options.max_effects);
-  while (selection.chosen.hypothesis.effects.size() < most && !problem.stopped()) {
-    const auto depth = static_cast<double>(selection.chosen.hypothesis.effects.size() - known);
-    problem.progress("searching effect " + std::to_string(static_cast<int>(depth) + 1), depth / options.max_effects);
+namespace detail {
+
+/// A search under way.
+struct Search {
+  const Rig& rig;
+  const SelectProblem& problem;
+  const std::vector<AttachedEffect>& candidates;
+  const SelectOptions& options;
+  const Parallel& parallel;
+
+  std::size_t effects(const Judged& one) const { return one.hypothesis.effects.size() - problem.known; }
+  double share(const Judged& one, const Judged& nominal) const {
+    return one.heldout.rms() / std::max(nominal.heldout.rms(), 1e-300);
+  }
+  Judged without(const Judged& whole, std::size_t effect) const {
+    return judge(rig, fit(rig, detail::without(whole.hypothesis, effect), problem.fit, parallel), problem, parallel);
+  }
+};
+
+/// Whatever is no longer worth its numbers goes.
+inline void prune(const Search& search, Judged& chosen) {
+  std::size_t i = search.problem.known;
+  while (search.effects(chosen) > 1 && i < chosen.hypothesis.effects.size() && !search.problem.stopped()) {
+    const Judged less = search.without(chosen, i);
+    const Comparison worth = compare_scores(less.heldout, chosen.heldout);
+    if (worth.gain < search.options.min_gain / 2 || worth.t < 1.5) {
+      chosen = less;
+    } else {
+      ++i;
+    }
+  }
+}
+
+/// Adds effects until none is worth its numbers.
+inline void grow(const Search& search, Selection& selection) {
+  const auto& [rig, problem, candidates, options, parallel] = search;
+  const auto most = static_cast<std::size_t>(options.max_effects);
+  while (search.effects(selection.chosen) < most && !problem.stopped()) {
+    const std::size_t depth = search.effects(selection.chosen);
+    problem.progress("searching effect " + std::to_string(depth + 1),
+                     static_cast<double>(depth) / static_cast<double>(most));
     const bool structured = problem.structured(selection.chosen.hypothesis);
     std::vector<Judged> next =
         next_effects(rig, selection.chosen, problem, candidates, options, least_gain(structured), parallel);
-    const double share = selection.chosen.heldout.rms() / std::max(selection.nominal.heldout.rms(), 1e-300);
-    std::optional<std::size_t> choice = detail::most_plausible_accepted(next, candidates.size(), share, options);
-    if (!choice && structured && selection.chosen.hypothesis.effects.size() + 2 <= most && !problem.stopped()) {
+    const double share = search.share(selection.chosen, selection.nominal);
+    std::optional<std::size_t> choice = most_plausible_accepted(next, candidates.size(), share, options);
+    if (!choice && structured && depth + 2 <= most && !problem.stopped()) {
       const std::vector<Judged> pairs = next_pairs(rig, selection.chosen, problem, candidates, parallel);
-      choice = detail::most_plausible_accepted(pairs, 15 * candidates.size(), share, options);
+      choice = most_plausible_accepted(pairs, 15 * candidates.size(), share, options);
       if (choice) next = pairs;
     }
     if (!choice) {
-      refused = next;
-      break;
+      if (depth == 0) selection.alternatives = next;  // what was refused
+      return;
     }
     selection.chosen = next[*choice];
     next.erase(next.begin() + static_cast<std::ptrdiff_t>(*choice));
     selection.alternatives = next;
-    // Backward: whatever is no longer worth its numbers goes.
-    for (std::size_t i = known;
-         selection.chosen.hypothesis.effects.size() > known + 1 && i < selection.chosen.hypothesis.effects.size();) {
-      const Fit less = fit(rig, detail::without(selection.chosen.hypothesis, i), problem.fit, parallel);
-      const Judged judged = detail::judge(rig, less, problem, parallel);
-      const Comparison worth = compare_scores(judged.heldout, selection.chosen.heldout);
-      if (worth.gain < options.min_gain / 2 || worth.t < 1.5) {
-        selection.chosen = judged;
-      } else {
-        ++i;
-      }
-    }
+    prune(search, selection.chosen);
   }
-  // One effect that leaves something open may have hidden two that do better.
-  if (selection.chosen.hypothesis.effects.size() == known + 1 && most >= known + 2 && !problem.stopped() &&
-      problem.structured(selection.chosen.hypothesis)) {
-    const std::vector<Judged> pairs = next_pairs(rig, selection.nominal, problem, candidates, parallel);
-    if (!pairs.empty()) {
-      Judged pair = pairs[detail::most_plausible(pairs)];
-      if (detail::accepted(compare_scores(selection.chosen.heldout, pair.heldout), candidates.size(), 1, options)) {
-        selection.chosen = std::move(pair);
-      }
-    }
+}
+
+/// One effect that leaves something open may have hidden two that do better.
+inline void try_pair_instead(const Search& search, Selection& selection) {
+  const auto& [rig, problem, candidates, options, parallel] = search;
+  if (search.effects(selection.chosen) != 1 || options.max_effects < 2 || problem.stopped()) return;
+  if (!problem.structured(selection.chosen.hypothesis)) return;
+  const std::vector<Judged> pairs = next_pairs(rig, selection.nominal, problem, candidates, parallel);
+  if (pairs.empty()) return;
+  const Judged& pair = pairs[most_plausible(pairs)];
+  if (accepted(compare_scores(selection.chosen.heldout, pair.heldout), candidates.size(), 1, options)) {
+    selection.chosen = pair;
   }
-  if (selection.chosen.hypothesis.effects.size() == known) {
-    selection.alternatives = refused;
-    return selection;
-  }
-  // Each effect against what else might stand in its place.
-  if (selection.chosen.hypothesis.effects.size() > known + 1) selection.alternatives.clear();
-  for (int round = 0; round < 2; ++round) {
-    bool swapped = false;
-    selection.evidence.clear();
-    for (std::size_t i = known; i < selection.chosen.hypothesis.effects.size() && !problem.stopped(); ++i) {
-      problem.progress("comparing alternatives", 0.8);
-      const bool alone = selection.chosen.hypothesis.effects.size() == known + 1;
-      Judged rest = selection.nominal;
-      if (!alone) {
-        rest = detail::judge(rig, fit(rig, detail::without(selection.chosen.hypothesis, i), problem.fit, parallel),
-                             problem, parallel);
-        SelectOptions fewer = options;
-        fewer.shortlist = 8;
-        fewer.finalists = 3;
-        std::vector<Judged> others = next_effects(rig, rest, problem, candidates, fewer, least_gain(true), parallel);
-        std::erase_if(others, [&](const Judged& other) {
-          return same_effect(other.hypothesis.effects.back(), selection.chosen.hypothesis.effects[i]);
-        });
-        for (Judged& other : others) {
-          const Comparison lead = compare_scores(selection.chosen.heldout, other.heldout);
-          const double share = selection.chosen.heldout.rms() / std::max(selection.nominal.heldout.rms(), 1e-300);
-          if (round == 0 && lead.t > 2 && lead.gain > 0.03 && lead.gain * share > 0.015) {
-            std::swap(selection.chosen, other);
-            swapped = true;
-          }
-          selection.alternatives.push_back(other);
+}
+
+/// Each effect against what else might stand in its place; true if one was replaced. Fills in evidence and
+/// alternatives.
+inline bool compare_with_others(const Search& search, Selection& selection, bool replace) {
+  const auto& [rig, problem, candidates, options, parallel] = search;
+  bool replaced = false;
+  selection.evidence.clear();
+  const bool alone = search.effects(selection.chosen) == 1;  // its rivals were judged when it was chosen
+  if (!alone) selection.alternatives.clear();
+  for (std::size_t i = problem.known; i < selection.chosen.hypothesis.effects.size() && !problem.stopped(); ++i) {
+    problem.progress("comparing alternatives", 0.8);
+    const Judged rest = alone ? selection.nominal : search.without(selection.chosen, i);
+    if (!alone) {
+      SelectOptions fewer = options;
+      fewer.shortlist = 8;
+      fewer.finalists = 3;
+      std::vector<Judged> others = next_effects(rig, rest, problem, candidates, fewer, least_gain(true), parallel);
+      std::erase_if(others, [&](const Judged& other) {
+        return same_effect(other.hypothesis.effects.back(), selection.chosen.hypothesis.effects[i]);
+      });
+      const double before = search.share(rest, selection.nominal);
+      for (Judged& other : others) {
+        const Comparison lead = compare_scores(selection.chosen.heldout, other.heldout);
+        if (replace && lead.t > 2 && lead.gain > 0.03 &&
+            lead.gain * search.share(selection.chosen, selection.nominal) > 0.015 &&
+            accepted(other.gain, candidates.size(), before, options)) {
+          std::swap(selection.chosen, other);
+          replaced = true;
         }
+        selection.alternatives.push_back(other);
       }
-      selection.evidence.push_back(compare_scores(rest.heldout, selection.chosen.heldout));
     }
-    if (!swapped) break;
-    selection.alternatives.clear();
+    selection.evidence.push_back(compare_scores(rest.heldout, selection.chosen.heldout));
+  }
+  return replaced;
+}
+
+}  // namespace detail
+
+/// The whole search, from a fitted hypothesis without effects.
+inline Selection select_effects(const Rig& rig, const Fit& calibrated, const SelectProblem& problem,
+                                const std::vector<AttachedEffect>& candidates, const SelectOptions& options,
+                                const Parallel& parallel) {
+  const detail::Search search{rig, problem, candidates, options, parallel};
+  Selection selection;
+  selection.candidates = candidates.size();
+  selection.nominal = detail::judge(rig, calibrated, problem, parallel);
+  selection.chosen = selection.nominal;
+  detail::grow(search, selection);
+  detail::try_pair_instead(search, selection);
+  if (search.effects(selection.chosen) == 0) return selection;
+  if (detail::compare_with_others(search, selection, true)) {
+    detail::prune(search, selection.chosen);
+    detail::compare_with_others(search, selection, false);
   }
   return selection;
 }

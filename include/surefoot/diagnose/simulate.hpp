@@ -109,9 +109,9 @@ class SimulationRun {
     const double h = row + 1 < recording_.rows() ? recording_.time[row + 1] - t : t - recording_.time[row - 1];
     Hidden dz = Hidden::Zero(slots.hidden);
     Input u = u_.between(t, h, 0);
-    for (const Slot& slot : slots.orders) u[slot.at] = through(m_, slot, u[slot.at], at, dz, t, h);
+    for (const Slot& slot : slots.orders) u[slot.at] = through(m_, slot, u[slot.at], at.z, dz, t, h);
     if constexpr (requires { m_.simulator.observe(at.x, u, m_.p, NoTap{}); }) {
-      if (!slots.taps.empty()) return m_.simulator.observe(at.x, u, m_.p, tap_of(m_, at, dz, t, h));
+      if (!slots.taps.empty()) return m_.simulator.observe(at.x, u, m_.p, tap_of(m_, at.z, dz, t, h));
     }
     return m_.simulator.observe(at.x, u, m_.p);
   }
@@ -155,7 +155,8 @@ class SimulationRun {
     u_.go_to(0);
     const double t = recording_.time[0];
     const std::vector<Mode> sliding(modes_.size(), Mode::forth);
-    rates(m_, now, u_.between(t, 1e-9, 0), t, 1e-9, sliding);  // so that effects have seen their first value
+    Hidden dz = Hidden::Zero(m_.slots.hidden);
+    rates(m_, now.x, now.z, u_.between(t, 1e-9, 0), dz, t, 1e-9, sliding);  // so that effects have seen a first value
     for (const Slot& slot : m_.slots.updates) {
       if (slot.effect->start) slot.effect->start(update_moment(m_, slot, now, t, 0), slot.p, slot.hidden(now.z));
     }

@@ -49,6 +49,7 @@ struct Slots {
   std::vector<Slot> drifts;                   // on parameters, once in each row
   std::vector<Slot> sensors;                  // once after the run
   int hidden = 0;                             // count of hidden states
+  bool hidden_rates = false;                  // some change within steps, and not only between them
   bool plain_rates = true;                    // are those of the simulator, nothing acts on them
 };
 
@@ -91,6 +92,7 @@ inline Slots slots_of(const Augmentation& augmentation, const SimulatorInfo& inf
     if (effect.planar) slots.planar.push_back(slot);
     if (effect.factor) slots.drifts.push_back(slot);
     if (effect.advance || effect.start) slots.updates.push_back(slot);
+    slots.hidden_rates = slots.hidden_rates || effect.memory_rate;
   }
   slots.plain_rates =
       slots.orders.empty() && slots.taps.empty() && slots.seen.empty() && slots.forces.empty() && slots.dry.empty();

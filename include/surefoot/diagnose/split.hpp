@@ -18,7 +18,8 @@ struct RecordingSplit {
   std::vector<std::vector<std::size_t>> folds;  // of the training recordings
 };
 
-/// Test recordings are those named, or a random share; never all, and at least one. The rest is dealt into folds.
+/// Test recordings are those named, or a random share; never all, and at least one. The rest is dealt into folds, up
+/// to two more than asked for if each recording is then left out alone.
 inline RecordingSplit split_recordings(const std::vector<Recording>& recordings, const std::vector<std::string>& test,
                                        double share, std::size_t folds, std::uint64_t seed) {
   std::vector<std::size_t> order(recordings.size());
@@ -44,7 +45,8 @@ inline RecordingSplit split_recordings(const std::vector<Recording>& recordings,
     if (!std::binary_search(split.test.begin(), split.test.end(), r)) split.training.push_back(r);
   }
   if (split.training.empty()) throw DiagnoseError("no recording is left for the fit: name fewer test recordings");
-  split.folds.resize(std::min(folds, split.training.size()));
+  const std::size_t count = split.training.size();
+  split.folds.resize(count <= folds + 2 ? count : folds);
   for (std::size_t i = 0; i < split.training.size(); ++i)
     split.folds[i % split.folds.size()].push_back(split.training[i]);
   for (auto& fold : split.folds) std::sort(fold.begin(), fold.end());

@@ -47,8 +47,31 @@ inline int output_watching(const Rig& rig, const AttachedEffect& attached) {
   }
 }
 
+/// What one output read, and what was simulated without the effect that is to be started.
+struct Observed {
+  std::vector<double> readings, simulated;
+};
+
+/// By output.
+inline std::vector<Observed> observe(const Rig& rig, const std::vector<std::size_t>& recordings,
+                                     const std::vector<SimulatedRun>& runs) {
+  std::vector<Observed> result(rig.info.outputs.size());
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const Eigen::MatrixXd& outputs = rig.recordings[recordings[i]].outputs;
+    for (Eigen::Index k = 0; k < outputs.rows(); ++k) {
+      for (Eigen::Index row = 0; row < outputs.cols(); ++row) {
+        if (!std::isfinite(outputs(k, row))) continue;
+        result[static_cast<std::size_t>(k)].readings.push_back(outputs(k, row));
+        result[static_cast<std::size_t>(k)].simulated.push_back(runs[i].outputs(k, row));
+      }
+    }
+  }
+  return result;
+}
+
 /// Every combination of the starting values, in units of the model.
-inline std::vector<Eigen::VectorXd> starts_of(const Rig& rig, const AttachedEffect& attached) {
+inline std::vector<Eigen::VectorXd> starts_of(const Rig& rig, const AttachedEffect& attached,
+                                              const std::vector<Observed>& observed) {
   const auto& parameters = attached.effect->parameters;
   std::vector<Eigen::VectorXd> result{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters.size()))};
   for (std::size_t k = 0; k < parameters.size(); ++k) {
@@ -65,13 +88,8 @@ inline std::vector<Eigen::VectorXd> starts_of(const Rig& rig, const AttachedEffe
   }
   const int output = output_watching(rig, attached);
   if (!attached.effect->suggest || output < 0) return result;
-  std::vector<double> readings;
-  for (const Recording& recording : rig.recordings) {
-    for (const double value : recording.outputs.row(output)) {
-      if (std::isfinite(value)) readings.push_back(value);
-    }
-  }
-  const std::vector<double> suggested = attached.effect->suggest(readings);
+  const Observed& seen = observed[static_cast<std::size_t>(output)];
+  const std::vector<double> suggested = attached.effect->suggest(seen.readings, seen.simulated);
   if (suggested.empty()) return result;
   std::vector<Eigen::VectorXd> better;
   for (const Eigen::VectorXd& one : result) {

@@ -51,6 +51,7 @@ struct LeastSquaresOptions {
   double tol_gradient = 1e-10;  // largest cosine between the residuals and a column of the Jacobian
   double tol_step = 1e-10;      // length of a step [length of the parameters]
   double tol_cost = 1e-14;      // decrease of the cost in a step [cost]
+  bool covariance = true;       // false: saves the last Jacobian; covariance, deviation, rank and held say nothing
 };
 
 enum class LeastSquaresStop : std::uint8_t { gradient, step, cost, max_iterations };
@@ -102,7 +103,7 @@ class LeastSquaresFit {
         reason = *ended;
         break;
       }
-      linearise();
+      if (options_.covariance || iteration + 1 < options_.max_iterations) linearise();
     }
     LeastSquaresResult result{.x = x_,
                               .cost = cost_,
@@ -111,7 +112,7 @@ class LeastSquaresFit {
                               .iterations = iteration,
                               .covariance = {},
                               .held = held_};
-    estimate_covariance(result);
+    if (options_.covariance) estimate_covariance(result);
     return result;
   }
 
@@ -191,7 +192,7 @@ class LeastSquaresFit {
         residuals_ = residuals;
         cost_ = next_cost;
         if (!done) return std::nullopt;
-        linearise();
+        if (options_.covariance) linearise();
         return LeastSquaresStop::cost;
       }
       damping_ *= growth_;

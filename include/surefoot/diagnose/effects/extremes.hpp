@@ -19,12 +19,12 @@ inline double quantile(Values readings, double share) {
 }
 
 /// Near the largest readings; none where there are too few readings to tell noise from a limit.
-inline std::vector<double> near_largest(Values readings) {
+inline std::vector<double> near_largest(Values readings, Values) {
   if (readings.size() < 50) return {};
   return {quantile(readings, 0.998), quantile(readings, 0.98)};
 }
 
-inline std::vector<double> near_smallest(Values readings) {
+inline std::vector<double> near_smallest(Values readings, Values) {
   if (readings.size() < 50) return {};
   return {quantile(readings, 0.002), quantile(readings, 0.02)};
 }

@@ -23,6 +23,7 @@ inline Effect leak() {
                           .strength = true}},
           .confusable_with = {"constant_rate", "input_gain", "overflow"},
           .experiment = "fill it up, stop every input and record the decay until little is left",
+          .stored = true,
           .force = [](const Moment& m, Values p, Values) { return -p[0] * m.value; }};
 }
 
@@ -39,6 +40,7 @@ inline Effect leak_hole() {
           .confusable_with = {"constant_rate", "input_gain", "overflow"},
           .experiment = "fill it up, stop every input and record the decay until little is left",
           .form = "hole",
+          .stored = true,
           .force = [](const Moment& m, Values p, Values) { return -p[0] * std::sqrt(std::max(m.value, 0.0)); }};
 }
 

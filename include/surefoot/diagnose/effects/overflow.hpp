@@ -19,6 +19,7 @@ inline Effect overflow() {
                           .of_peak = true}},
           .confusable_with = {"saturation", "leak"},
           .experiment = "fill it well beyond the suspected level, slowly and quickly, and let it fall again",
+          .stored = true,
           .suggest = detail::near_largest,
           .limit = [](Values p, double& value, double&, double&) {
             if (value > p[0]) value = p[0];
@@ -39,6 +40,7 @@ inline Effect overflow_spill() {
           .confusable_with = {"saturation", "leak"},
           .experiment = "fill it well beyond the suspected level, slowly and quickly, and watch where it goes",
           .form = "spill",
+          .stored = true,
           .spills = true,
           .suggest = detail::near_largest,
           .limit = [](Values p, double& value, double&, double& other) {

@@ -36,14 +36,19 @@ inline Offset swing(const TwoMasses& masses, Offset at, double a, double step) {
   const double frequency = std::min(masses.frequency, 2 / step);
   const int substeps = 1 + static_cast<int>(frequency * step / 0.1);
   const double h = step / substeps, damping = 2 * masses.damping * frequency;
+  if (masses.half_width == 0) {  // linear
+    const double keep = 1 / (1 + h * damping), bend = keep * h * frequency * frequency, push = keep * h * a;
+    for (int i = 0; i < substeps; ++i) {
+      at.w = (keep * at.w - push) - bend * at.d;
+      at.d += h * at.w;
+    }
+    return at;
+  }
   for (int i = 0; i < substeps; ++i) {
     const double bend = beyond_gap(at.d, masses.half_width);
-    if (masses.half_width == 0) {
-      at.w = (at.w - h * (frequency * frequency * bend + a)) / (1 + h * damping);
-    } else {  // parts in contact push and never pull
-      const double pull = frequency * frequency * bend + (bend != 0 ? damping * at.w : 0.0);
-      at.w -= h * ((pull * bend > 0 ? pull : 0.0) + a);
-    }
+    // parts in contact push and never pull
+    const double pull = frequency * frequency * bend + (bend != 0 ? damping * at.w : 0.0);
+    at.w -= h * ((pull * bend > 0 ? pull : 0.0) + a);
     at.d += h * at.w;
   }
   return at;

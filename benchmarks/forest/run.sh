@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# Compares our forests with those of other libraries on the same data, everything on one core.
+#   benchmarks/forest/run.sh [OPTIONS OF forest_peers]     for example: --leaves 200,2000 --rounds 3
+# The build is kept in $SUREFOOT_BUILD_DIR, by default build/release; tables and plots go to <build>/forest.
+# $SUREFOOT_CORE is the core to run on, by default the last one.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+source cmake/packages.sh
+require_packages "${build_packages[@]}" libdlib-dev libopencv-ml-dev libxgboost-dev python3-sklearn gnuplot-nox valgrind
+
+build=${SUREFOOT_BUILD_DIR:-build/release}
+core=${SUREFOOT_CORE:-$(($(nproc) - 1))}
+programs=(forest_peers forest_training forest_scaling forest_instructions)
+cmake --preset release -B "$build" -D SUREFOOT_TESTS=OFF -D SUREFOOT_EXAMPLES=OFF -D SUREFOOT_BENCHMARKS=ON
+cmake --build "$build" --target "${programs[@]}"
+
+out=$build/forest
+bin=$build/bin
+peers=benchmarks/forest/peers
+mkdir -p "$out"
+
+echo "== every library"
+taskset -c "$core" "$bin/forest_peers" "$@" --csv "$out/peers.csv" | tee "$out/peers.txt"
+
+echo "== many sizes, the same samples for all"
+taskset -c "$core" "$bin/forest_peers" --samples 50000 --trees 5,25 --leaves 20,60,200,600,2000,6000 --rounds 3 \
+  --csv "$out/sizes.csv" >"$out/sizes.txt"
+gnuplot -e "csv='$out/sizes.csv'; folder='$out'" "$peers/plot_compare.gp"
+
+echo "== training"
+taskset -c "$core" "$bin/forest_training" --script "$peers/train_sklearn.py" | tee "$out/training.txt"
+
+echo "== scaling"
+"$bin/forest_scaling" >"$out/scaling.csv"
+gnuplot -e "csv='$out/scaling.csv'; folder='$out'" "$peers/plot_scaling.gp"
+
+echo "== instructions per warm prediction, 200 leaves"
+predictions=$(valgrind --quiet --tool=callgrind --callgrind-out-file="$out/callgrind.out" \
+  --toggle-collect='*predict_all_points*' "$bin/forest_instructions")
+awk -v n="$predictions" '/^(summary|totals):/ { print int($2 / n); exit }' "$out/callgrind.out" | tee "$out/instructions.txt"
+echo "tables and plots: $out"

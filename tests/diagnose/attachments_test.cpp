@@ -1,0 +1,55 @@
+// Where effects may attach.
+#include "surefoot/diagnose/attachments.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "surefoot/diagnose/effects.hpp"
+#include "tests/diagnose/small_simulators.hpp"
+
+namespace surefoot {
+namespace {
+
+/// A car in the plane: nothing depends on where it is.
+struct Car {
+  using State = Vec<2>;
+  using Input = Vec<1>;
+  using Output = Vec<2>;
+
+  SimulatorInfo info() const {
+    return {.name = "car",
+            .states = {{"x", "m"}, {"yaw", "rad"}},
+            .inputs = {{"speed", "m/s"}},
+            .outputs = {{"x_m", "m"}, {"yaw_rad", "rad"}},
+            .parameters = {{"turn", "rad/m", 1, 0.2, 5}}};
+  }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& p) const {
+    return {u[0] * std::cos(x[1]), p[0] * u[0]};
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return x; }
+};
+
+std::vector<std::string> places(const Rig& rig, const Effect& effect) {
+  std::vector<std::string> result;
+  for (const AttachedEffect& one : attachments(rig, {effect}, std::vector<bool>(rig.info.inputs.size(), true))) {
+    result.push_back(one.place);
+  }
+  return result;
+}
+
+TEST_CASE("a store can leak and overflow, a place and an angle cannot") {
+  const Rig tank = make_rig(toys::LeakyTank{}, {toys::blank_recording(toys::LeakyTank{}.info(), 100, 0.1)});
+  const Rig car = make_rig(Car{}, {toys::blank_recording(Car{}.info(), 100, 0.1)});
+  for (const Effect& effect : {effects::leak(), effects::leak_hole(), effects::overflow()}) {
+    CAPTURE(effect.name);
+    CHECK(places(tank, effect) == std::vector<std::string>{"level"});
+    CHECK(places(car, effect).empty());
+  }
+  CHECK(places(car, effects::constant_rate()) == std::vector<std::string>{"x", "yaw"});
+}
+
+}  // namespace
+}  // namespace surefoot
