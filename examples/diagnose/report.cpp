@@ -41,7 +41,8 @@ std::string verdict_part(const Diagnosis& d) {
   html += tile(std::to_string(d.test.size()), "recordings kept aside for these figures");
   return html +
          "</div>\n<p class=\"note\">Errors are those of whole simulations of recordings that were used neither to fit "
-         "nor to choose, in units of the noise, or of the spread of the output where the noise is unknown.</p>\n";
+         "nor to choose (they may only veto), in units of the noise, or of the spread of the output where the noise is "
+         "unknown.</p>\n";
 }
 
 std::string where_part(const Diagnosis& d, const std::string& unit) {

@@ -206,7 +206,7 @@ inline void conclude(Investigation& investigation, const std::vector<AttachedEff
       break;
     case Verdict::missing_physics:
       diagnosis.sentence = "Left out of the model: " + in_list(sentences) +
-                           ". With that, the error on recordings never used falls by " + percent + " %.";
+                           ". With that, the error on recordings kept aside falls by " + percent + " %.";
       break;
     case Verdict::unexplained:
       diagnosis.sentence = "The model leaves something out that no known effect explains";

@@ -1,5 +1,5 @@
-// Proves a diagnosis on recordings that were used neither to fit nor to choose: errors before and after, against the
-// noise and against a forest in place of physics.
+// Proves a diagnosis on recordings that were used neither to fit nor to choose (they may veto, see confirm.hpp): errors
+// before and after, against the noise and against a forest in place of physics.
 #pragma once
 
 #include <Eigen/Core>
