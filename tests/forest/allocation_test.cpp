@@ -1,9 +1,12 @@
 // Prediction must not allocate: operator new is replaced by one that counts.
 #include <doctest/doctest.h>
 
+#include <array>
 #include <atomic>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
+#include <span>
 
 #include "surefoot/core/executor.hpp"
 #include "surefoot/forest/extra_trees.hpp"
@@ -37,7 +40,11 @@ TEST_CASE_TEMPLATE("predicting allocates nothing", Leaf, ConstantLeaf, LinearLea
   const Vec<2> y = forest.predict(x);
   forest.predict(samples.inputs, out);
   forest.predict(samples.inputs.data(), 300, out.data());
+  const Spread<2> spread = forest.predict_spread(x);
+  std::array<std::uint32_t, 25> leaves;
+  forest.leaf_indices(x, std::span(leaves).first(forest.trees()));
   CHECK(allocations == before);
+  CHECK(spread.mean == y);
   CHECK(out.col(0) == y);
 }
 

@@ -4,51 +4,120 @@
 
 #include <array>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "surefoot/core/executor.hpp"
+#include "surefoot/core/rng.hpp"
+#include "surefoot/forest/descend_batch.hpp"
 #include "surefoot/forest/extra_trees.hpp"
 #include "tests/forest/samples.hpp"
 
 namespace surefoot {
 namespace {
 
-TEST_CASE("all ways down a tree end in the same leaf") {
-  const auto forest = train_extra_trees(toy::sample(toy::Cliff{}, 2000, 1), {.trees = 70, .min_leaf = 1}, Serial{}, 1);
-  const Trees& trees = forest.raw();
-  Rng rng(2);
-  std::vector<std::array<std::uint32_t, 5>> queries(300);
-  for (auto& keys : queries) {
-    for (std::uint32_t& key : keys) key = sort_key(static_cast<float>(rng.uniform(-1.2, 1.2)));
-  }
-  queries[0].fill(0);  // below every threshold
-  queries[1].fill(sort_key(std::numeric_limits<float>::infinity()));
-  queries[2][3] = trees.nodes[trees.roots[0]].key();  // on a threshold
-  std::vector<std::uint64_t> wide_keys(304 * 6, 0);
-  for (std::size_t i = 0; i < queries.size(); ++i) detail::widen_keys(queries[i], &wide_keys[6 * i]);
+constexpr std::size_t inputs = 5;
+using Query = std::array<float, inputs>;
 
-  int differences = 0;
-  std::vector<std::uint32_t> portable(70);
-  std::vector<std::vector<std::uint32_t>> by_tree(70, std::vector<std::uint32_t>(304));
-  for (std::size_t t = 0; t < 70; ++t) {
-    const Node* root = trees.nodes.data() + trees.roots[t];
-    detail::find_leaves_of_batch<0>(root, wide_keys.data(), 6, queries.size(), by_tree[t].data());
+std::vector<Query> hard_queries(const Trees& trees, std::size_t count) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  Rng rng(2);
+  std::vector<Query> queries(count);
+  for (Query& x : queries) {
+    for (float& value : x) value = static_cast<float>(rng.uniform(-1.2, 1.2));
+    switch (rng.below(8)) {  // half of them as they are
+      case 0:
+        x[rng.below(inputs)] = nan;
+        break;
+      case 1:
+        x[rng.below(inputs)] = rng.below(2) == 0 ? infinity : -infinity;
+        break;
+      case 2:
+        x[rng.below(inputs)] = rng.below(2) == 0 ? 0.0F : -0.0F;
+        break;
+      case 3: {  // on a threshold
+        const Node node = trees.nodes[rng.below(static_cast<std::uint32_t>(trees.nodes.size()))];
+        if (!node.is_leaf()) x[static_cast<std::size_t>(node.input())] = node.threshold();
+        break;
+      }
+      default:
+        break;
+    }
   }
-  for (std::size_t i = 0; i < queries.size(); ++i) {
-    detail::find_leaves_portable(trees.nodes.data(), trees.roots, queries[i], portable.data());
-    for (std::size_t t = 0; t < 70; ++t) differences += by_tree[t][i] != portable[t] ? 1 : 0;
+  queries[0].fill(nan);
+  queries[1].fill(infinity);
+  queries[2].fill(-infinity);
+  queries[3].fill(-0.0F);
+  return queries;
+}
+
+// One comparison of floats after the other.
+std::uint32_t payload_by_hand(const Trees& trees, std::size_t tree, const Query& x) {
+  std::size_t at = trees.roots[tree];
+  while (!trees.nodes[at].is_leaf()) {
+    const Node node = trees.nodes[at];
+    at += node.distance() + (x[static_cast<std::size_t>(node.input())] > node.threshold() ? 1U : 0U);
+  }
+  return trees.nodes[at].payload();
+}
+
+TEST_CASE("all ways down a tree end in the same leaf") {
+  for (const int min_leaf : {1, 20, 2000}) {  // of the last each tree is one leaf
+    CAPTURE(min_leaf);
+    const auto forest =
+        train_extra_trees(toy::sample(toy::Cliff{}, 2000, 1), {.trees = 70, .min_leaf = min_leaf}, Serial{}, 1);
+    const Trees& trees = forest.raw();
+    const std::vector<Query> queries = hard_queries(trees, detail::max_batch);
+    std::vector<std::vector<std::uint32_t>> expected(queries.size(), std::vector<std::uint32_t>(70));
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      for (std::size_t t = 0; t < 70; ++t) expected[i][t] = payload_by_hand(trees, t, queries[i]);
+    }
+
+    int differences = 0;
+    std::vector<std::uint64_t> rows;
+    std::vector<std::int32_t> columns((inputs + 1) * detail::max_batch, detail::flipped(0));
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      std::array<std::uint32_t, inputs> keys;
+      for (std::size_t k = 0; k < inputs; ++k) keys[k] = sort_key(queries[i][k]);
+      for (std::size_t k = 0; k < inputs; ++k) columns[k * detail::max_batch + i] = detail::flipped(keys[k]);
+      rows.resize(rows.size() + inputs + 1);
+      detail::widen_keys(keys, &rows[i * (inputs + 1)]);
+      for (const std::size_t count : {1U, 2U, 7U, 8U, 9U, 15U, 16U, 17U, 25U, 32U, 33U, 48U, 49U, 64U, 65U, 70U}) {
+        const auto roots = std::span(trees.roots).first(count);
+        std::vector<std::uint32_t> found(count, 1);
+        const auto compare = [&] {
+          for (std::size_t t = 0; t < count; ++t) differences += found[t] != expected[i][t] ? 1 : 0;
+          found.assign(count, 1);
+        };
+        detail::find_leaves(trees.nodes.data(), roots, keys, found.data());
+        compare();
+        detail::find_leaves_portable(trees.nodes.data(), roots, keys,
+                                     [&](std::size_t t, const Node* leaf) { found[t] = leaf->payload(); });
+        compare();
 #ifdef SUREFOOT_AVX2
-    if (__builtin_cpu_supports("avx2")) {
-      for (const std::size_t count : {1U, 8U, 16U, 17U, 32U, 33U, 70U}) {
-        std::vector<std::uint32_t> vectorised(count);
-        detail::find_leaves_avx2(trees.nodes.data(), std::span(trees.roots).first(count), queries[i],
-                                 vectorised.data());
-        for (std::size_t t = 0; t < count; ++t) differences += vectorised[t] != portable[t] ? 1 : 0;
+        if (__builtin_cpu_supports("avx2")) {
+          detail::find_leaves_avx2(trees.nodes.data(), roots, keys, found.data());
+          compare();
+        }
+#endif
       }
     }
-#endif
+    const detail::BatchKeys keys{rows.data(), inputs + 1, columns.data(), detail::max_batch};
+    for (const std::size_t count : {8U, 16U, 40U, 256U}) {
+      for (std::size_t t = 0; t < 70; ++t) {
+        const Node* root = trees.nodes.data() + trees.roots[t];
+        std::array<std::uint32_t, detail::max_batch> fixed;
+        std::array<std::uint32_t, detail::max_batch> run_time;
+        detail::find_leaves_of_batch<inputs + 1>(root, keys, count, fixed.data());
+        detail::find_leaves_of_batch<0>(root, keys, count, run_time.data());
+        for (std::size_t i = 0; i < count; ++i) {
+          differences += fixed[i] != expected[i][t] || run_time[i] != expected[i][t] ? 1 : 0;
+        }
+      }
+    }
+    CHECK(differences == 0);
   }
-  CHECK(differences == 0);
 }
 
 TEST_CASE("inputs between two corners pass where their paths part") {

@@ -3,9 +3,11 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,30 +32,22 @@ bool have_c_compiler() {
   return found;
 }
 
-// Compiles the C code and calls its `name` for every input.
+// Compiles the C code and calls its `name` for every input; if that takes whole numbers (of type `whole`), through its
+// own conversion.
 std::vector<double> run_c(const std::string& code, const std::string& name, const std::vector<double>& inputs,
-                          std::size_t width_in, std::size_t width_out) {
+                          std::size_t width_in, std::size_t width_out, const std::string& whole = "") {
   const Folder folder;
   const std::string in = std::to_string(width_in);
   const std::string out = std::to_string(width_out);
   write_file_atomically(folder.path / "forest.c", code);
-  write_file_atomically(folder.path / "main.c",
-                        "#include <stdio.h>\n"
-                        "void " +
-                            name +
-                            "(const double *in, double *out);\n"
-                            "int main(void) {\n"
-                            "  double in[" +
-                            in + "], out[" + out +
-                            "];\n"
-                            "  while (fread(in, sizeof in, 1, stdin) == 1) {\n"
-                            "    " +
-                            name +
-                            "(in, out);\n"
-                            "    fwrite(out, sizeof out, 1, stdout);\n"
-                            "  }\n"
-                            "  return 0;\n"
-                            "}\n");
+  const std::string type = whole.empty() ? "double" : whole;
+  std::string main = "#include <stdint.h>\n#include <stdio.h>\nvoid " + name + "(const " + type + " *, double *);\n";
+  if (!whole.empty()) main += whole + " " + name + "_input(int, double);\n";
+  main += "int main(void) {\n  double in[" + in + "], out[" + out + "];\n  " + type + " x[" + in +
+          "];\n  while (fread(in, sizeof in, 1, stdin) == 1) {\n    for (int k = 0; k < " + in +
+          "; ++k) x[k] = " + (whole.empty() ? "in[k]" : name + "_input(k, in[k])") + ";\n    " + name +
+          "(x, out);\n    fwrite(out, sizeof out, 1, stdout);\n  }\n  return 0;\n}\n";
+  write_file_atomically(folder.path / "main.c", main);
   write_file_atomically(folder.path / "in.bin", std::as_bytes(std::span(inputs)));
   const std::string at = "cd '" + folder.path.string() + "' && ";
   REQUIRE(std::system((at + "cc -O2 -std=c99 -Wall -Wextra -pedantic -Werror -c forest.c").c_str()) == 0);
@@ -99,11 +93,105 @@ TEST_CASE("the C file of a forest gives the library's bits") {
   }
 }
 
+TEST_CASE("nested ifs give the library's bits as well") {
+  for (const CTable table : {CTable::integers, CTable::text}) {
+    const ExportCOptions options{.table = table, .descent = CDescent::branches};
+    check_same(train_extra_trees(toy::sample(toy::Cliff{}, 1000, 1), {.min_leaf = 2}, Serial{}, 1), options);
+    check_same(train_extra_trees<LinearLeaf>(toy::sample(toy::ClippedLaws{}, 600, 1), {.trees = 3}, Serial{}, 1),
+               options);
+  }
+}
+
 TEST_CASE("a forest of single leaves has a C file too") {
   Dataset<2, 1> samples{Eigen::Matrix<float, 2, 3>::Ones(), Eigen::RowVector3d(1, 2, 6), {}};
-  for (const CTable table : {CTable::integers, CTable::text}) {
-    check_same(train_extra_trees(samples, {.trees = 2}, Serial{}, 1), {.table = table});
+  const auto forest = train_extra_trees(samples, {.trees = 2}, Serial{}, 1);
+  for (const CTable table : {CTable::integers, CTable::text}) check_same(forest, {.table = table});
+  check_same(forest, {.descent = CDescent::branches});
+  if (!have_c_compiler()) return;
+  for (const CDescent descent : {CDescent::tables, CDescent::branches}) {
+    const ExportCOptions options{.descent = descent, .thresholds = CThreshold::int16};
+    CHECK(run_c(export_c(forest, options), options.function, {0.5, 7}, 2, 1, "int16_t") == std::vector<double>{3.0});
   }
+}
+
+// Inputs farther than 1 / scale from every threshold must reach the same leaves; linear leaves see the rounded input.
+template <class F>
+void check_fixed(const F& forest, const ExportCOptions& options) {
+  if (!have_c_compiler()) return;
+  const detail::CTables tables(forest.raw());
+  const std::vector<double> scales =
+      detail::c_scales(tables, forest.inputs(), options.thresholds, options.largest_inputs);
+  const auto in = static_cast<std::size_t>(forest.inputs());
+  const auto out = static_cast<std::size_t>(forest.outputs());
+  Rng rng(5);
+  std::vector<double> inputs;
+  std::vector<double> rounded;
+  while (inputs.size() < 400 * in) {
+    std::vector<double> x(in);
+    for (double& value : x) value = static_cast<double>(static_cast<float>(rng.uniform(-0.99, 0.99)));
+    bool far = true;
+    for (std::size_t i = 0; i < tables.thresholds.size(); ++i) {
+      const auto k = static_cast<std::size_t>(tables.inputs[i]);
+      far = far && std::abs(x[k] - static_cast<double>(tables.thresholds[i])) > 1 / scales[k];
+    }
+    if (!far) continue;
+    inputs.insert(inputs.end(), x.begin(), x.end());
+    for (std::size_t k = 0; k < in; ++k) rounded.push_back(std::round(x[k] * scales[k]) / scales[k]);
+  }
+  const std::string whole = options.thresholds == CThreshold::int16 ? "int16_t" : "int32_t";
+  const std::vector<double> outputs = run_c(export_c(forest, options), options.function, inputs, in, out, whole);
+  REQUIRE(outputs.size() == 400 * out);
+  int differences = 0;
+  for (std::size_t i = 0; i < 400; ++i) {
+    const auto expected = forest.predict(Eigen::Map<const Eigen::VectorXd>(&rounded[i * in], forest.inputs()));
+    const auto leaf = forest.predict(Eigen::Map<const Eigen::VectorXd>(&inputs[i * in], forest.inputs()));
+    for (std::size_t o = 0; o < out; ++o) {
+      const auto at = static_cast<Eigen::Index>(o);
+      if (outputs[i * out + o] != expected[at]) ++differences;
+      if (std::abs(outputs[i * out + o] - leaf[at]) > 1e-3) ++differences;
+    }
+  }
+  CHECK(differences == 0);
+}
+
+TEST_CASE("whole-number inputs reach the same leaves beyond the stated rounding") {
+  const auto constant = train_extra_trees(toy::sample(toy::Cliff{}, 400, 1), {.trees = 4, .min_leaf = 4}, Serial{}, 1);
+  const auto linear =
+      train_extra_trees<LinearLeaf>(toy::sample(toy::ClippedLaws{}, 600, 1), {.trees = 3, .min_leaf = 20}, Serial{}, 1);
+  for (const CThreshold thresholds : {CThreshold::int16, CThreshold::int32}) {
+    for (const CDescent descent : {CDescent::tables, CDescent::branches}) {
+      const ExportCOptions options{.descent = descent, .thresholds = thresholds};
+      check_fixed(constant, options);
+      ExportCOptions wide = options;
+      wide.largest_inputs.assign(4, 1.0);
+      check_fixed(linear, wide);
+    }
+  }
+}
+
+TEST_CASE("inputs beyond the range of whole numbers end up at its ends, NaN at the lower") {
+  if (!have_c_compiler()) return;
+  const auto forest = train_extra_trees(toy::sample(toy::Cliff{}, 400, 1), {.trees = 4}, Serial{}, 1);
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double far : {1e3, -1e3, infinity, -infinity, std::numeric_limits<double>::quiet_NaN()}) {
+    for (const bool large : {false, true}) {
+      const ExportCOptions options{.thresholds = large ? CThreshold::int32 : CThreshold::int16};
+      const std::vector<double> out = run_c(export_c(forest, options), options.function, std::vector<double>(5, far), 5,
+                                            1, large ? "int32_t" : "int16_t");
+      REQUIRE(out.size() == 1);
+      CHECK(out[0] == forest.predict(Vec<5>::Constant(far))[0]);
+    }
+  }
+}
+
+TEST_CASE("the scale of whole numbers is the largest power of two with room for thresholds and inputs") {
+  const auto forest = train_extra_trees(toy::sample(toy::Cliff{}, 400, 1), {}, Serial{}, 1);
+  const detail::CTables tables(forest.raw());
+  const std::vector<double> none;
+  const std::vector<double> large(5, 1000.0);
+  for (const double scale : detail::c_scales(tables, 5, CThreshold::int16, none)) CHECK(scale == 32768);
+  for (const double scale : detail::c_scales(tables, 5, CThreshold::int16, large)) CHECK(scale == 32);
+  for (const double scale : detail::c_scales(tables, 5, CThreshold::int32, none)) CHECK(scale == 2147483648.0);
 }
 
 TEST_CASE("a wrapper can prepare the inputs and finish the outputs") {
@@ -140,6 +228,24 @@ TEST_CASE("what cannot be exported is named") {
     CHECK_THROWS_WITH_AS(export_c(forest, {.function = name}), doctest::Contains("function"), ForestError);
   }
   CHECK_THROWS_WITH_AS(export_c(Forest<2, 1>()), doctest::Contains("empty"), ForestError);
+  const ExportCOptions few{.thresholds = CThreshold::int16, .largest_inputs = {1, 2}};
+  CHECK_THROWS_WITH_AS(export_c(forest, few), doctest::Contains("largest_inputs"), ForestError);
+  const ExportCOptions zero{.thresholds = CThreshold::int16, .largest_inputs = {1, 2, 0, 1, 1}};
+  CHECK_THROWS_WITH_AS(export_c(forest, zero), doctest::Contains("positive"), ForestError);
+}
+
+TEST_CASE("a tree too deep for nested ifs is refused, tables take it") {
+  constexpr Eigen::Index count = 254;  // each sample twice as far out as the one before: a level takes off few
+  Dataset<1, 1> samples;
+  samples.inputs.resize(1, count);
+  samples.outputs.resize(1, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    samples.inputs(0, i) = std::ldexp(1.0F, static_cast<int>(i) - 126);
+    samples.outputs(0, i) = static_cast<double>(i);
+  }
+  const auto forest = train_extra_trees(samples, {.trees = 1, .min_leaf = 1}, Serial{}, 1);
+  CHECK_THROWS_WITH_AS(export_c(forest, {.descent = CDescent::branches}), doctest::Contains("too deep"), ForestError);
+  check_same(forest, {});
 }
 
 }  // namespace

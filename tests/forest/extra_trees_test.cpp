@@ -134,6 +134,52 @@ TEST_CASE("a sample of weight w counts as w samples") {
   }
 }
 
+TEST_CASE_TEMPLATE("a sample of weight 2 teaches what the sample twice would", Leaf, ConstantLeaf, LinearLeaf) {
+  auto weighted = toy::sample(toy::ClippedLaws{}, 600, 1, 0.2);
+  auto copied = weighted;
+  copied.inputs.conservativeResize(Eigen::NoChange, 800);
+  copied.outputs.conservativeResize(Eigen::NoChange, 800);
+  copied.inputs.rightCols(200) = weighted.inputs.leftCols(200);
+  copied.outputs.rightCols(200) = weighted.outputs.leftCols(200);
+  const ExtraTreesOptions options{.trees = 4, .min_leaf = 1, .max_leaves = 12, .ridge = 0};  // nothing counts samples
+  const auto without = train_extra_trees<Leaf>(weighted, options, Serial{}, 1);
+  weighted.weights.setOnes(600);
+  weighted.weights.head(200).setConstant(2);
+  const auto by_weight = train_extra_trees<Leaf>(weighted, options, Serial{}, 1);
+  const auto by_copies = train_extra_trees<Leaf>(copied, options, Serial{}, 1);
+  double difference = 0;
+  double influence = 0;
+  for (Eigen::Index i = 0; i < 600; ++i) {
+    const Vec<4> x = weighted.inputs.col(i).template cast<double>();
+    difference = std::max(difference, (by_weight.predict(x) - by_copies.predict(x)).norm());
+    influence = std::max(influence, (by_weight.predict(x) - without.predict(x)).norm());
+  }
+  CHECK(difference < 1e-4);
+  CHECK(influence > 0.01);
+}
+
+TEST_CASE("weights count for what an output's variance is, too") {
+  // Two outputs with one step each; samples of hardly any weight blow the first one's variance up.
+  Dataset<2, 2> samples;
+  samples.inputs.resize(2, 1000);
+  samples.outputs.resize(2, 1000);
+  samples.weights.setOnes(1000);
+  Rng rng(2);
+  for (Eigen::Index i = 0; i < 1000; ++i) {
+    samples.inputs.col(i) << static_cast<float>(rng.uniform()), static_cast<float>(rng.uniform());
+    samples.outputs.col(i) << (samples.inputs(0, i) > 0.5F ? 1.2 : 0), (samples.inputs(1, i) > 0.5F ? 1 : 0);
+    if (i % 100 == 0) {
+      samples.outputs(0, i) = rng.normal() * 100;
+      samples.weights[i] = 1e-9;
+    }
+  }
+  const auto forest = train_extra_trees(samples, {.trees = 200, .max_leaves = 2}, Serial{}, 1);
+  int of_first = 0;
+  for (const std::uint32_t root : forest.raw().roots) of_first += forest.raw().nodes[root].input() == 0 ? 1 : 0;
+  CHECK(of_first > 70);  // both outputs count alike: 100 expected
+  CHECK(of_first < 130);
+}
+
 TEST_CASE("splits follow the weights") {
   // Half of the samples have nearly no weight; a tree of two leaves must cut where the others have their step.
   Dataset<1, 1> samples;

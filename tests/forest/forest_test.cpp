@@ -3,6 +3,9 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -88,6 +91,87 @@ TEST_CASE("inputs that are infinite or no numbers still lead to a leaf, NaN to t
   CHECK(forest.predict(nowhere) == forest.predict(lowest));
   CHECK(std::isfinite(forest.predict(Vec<5>::Constant(infinity))[0]));
   CHECK(forest.predict(Vec<5>::Constant(-0.0)) == forest.predict(Vec<5>::Zero()));
+}
+
+TEST_CASE("a batch of any size gives what its members give alone") {
+  const auto samples = toy::sample(toy::ClippedLaws{}, 600, 1);
+  const auto forest = train_extra_trees(samples, {.trees = 20, .min_leaf = 2}, Serial{}, 1);
+  for (const std::size_t count : {1U, 2U, 8U, 31U, 32U, 33U, 39U, 255U, 256U, 257U, 288U, 289U, 600U}) {
+    std::vector<double> out(2 * count, 99.0);
+    forest.predict(samples.inputs.data(), count, out.data());
+    int differences = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec<2> expected = walk<4, 2, ConstantLeaf>(forest, samples.inputs.col(static_cast<Eigen::Index>(i)));
+      differences += out[2 * i] != expected[0] || out[2 * i + 1] != expected[1] ? 1 : 0;
+    }
+    CAPTURE(count);
+    CHECK(differences == 0);
+  }
+}
+
+TEST_CASE_TEMPLATE("the spread is the mean and the standard deviation over the trees", Leaf, ConstantLeaf, LinearLeaf) {
+  for (const int trees : {1, 9, 100}) {
+    CAPTURE(trees);
+    const auto samples = toy::sample(toy::ClippedLaws{}, 300, 1);
+    const auto forest = train_extra_trees<Leaf>(samples, {.trees = trees, .min_leaf = 10}, Serial{}, 1);
+    const Forest<Eigen::Dynamic, Eigen::Dynamic, Leaf> dynamic(forest.raw());
+    for (Eigen::Index i = 0; i < 20; ++i) {
+      const Vec<4> x = samples.inputs.col(i).template cast<double>();
+      Eigen::Matrix2Xd each(2, trees);
+      for (int t = 0; t < trees; ++t) {
+        Trees one = forest.raw();
+        one.roots = {forest.raw().roots[static_cast<std::size_t>(t)]};
+        each.col(t) = Forest<4, 2, Leaf>(one).predict(x);
+      }
+      const Vec<2> mean = each.rowwise().mean();
+      const Vec<2> deviation = (each.colwise() - mean).rowwise().squaredNorm().cwiseSqrt() / std::sqrt(trees);
+      const Spread<2> spread = forest.predict_spread(x);
+      CHECK(spread.mean == forest.predict(x));
+      CHECK((spread.deviation - deviation).norm() < 1e-12);
+      CHECK((trees == 1) == (spread.deviation == Vec<2>::Zero()));
+      CHECK(dynamic.predict_spread(x).mean == spread.mean);
+      CHECK(dynamic.predict_spread(x).deviation == spread.deviation);
+    }
+  }
+}
+
+TEST_CASE("the spread is larger where the forest has seen nothing for long") {
+  Dataset<1, 1> samples;
+  samples.inputs.resize(1, 200);
+  samples.outputs.resize(1, 200);
+  for (Eigen::Index i = 0; i < 200; ++i) {  // a wide gap from -0.5 to 0.5
+    const double x = (i < 100 ? -1.0 : 0.5) + 0.005 * static_cast<double>(i % 100);
+    samples.inputs(0, i) = static_cast<float>(x);
+    samples.outputs(0, i) = x;
+  }
+  const auto forest = train_extra_trees(samples, {.trees = 50, .min_leaf = 3}, Serial{}, 1);
+  const double known = forest.predict_spread(Vec<1>(0.75)).deviation[0];
+  CHECK(forest.predict_spread(Vec<1>(0.0)).deviation[0] > 10 * known);
+}
+
+TEST_CASE("leaf indices name the leaf of each tree") {
+  const auto samples = toy::sample(toy::Cliff{}, 500, 1);
+  for (const int trees : {1, 8, 9, 70}) {
+    const auto forest = train_extra_trees(samples, {.trees = trees, .min_leaf = 5}, Serial{}, 1);
+    const auto& raw = forest.raw();
+    std::vector<std::uint32_t> leaves(forest.trees());
+    for (Eigen::Index i = 0; i < 50; ++i) {
+      const Vec<5> x = samples.inputs.col(i).cast<double>();
+      forest.leaf_indices(x, leaves);
+      double sum = 0;
+      for (std::size_t t = 0; t < leaves.size(); ++t) {
+        REQUIRE(leaves[t] < raw.nodes.size());
+        REQUIRE(raw.nodes[leaves[t]].is_leaf());
+        CHECK(leaves[t] >= raw.roots[t]);
+        if (t + 1 < leaves.size()) CHECK(leaves[t] < raw.roots[t + 1]);
+        sum += static_cast<double>(std::bit_cast<float>(raw.nodes[leaves[t]].payload()));
+      }
+      CHECK(sum * (1.0 / trees) == forest.predict(x)[0]);
+    }
+    leaves.push_back(0);
+    CHECK_THROWS_WITH_AS(forest.leaf_indices(Vec<5>::Zero(), leaves), doctest::Contains("trees, but room for"),
+                         ForestError);
+  }
 }
 
 TEST_CASE("sizes may be known at run time only") {

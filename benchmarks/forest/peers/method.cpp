@@ -18,6 +18,7 @@ std::vector<Method> all_methods() {
       {.name = "surefoot constant, portable", .train = train_constant_portable, .min_leaf = 2},
       {.name = "surefoot linear", .train = train_linear, .min_leaf = 10, .balanced = true},
       {.name = "surefoot linear, portable", .train = train_linear_portable, .min_leaf = 10, .balanced = true},
+      {.name = "surefoot distilled", .train = train_distilled, .min_leaf = 10},
 #ifdef HAVE_DLIB
       {.name = "dlib", .train = train_dlib},
 #endif
@@ -30,6 +31,7 @@ std::vector<Method> all_methods() {
       {.name = "surefoot constant", .outputs = 3, .train = train_constant, .min_leaf = 2},
       {.name = "surefoot constant, portable", .outputs = 3, .train = train_constant_portable, .min_leaf = 2},
       {.name = "surefoot linear", .outputs = 3, .train = train_linear, .min_leaf = 10, .balanced = true},
+      {.name = "surefoot distilled", .outputs = 3, .train = train_distilled, .min_leaf = 10},
 #ifdef HAVE_DLIB
       {.name = "dlib", .outputs = 3, .train = train_dlib, .each_output = true},
 #endif

@@ -6,7 +6,7 @@ set terminal pngcairo size 1500, 1000 font ',11'
 set grid
 set logscale xy
 
-names = "'surefoot constant' 'surefoot linear' 'surefoot constant, portable' 'dlib' 'OpenCV' 'XGBoost'"
+names = "'surefoot constant' 'surefoot linear' 'surefoot constant, portable' 'surefoot distilled' 'dlib' 'OpenCV' 'XGBoost'"
 array label[10] = ['', '', '', 'leaves per tree', 'training [CPU s]', 'test error, 1 - R2', \
                    'ns per prediction, warm', 'ns per prediction, cold', 'ns per prediction, batch', 'bytes']
 cell(c) = c == 6 ? 1 - column(c) : column(c)

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 
 #include "surefoot/forest/descend_avx2.hpp"
 #include "surefoot/forest/trees.hpp"
@@ -34,9 +33,20 @@ template <class Move, class... Nodes>
   } while (moved != 0);
 }
 
-/// Eight descents: from first(lane), by move(node, lane); the ends go to last(lane, node).
-template <class First, class Move, class Last>
-[[gnu::always_inline]] inline void descend(const First& first, const Move& move, const Last& last) {
+/// Moves every node `steps` times.
+template <class Move, class... Nodes>
+[[gnu::always_inline]] inline void move_some(std::size_t steps, const Move& move, Nodes&... node) {
+  for (; steps > 0; --steps) {
+    std::size_t lane = 0;
+    ((node += move(node, lane++)), ...);
+  }
+}
+
+/// Eight descents: from first(lane), by move(node, lane); the ends go to last(lane, node). To the leaves, or only so
+/// many steps.
+template <bool ToLeaves = true, class First, class Move, class Last>
+[[gnu::always_inline]] inline void descend(const First& first, const Move& move, const Last& last,
+                                           std::size_t steps = 0) {
   const Node* a = first(0);
   const Node* b = first(1);
   const Node* c = first(2);
@@ -45,7 +55,11 @@ template <class First, class Move, class Last>
   const Node* f = first(5);
   const Node* g = first(6);
   const Node* h = first(7);
-  move_all(move, a, b, c, d, e, f, g, h);
+  if constexpr (ToLeaves) {
+    move_all(move, a, b, c, d, e, f, g, h);
+  } else {
+    move_some(steps, move, a, b, c, d, e, f, g, h);
+  }
   last(0, a);
   last(1, b);
   last(2, c);
@@ -62,15 +76,23 @@ inline void widen_keys(std::span<const std::uint32_t> keys, std::uint64_t* wide_
   *wide_keys = 0;
 }
 
+/// Calls take(tree, leaf) for each tree, with the leaf that one input, given by its sort keys, reaches there.
+template <class Take>
 inline void find_leaves_portable(const Node* nodes, std::span<const std::uint32_t> roots,
-                                 std::span<const std::uint32_t> keys, std::uint32_t* payloads) {
+                                 std::span<const std::uint32_t> keys, const Take& take) {
   std::array<std::uint64_t, max_forest_inputs + 1> wide_keys;
   widen_keys(keys, wide_keys.data());
+  const auto move = [&](const Node* node, std::size_t = 0) { return node->step(wide_keys.data()); };
   for (std::size_t tree = 0; tree < roots.size(); tree += lanes) {
     const std::size_t last = std::min(lanes, roots.size() - tree) - 1;
-    descend([&](std::size_t lane) { return nodes + roots[tree + std::min(lane, last)]; },
-            [&](const Node* node, std::size_t) { return node->step(wide_keys.data()); },
-            [&](std::size_t lane, const Node* node) { payloads[tree + std::min(lane, last)] = node->payload(); });
+    if (last == 0) {  // alone it is faster
+      const Node* node = nodes + roots[tree];
+      move_all(move, node);
+      take(tree, node);
+    } else {
+      descend([&](std::size_t lane) { return nodes + roots[tree + std::min(lane, last)]; }, move,
+              [&](std::size_t lane, const Node* node) { take(tree + std::min(lane, last), node); });
+    }
   }
 }
 
@@ -78,9 +100,18 @@ inline void find_leaves_portable(const Node* nodes, std::span<const std::uint32_
 inline void find_leaves(const Node* nodes, std::span<const std::uint32_t> roots, std::span<const std::uint32_t> keys,
                         std::uint32_t* payloads) {
 #ifdef SUREFOOT_AVX2
-  if (keys.size() < avx2_slots && __builtin_cpu_supports("avx2")) return find_leaves_avx2(nodes, roots, keys, payloads);
+  if (roots.size() > avx2_trees / 2 && keys.size() < avx2_slots && __builtin_cpu_supports("avx2")) {
+    const std::size_t rest =
+        roots.size() % avx2_trees;  // half of the lanes filled or fewer: eight at a time are faster
+    const std::size_t vectorised = rest > avx2_trees / 2 ? roots.size() : roots.size() - rest;
+    find_leaves_avx2(nodes, roots.first(vectorised), keys, payloads);
+    roots = roots.subspan(vectorised);
+    payloads += vectorised;
+  }
 #endif
-  find_leaves_portable(nodes, roots, keys, payloads);
+  if (roots.empty()) return;
+  find_leaves_portable(nodes, roots, keys,
+                       [&](std::size_t tree, const Node* leaf) { payloads[tree] = leaf->payload(); });
 }
 
 /// Where in each tree the paths of inputs between two corners part at the latest; they all pass there.
@@ -94,19 +125,6 @@ inline void find_parting(const Node* nodes, std::span<const std::uint32_t> roots
               return step == node->step(high_keys) ? step : 0;
             },
             [&](std::size_t lane, const Node* node) { partings[tree + std::min(lane, last)] = node; });
-  }
-}
-
-/// The payload of the leaf that each of `count` inputs reaches from `start`; their wide keys lie `stride` apart. Works
-/// on whole groups of lanes: keys and payloads must have room (and keys zeros) for up to lanes - 1 inputs more.
-template <std::size_t FixedStride>
-inline void find_leaves_of_batch(const Node* start, const std::uint64_t* wide_keys, std::size_t run_time_stride,
-                                 std::size_t count, std::uint32_t* payloads) {
-  const std::size_t stride = FixedStride != 0 ? FixedStride : run_time_stride;
-  for (std::size_t sample = 0; sample < count; sample += lanes, wide_keys += lanes * stride, payloads += lanes) {
-    descend([&](std::size_t) { return start; },
-            [&](const Node* node, std::size_t lane) { return node->step(wide_keys + lane * stride); },
-            [&](std::size_t lane, const Node* node) { payloads[lane] = node->payload(); });
   }
 }
 

@@ -1,10 +1,12 @@
 // The descent of one input through many trees with AVX2: 8 trees per vector, 32 in flight, a node per gathered word,
 // and the input's keys in two registers. Chosen at run time; gives the same leaves as the portable loop.
+//
+// A program compiled with SUREFOOT_PORTABLE defined (in all of its files, or in none) does without: same predictions.
 #pragma once
 
 #include "surefoot/forest/trees.hpp"
 
-#if defined(__x86_64__) && defined(__GNUC__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(SUREFOOT_PORTABLE)
 #define SUREFOOT_AVX2
 
 #include <immintrin.h>
@@ -18,6 +20,7 @@
 namespace surefoot::detail {
 
 constexpr std::size_t avx2_slots = 16;  // keys that fit into two registers, the slot behind the last included
+constexpr std::size_t avx2_trees = 32;  // in flight together
 
 /// Eight descents.
 struct Avx2Lanes {
@@ -82,13 +85,12 @@ template <bool TwoRegisters>
 [[gnu::target("avx2")]] inline void find_leaves_avx2(const Node* nodes, std::span<const std::uint32_t> roots,
                                                      const Avx2Keys& keys, std::uint32_t* payloads) {
   const std::size_t count = roots.size();
-  std::size_t tree = 0;
-  __m256i moved;
-  for (; tree + 16 < count; tree += 32) {
+  for (std::size_t tree = 0; tree < count; tree += avx2_trees) {
     Avx2Lanes a = start(roots.data(), tree, count);
     Avx2Lanes b = start(roots.data(), tree + 8, count);
     Avx2Lanes c = start(roots.data(), tree + 16, count);
     Avx2Lanes d = start(roots.data(), tree + 24, count);
+    __m256i moved;
     do {
       moved = step<TwoRegisters>(nodes, keys, a) | step<TwoRegisters>(nodes, keys, b) |
               step<TwoRegisters>(nodes, keys, c) | step<TwoRegisters>(nodes, keys, d);
@@ -97,15 +99,6 @@ template <bool TwoRegisters>
     finish(b, payloads, tree + 8, count);
     finish(c, payloads, tree + 16, count);
     finish(d, payloads, tree + 24, count);
-  }
-  for (; tree < count; tree += 16) {
-    Avx2Lanes a = start(roots.data(), tree, count);
-    Avx2Lanes b = start(roots.data(), tree + 8, count);
-    do {
-      moved = step<TwoRegisters>(nodes, keys, a) | step<TwoRegisters>(nodes, keys, b);
-    } while (!_mm256_testz_si256(moved, moved));
-    finish(a, payloads, tree, count);
-    finish(b, payloads, tree + 8, count);
   }
 }
 

@@ -20,7 +20,7 @@ struct ExtraTreesOptions {
   int min_leaf = 4;        // fewest samples in a leaf (n_min)
   int max_depth = 0;       // splits from the root to any leaf; 0: no limit
   int max_leaves = 0;      // per tree, grown best first; 0: no limit
-  bool bootstrap = false;  // each tree draws its samples with replacement
+  bool bootstrap = false;  // each tree draws its samples with replacement; train_with_report then tells the error
   ThresholdRule threshold_rule = ThresholdRule::uniform;
   bool model_score = true;  // linear leaves: score splits by affine fits, not by variance
   double ridge = 1;         // linear leaves: see LeafOptions

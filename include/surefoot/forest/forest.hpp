@@ -8,18 +8,30 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "surefoot/core/vec.hpp"
 #include "surefoot/forest/descend.hpp"
+#include "surefoot/forest/descend_batch.hpp"
 #include "surefoot/forest/leaf.hpp"
 #include "surefoot/forest/trees.hpp"
 
 namespace surefoot {
+
+/// What the trees of a forest say together: their mean, and for each output the root of their mean squared distance
+/// from it (0 for a single tree). Large where the forest has seen little or the function is steep: a doubt, not an
+/// error bound.
+template <int Outputs>
+struct Spread {
+  Vec<Outputs> mean;
+  Vec<Outputs> deviation;
+};
 
 /// A trained forest. Inputs and Outputs may be Eigen::Dynamic. Made by train_extra_trees or load.
 template <int Inputs, int Outputs, LeafModel Leaf = ConstantLeaf>
@@ -58,11 +70,51 @@ class Forest {
 
   /// The forest's output for one input; the input is rounded to float first.
   Vec<Outputs> predict(const Vec<Inputs>& x) const {
-    std::array<float, input_room> rounded;
-    for (int k = 0; k < inputs(); ++k) rounded[static_cast<std::size_t>(k)] = static_cast<float>(x[k]);
+    const Rounded rounded = round(x);
     Vec<Outputs> out = Vec<Outputs>::Zero(outputs());
     add_one(rounded.data(), out.data());
     return out *= scale();
+  }
+
+  /// The output for one input, the same bits as those of predict, and how far the trees are apart. Allocates nothing if
+  /// the number of outputs is fixed.
+  Spread<Outputs> predict_spread(const Vec<Inputs>& x) const {
+    const Rounded rounded = round(x);
+    Vec<Outputs> sum = Vec<Outputs>::Zero(outputs());
+    Vec<Outputs> squares = Vec<Outputs>::Zero(outputs());  // squared distances from the mean (Welford 1962)
+    Vec<Outputs> one = Vec<Outputs>::Zero(outputs());
+    Vec<Outputs> mean = Vec<Outputs>::Zero(outputs());
+    double count = 0;
+    visit_leaves(rounded.data(), [&](std::span<const std::uint32_t> payloads) {
+      for (const std::uint32_t payload : payloads) {
+        one.setZero();
+        add_leaf(payload, rounded.data(), one.data());
+        sum += one;
+        count += 1;
+        for (int o = 0; o < outputs(); ++o) {
+          const double distance = one[o] - mean[o];
+          mean[o] += distance / count;
+          squares[o] += distance * (one[o] - mean[o]);
+        }
+      }
+    });
+    return {sum * scale(), (squares * scale()).cwiseSqrt()};
+  }
+
+  /// Which leaf one input reaches in each tree: entry t is the leaf's index in raw().nodes, so no two trees share one.
+  /// For tables of one's own about leaves, and for how alike two inputs are (the share of trees where they share a
+  /// leaf). Allocates nothing. Throws ForestError unless `leaves` has room for exactly as many as there are trees.
+  void leaf_indices(const Vec<Inputs>& x, std::span<std::uint32_t> leaves) const {
+    if (leaves.size() != trees()) {
+      throw ForestError("leaf_indices: " + std::to_string(trees()) + " trees, but room for " +
+                        std::to_string(leaves.size()) + " leaves");
+    }
+    const Rounded rounded = round(x);
+    const Keys keys = sort_keys(rounded.data());
+    const Node* nodes = trees_.nodes.data();
+    detail::find_leaves_portable(nodes, trees_.roots, used(keys), [&](std::size_t tree, const Node* leaf) {
+      leaves[tree] = static_cast<std::uint32_t>(leaf - nodes);
+    });
   }
 
   /// One output column per input column. Allocates nothing if `out` has the right size already. Fastest if neighbouring
@@ -85,7 +137,11 @@ class Forest {
     std::fill_n(out, count * width, 0.0);
     while (count > 0) {
       const std::size_t samples = std::min(count, block_size());
-      add_block(inputs, samples, out);
+      if (samples < few) {
+        for (std::size_t i = 0; i < samples; ++i) add_one(inputs + i * stride, out + i * width);
+      } else {
+        add_block(inputs, samples, out);
+      }
       for (std::size_t i = 0; i < samples * width; ++i) out[i] *= scale();
       inputs += samples * stride;
       out += samples * width;
@@ -99,13 +155,13 @@ class Forest {
   static constexpr std::size_t input_room = static_cast<std::size_t>(Inputs > 0 ? Inputs : max_forest_inputs);
   static constexpr std::size_t fixed_stride = Inputs > 0 ? input_room + 1 : 0;
   static constexpr std::size_t tree_block = 64;  // trees descended before their leaves are summed
-  static constexpr std::size_t max_block = 256;  // samples that go through the trees together
-  static constexpr std::size_t key_room = 2048;  // their sort keys: 16 kB, half of a small L1 cache
+  static constexpr std::size_t key_room = 2048;  // sort keys of the samples that go through a tree together: 24 kB
+  static constexpr std::size_t few = 32;         // fewer samples are faster one by one
 
   double scale() const { return 1.0 / static_cast<double>(trees_.roots.size()); }
   std::size_t block_size() const {
     const std::size_t rows = key_room / (static_cast<std::size_t>(inputs()) + 1);
-    return std::min(rows / detail::lanes * detail::lanes, max_block);
+    return std::min(rows / detail::lanes * detail::lanes, detail::max_batch);
   }
 
   static constexpr bool fixed_size = Inputs != Eigen::Dynamic && Outputs != Eigen::Dynamic;
@@ -125,46 +181,86 @@ class Forest {
     }
   }
 
-  void add_one(const float* x, double* sum) const {
-    std::array<std::uint32_t, input_room> keys;
+  using Rounded = std::array<float, input_room>;
+  using Keys = std::array<std::uint32_t, input_room>;
+
+  Rounded round(const Vec<Inputs>& x) const {
+    Rounded rounded;
+    for (int k = 0; k < inputs(); ++k) rounded[static_cast<std::size_t>(k)] = static_cast<float>(x[k]);
+    return rounded;
+  }
+  Keys sort_keys(const float* x) const {
+    Keys keys;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(inputs()); ++k) keys[k] = sort_key(x[k]);
+    return keys;
+  }
+  std::span<const std::uint32_t> used(const Keys& keys) const {
+    return std::span(keys).first(static_cast<std::size_t>(inputs()));
+  }
+
+  /// Calls visit(payloads) for the leaves in all trees, some trees at a time and in their order.
+  template <class Visit>
+  void visit_leaves(const float* x, const Visit& visit) const {
+    const Keys keys = sort_keys(x);
     std::array<std::uint32_t, tree_block> payloads;
-    const auto width = static_cast<std::size_t>(inputs());
-    for (std::size_t k = 0; k < width; ++k) keys[k] = sort_key(x[k]);
     for (std::size_t first = 0; first < trees(); first += tree_block) {
       const auto roots = roots_from(first);
-      detail::find_leaves(trees_.nodes.data(), roots, std::span(keys).first(width), payloads.data());
-      for (std::size_t t = 0; t < roots.size(); ++t) add_leaf(payloads[t], x, sum);
+      detail::find_leaves(trees_.nodes.data(), roots, used(keys), payloads.data());
+      visit(std::span<const std::uint32_t>(payloads).first(roots.size()));
     }
   }
 
+  /// Not inlined, where compilers would run short of registers and keep the sum in memory.
+  [[gnu::noinline]] void add_leaves(std::span<const std::uint32_t> payloads, const float* x, double* sum) const {
+    if constexpr (Outputs > 0 && Outputs <= 8) {
+      std::array<double, static_cast<std::size_t>(Outputs)> local;
+      std::copy_n(sum, Outputs, local.begin());
+      for (const std::uint32_t payload : payloads) add_leaf(payload, x, local.data());
+      std::copy_n(local.begin(), Outputs, sum);
+    } else {
+      for (const std::uint32_t payload : payloads) add_leaf(payload, x, sum);
+    }
+  }
+
+  void add_one(const float* x, double* sum) const {
+    visit_leaves(x, [&](std::span<const std::uint32_t> payloads) { add_leaves(payloads, x, sum); });
+  }
+
   void add_block(const float* x, std::size_t count, double* sum) const {
-    std::array<std::uint64_t, key_room> keys;
+    std::array<std::uint64_t, key_room> rows;
+    std::array<std::int32_t, key_room> columns;
     std::array<std::uint64_t, input_room + 1> low;
     std::array<std::uint64_t, input_room + 1> high;
     std::array<const Node*, tree_block> partings;
-    std::array<std::uint32_t, max_block> payloads;
+    std::array<std::uint32_t, detail::max_batch> payloads;
     const auto in = static_cast<std::size_t>(inputs());
     const auto out = static_cast<std::size_t>(outputs());
-    const std::size_t stride = in + 1;
-    low.fill(~std::uint64_t{0});
-    high.fill(0);
-    low[in] = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      std::uint64_t* key = keys.data() + i * stride;
-      for (std::size_t k = 0; k < in; ++k) {
-        key[k] = std::uint64_t{sort_key(x[i * in + k])} << 32;
-        low[k] = std::min(low[k], key[k]);
-        high[k] = std::max(high[k], key[k]);
+    const detail::BatchKeys keys{rows.data(), in + 1, columns.data(), block_size()};
+    const std::size_t padded = (count + detail::lanes - 1) / detail::lanes * detail::lanes;
+    low[in] = high[in] = 0;
+    std::fill(rows.data() + count * keys.stride, rows.data() + padded * keys.stride, 0);
+    for (std::size_t i = 0; i < count; ++i) rows[i * keys.stride + in] = 0;
+    std::fill_n(columns.data() + in * keys.length, padded, detail::flipped(0));
+    for (std::size_t k = 0; k < in; ++k) {
+      std::uint32_t lowest = ~std::uint32_t{0};
+      std::uint32_t highest = 0;
+      std::int32_t* column = columns.data() + k * keys.length;
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t key = sort_key(x[i * in + k]);
+        rows[i * keys.stride + k] = std::uint64_t{key} << 32;
+        column[i] = detail::flipped(key);
+        lowest = std::min(lowest, key);
+        highest = std::max(highest, key);
       }
-      key[in] = 0;
+      std::fill(column + count, column + padded, detail::flipped(0));
+      low[k] = std::uint64_t{lowest} << 32;
+      high[k] = std::uint64_t{highest} << 32;
     }
-    const std::size_t filled_up = (count + detail::lanes - 1) / detail::lanes * detail::lanes;
-    std::fill(keys.data() + count * stride, keys.data() + filled_up * stride, 0);
     for (std::size_t first = 0; first < trees(); first += tree_block) {
       const auto roots = roots_from(first);
       detail::find_parting(trees_.nodes.data(), roots, low.data(), high.data(), partings.data());
       for (std::size_t t = 0; t < roots.size(); ++t) {
-        detail::find_leaves_of_batch<fixed_stride>(partings[t], keys.data(), stride, count, payloads.data());
+        detail::find_leaves_of_batch<fixed_stride>(partings[t], keys, count, payloads.data());
         for (std::size_t i = 0; i < count; ++i) add_leaf(payloads[i], x + i * in, sum + i * out);
       }
     }

@@ -117,17 +117,21 @@ struct LinearLeaf {
   static void fit(const LeafSamples& samples, const LeafOptions& options, std::span<float> parameters) {
     const int inputs = samples.inputs();
     const int outputs = samples.outputs();
+    const auto row = [&](std::size_t i) {
+      return Eigen::Map<const Eigen::VectorXf>(samples.input(i), inputs + outputs).cast<double>();
+    };
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(inputs + outputs);
     double weight = 0;
     for (std::size_t i = 0; i < samples.count(); ++i) {
-      mean += samples.weight(i) * row(samples, i);
+      mean += samples.weight(i) * row(i);
       weight += samples.weight(i);
     }
     mean /= weight;
     Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(inputs + outputs, inputs);  // about the mean
+    Eigen::VectorXd offset(inputs + outputs);
     for (std::size_t i = 0; i < samples.count(); ++i) {
-      const Eigen::VectorXd offset = row(samples, i) - mean;
-      moments.noalias() += (samples.weight(i) * offset) * offset.head(inputs).transpose();
+      offset = row(i) - mean;
+      for (int k = 0; k < inputs; ++k) moments.col(k) += offset[k] * (samples.weight(i) * offset);
     }
     // To enlarge the diagonal by a factor is to add a constant to it if all inputs have unit spread.
     Eigen::MatrixXd normal = moments.topRows(inputs);
@@ -175,11 +179,6 @@ struct LinearLeaf {
            "  double y = " + at(0) + ";\n" + "  for (k = 0; k < " + n +
            "; ++k) y += (double)number(p + k) * (double)x[k];\n" + "  if (y < " + at(1) + ") y = " + at(1) + ";\n" +
            "  if (y > " + at(2) + ") y = " + at(2) + ";\n" + "  out[o] += y;\n" + "}";
-  }
-
- private:
-  static Eigen::VectorXd row(const LeafSamples& samples, std::size_t i) {
-    return Eigen::Map<const Eigen::VectorXf>(samples.input(i), samples.inputs() + samples.outputs()).cast<double>();
   }
 };
 

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/forest/end_ranks.hpp"
 #include "surefoot/forest/extra_trees_options.hpp"
 #include "surefoot/forest/layout.hpp"
 #include "surefoot/forest/leaf.hpp"
@@ -41,17 +42,32 @@ class FastRng {
   std::uint64_t state_;
 };
 
+/// Memory that one tree after the other uses: fresh memory would cost as much as a fifth of the work.
+using GrowthBuffers = std::array<Records, 2>;
+
+struct GrownTree {
+  Trees trees;               // this one
+  std::vector<double> gain;  // by which the splits of each input lowered the outputs' squared errors, in their scale
+};
+
+/// The samples that a tree learns from if it draws them with replacement: `use(i)` for each of `count` draws.
+template <class Use>
+void draw_bootstrap(FastRng& rng, std::size_t count, const Use& use) {
+  for (std::size_t i = 0; i < count; ++i) use(std::size_t{rng.below(static_cast<std::uint32_t>(count))});
+}
+
 /// Grows one tree.
 template <LeafModel Leaf>
 class TreeGrower {
  public:
   /// `output_scale`: what a unit of squared error of each output counts.
   TreeGrower(const Records& records, const RecordShape& shape, std::span<const double> output_scale,
-             const ExtraTreesOptions& options, std::uint64_t seed)
+             const ExtraTreesOptions& options, std::uint64_t seed, GrowthBuffers& buffers)
       : records_(records),
         shape_(shape),
         output_scale_(output_scale),
         options_(options),
+        buffers_(buffers),
         rng_(seed),
         stride_(shape.stride()),
         count_(records.size() / stride_),
@@ -59,13 +75,20 @@ class TreeGrower {
         high_(stride_),
         mean_(stride_),
         thresholds_(stride_),
+        gain_(static_cast<std::size_t>(shape.inputs)),
         sums_(shape) {
     if (linear_score && options.model_score) linear_.emplace(shape);
   }
 
-  Trees grow() {
-    if (options_.bootstrap) draw_bootstrap();
+  GrownTree grow() {
     for (Records& buffer : buffers_) buffer.resize(records_.size());
+    if (options_.bootstrap) {
+      float* to = buffers_[0].data();
+      draw_bootstrap(rng_, count_, [&](std::size_t from) {
+        std::copy_n(records_.data() + from * stride_, stride_, to);
+        to += stride_;
+      });
+    }
     trees_.inputs = shape_.inputs;
     trees_.outputs = shape_.outputs;
     trees_.leaf_parameters = Leaf::parameters(shape_.inputs, shape_.outputs);
@@ -86,7 +109,7 @@ class TreeGrower {
     for (const Open& open : open_) make_leaf(open);
     trees_.nodes = lay_out(tree_, shape_.inputs);
     trees_.roots = {0};
-    return std::move(trees_);
+    return {std::move(trees_), std::move(gain_)};
   }
 
  private:
@@ -104,19 +127,11 @@ class TreeGrower {
     bool operator<(const Open& other) const { return gain < other.gain || (gain == other.gain && node > other.node); }
   };
 
-  // Records of depth d lie in buffer d % 2; the root's are those of the data set itself.
+  // Records of depth d lie in buffer d % 2; the root's, unless drawn, are those of the data set itself.
   RecordSpan span(const Open& open) const {
-    const Records& home =
-        open.depth == 0 ? (options_.bootstrap ? drawn_ : records_) : buffers_[static_cast<std::size_t>(open.depth % 2)];
+    const bool original = open.depth == 0 && !options_.bootstrap;
+    const Records& home = original ? records_ : buffers_[static_cast<std::size_t>(open.depth % 2)];
     return {home.data() + open.begin * stride_, open.end - open.begin, stride_};
-  }
-
-  void draw_bootstrap() {
-    drawn_.resize(records_.size());
-    for (std::size_t i = 0; i < count_; ++i) {
-      const std::size_t from = rng_.below(static_cast<std::uint32_t>(count_));
-      std::copy_n(records_.data() + from * stride_, stride_, drawn_.data() + i * stride_);
-    }
   }
 
   void add(const Open& open) {
@@ -148,6 +163,7 @@ class TreeGrower {
     const std::size_t left_count =
         partition(span(open), static_cast<std::size_t>(open.input), open.threshold, to.data() + open.begin * stride_);
     const std::size_t middle = open.begin + left_count;
+    gain_[static_cast<std::size_t>(open.input)] += std::max(open.gain, 0.0);
     const auto left = static_cast<std::uint32_t>(tree_.size());
     GrownNode& node = tree_[open.node];
     node.input = open.input;
@@ -206,13 +222,9 @@ class TreeGrower {
   }
 
   void draw_balanced(const RecordSpan& records, int input) {
-    column_.resize(records.count);
-    for (std::size_t i = 0; i < records.count; ++i) column_[i] = records[i][input];
-    const auto low = column_.begin() + (options_.min_leaf - 1);
-    const auto high = column_.end() - options_.min_leaf;
-    std::nth_element(column_.begin(), low, column_.end());
-    std::nth_element(low + 1, high, column_.end());
-    if (*low < *high) draw_between(input, *low, *high);
+    const auto k = static_cast<std::size_t>(input);
+    const auto [low, high] = ranks_.find(records, k, low_[k], high_[k], static_cast<std::size_t>(options_.min_leaf));
+    if (low < high) draw_between(input, low, high);
   }
 
   // Sets the split of `open` to the best of the candidates that leave min_leaf samples on both sides.
@@ -273,16 +285,17 @@ class TreeGrower {
   RecordShape shape_;
   std::span<const double> output_scale_;
   const ExtraTreesOptions& options_;
+  GrowthBuffers& buffers_;
   FastRng rng_;
   std::size_t stride_;
   std::size_t count_;
-  Records drawn_;
-  std::array<Records, 2> buffers_;
   std::vector<GrownNode> tree_;
   std::vector<Open> open_;
   Trees trees_;
-  std::vector<float> low_, high_, mean_, thresholds_, column_, parameters_;
+  std::vector<float> low_, high_, mean_, thresholds_, parameters_;
   std::vector<int> chosen_;
+  std::vector<double> gain_;
+  EndRanks ranks_;
   std::optional<LinearScore> linear_;
   LeftSums sums_;
 };

@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "surefoot/forest/error.hpp"
@@ -27,9 +28,9 @@ constexpr int max_forest_inputs = 255;
 
 /// An unsigned integer that sorts like the float; -0 counts as 0. NaN gives 0 (below everything).
 constexpr std::uint32_t sort_key(float value) {
-  if (value != value) return 0;
   const auto bits = std::bit_cast<std::uint32_t>(value + 0.0F);
-  return (bits >> 31) != 0 ? ~bits : bits | 0x80000000U;
+  const std::uint32_t all_if_negative = 0U - (bits >> 31);  // without a branch: signs are as good as random
+  return value != value ? 0 : bits ^ (all_if_negative | 0x80000000U);
 }
 
 /// The float that a sort key came from.
@@ -67,11 +68,11 @@ class Node {
   constexpr bool operator==(const Node&) const = default;
 
  private:
-  std::uint64_t bits_ = 0;
+  std::uint64_t bits_;
 };
 static_assert(sizeof(Node) == 8);
 
-/// Allocates whole cache lines.
+/// Allocates whole cache lines, and leaves new items as they are unless a value is given.
 template <class T>
 struct CacheLineAllocator {
   using value_type = T;
@@ -81,6 +82,14 @@ struct CacheLineAllocator {
   explicit CacheLineAllocator(const CacheLineAllocator<U>&) {}
   T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), line)); }
   void deallocate(T* memory, std::size_t) { ::operator delete(memory, line); }
+  template <class U>
+  void construct(U* item) {
+    ::new (static_cast<void*>(item)) U;
+  }
+  template <class U, class... Values>
+  void construct(U* item, Values&&... values) {
+    ::new (static_cast<void*>(item)) U(std::forward<Values>(values)...);
+  }
   template <class U>
   bool operator==(const CacheLineAllocator<U>&) const {
     return true;
