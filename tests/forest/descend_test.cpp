@@ -78,11 +78,12 @@ TEST_CASE("all ways down a tree end in the same leaf") {
     std::vector<std::uint64_t> rows;
     std::vector<std::int32_t> columns((inputs + 1) * detail::max_batch, detail::flipped(0));
     for (std::size_t i = 0; i < queries.size(); ++i) {
-      std::array<std::uint32_t, inputs> keys;
-      for (std::size_t k = 0; k < inputs; ++k) keys[k] = sort_key(queries[i][k]);
-      for (std::size_t k = 0; k < inputs; ++k) columns[k * detail::max_batch + i] = detail::flipped(keys[k]);
-      rows.resize(rows.size() + inputs + 1);
-      detail::widen_keys(keys, &rows[i * (inputs + 1)]);
+      std::array<std::uint64_t, inputs + 1> keys{};
+      for (std::size_t k = 0; k < inputs; ++k) {
+        keys[k] = wide_key(queries[i][k]);
+        columns[k * detail::max_batch + i] = detail::flipped(sort_key(queries[i][k]));
+      }
+      rows.insert(rows.end(), keys.begin(), keys.end());
       for (const std::size_t count : {1U, 2U, 7U, 8U, 9U, 15U, 16U, 17U, 25U, 32U, 33U, 48U, 49U, 64U, 65U, 70U}) {
         const auto roots = std::span(trees.roots).first(count);
         std::vector<std::uint32_t> found(count, 1);
@@ -134,7 +135,7 @@ TEST_CASE("inputs between two corners pass where their paths part") {
     }
     std::array<std::array<std::uint64_t, 6>, 3> wide_keys{};
     for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < 5; ++k) wide_keys[i][k] = std::uint64_t{sort_key(x[i][k])} << 32;
+      for (std::size_t k = 0; k < 5; ++k) wide_keys[i][k] = wide_key(x[i][k]);
     }
     std::array<const Node*, 9> partings;
     detail::find_parting(trees.nodes.data(), trees.roots, wide_keys[0].data(), wide_keys[1].data(), partings.data());

@@ -10,10 +10,28 @@
 
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/forest/unexplained.hpp"
 #include "tests/forest/samples.hpp"
 
 namespace surefoot {
 namespace {
+
+// Samples still to be filled in, all of weight 1.
+template <int Inputs, int Outputs>
+Dataset<Inputs, Outputs> room_for(Eigen::Index count) {
+  return {Eigen::Matrix<float, Inputs, Eigen::Dynamic>(Inputs, count),
+          Eigen::Matrix<double, Outputs, Eigen::Dynamic>(Outputs, count), Eigen::VectorXd::Ones(count)};
+}
+
+// For each input the number of trees whose root tests it.
+template <int Inputs, int Outputs>
+std::vector<int> root_inputs(const Forest<Inputs, Outputs>& forest) {
+  std::vector<int> counts(static_cast<std::size_t>(forest.inputs()), 0);
+  for (const std::uint32_t root : forest.raw().roots) {
+    ++counts[static_cast<std::size_t>(forest.raw().nodes[root].input())];
+  }
+  return counts;
+}
 
 // The number of samples in each leaf of tree `t`, and the depth of the deepest leaf.
 struct Shape {
@@ -118,10 +136,7 @@ TEST_CASE("leaves are spent where they pay most") {
 
 TEST_CASE("a sample of weight w counts as w samples") {
   // Two values at every place: the weighted mean is known.
-  Dataset<1, 1> samples;
-  samples.inputs.resize(1, 400);
-  samples.outputs.resize(1, 400);
-  samples.weights.resize(400);
+  auto samples = room_for<1, 1>(400);
   for (Eigen::Index i = 0; i < 400; ++i) {
     const Eigen::Index place = i / 40;
     samples.inputs(0, i) = static_cast<float>(place);
@@ -160,10 +175,7 @@ TEST_CASE_TEMPLATE("a sample of weight 2 teaches what the sample twice would", L
 
 TEST_CASE("weights count for what an output's variance is, too") {
   // Two outputs with one step each; samples of hardly any weight blow the first one's variance up.
-  Dataset<2, 2> samples;
-  samples.inputs.resize(2, 1000);
-  samples.outputs.resize(2, 1000);
-  samples.weights.setOnes(1000);
+  auto samples = room_for<2, 2>(1000);
   Rng rng(2);
   for (Eigen::Index i = 0; i < 1000; ++i) {
     samples.inputs.col(i) << static_cast<float>(rng.uniform()), static_cast<float>(rng.uniform());
@@ -174,18 +186,14 @@ TEST_CASE("weights count for what an output's variance is, too") {
     }
   }
   const auto forest = train_extra_trees(samples, {.trees = 200, .max_leaves = 2}, Serial{}, 1);
-  int of_first = 0;
-  for (const std::uint32_t root : forest.raw().roots) of_first += forest.raw().nodes[root].input() == 0 ? 1 : 0;
+  const int of_first = root_inputs(forest)[0];
   CHECK(of_first > 70);  // both outputs count alike: 100 expected
   CHECK(of_first < 130);
 }
 
 TEST_CASE("splits follow the weights") {
   // Half of the samples have nearly no weight; a tree of two leaves must cut where the others have their step.
-  Dataset<1, 1> samples;
-  samples.inputs.resize(1, 400);
-  samples.outputs.resize(1, 400);
-  samples.weights.resize(400);
+  auto samples = room_for<1, 1>(400);
   Rng rng(5);
   for (Eigen::Index i = 0; i < 400; ++i) {
     const double x = rng.uniform(0, 1);
@@ -229,17 +237,48 @@ TEST_CASE("with few candidates the inputs are drawn at random") {
   const auto samples = toy::sample(toy::Cliff{}, 500, 1);
   const auto roots = [&](int candidates) {
     const ExtraTreesOptions options{.trees = 200, .candidates = candidates, .max_depth = 1};
-    const auto forest = train_extra_trees(samples, options, Serial{}, 1);
-    std::vector<int> counts(5, 0);
-    for (const std::uint32_t root : forest.raw().roots)
-      ++counts[static_cast<std::size_t>(forest.raw().nodes[root].input())];
-    return counts;
+    return root_inputs(train_extra_trees(samples, options, Serial{}, 1));
   };
   const std::vector<int> one = roots(1);
   CHECK(*std::min_element(one.begin(), one.end()) > 15);  // 40 expected for each
   const std::vector<int> all = roots(0);
   CHECK(all[3] + all[0] > 150);  // the cliff, and the sine
   CHECK(all[4] < 10);            // the input without influence
+}
+
+TEST_CASE_TEMPLATE("a lone tree is better the more thresholds are drawn", Leaf, ConstantLeaf, LinearLeaf) {
+  const auto samples = toy::sample(toy::Cliff{}, 4000, 1);
+  const auto test = toy::sample(toy::Cliff{}, 2000, 2);
+  for (const ThresholdRule rule : {ThresholdRule::uniform, ThresholdRule::balanced}) {
+    const auto error = [&](int draws) {
+      double sum = 0;
+      for (std::uint64_t seed = 0; seed < 10; ++seed) {
+        const ExtraTreesOptions options{
+            .trees = 1, .draws = draws, .min_leaf = 10, .max_leaves = 40, .threshold_rule = rule};
+        sum += unexplained(train_extra_trees<Leaf>(samples, options, Serial{}, seed), test);
+      }
+      return sum;
+    };
+    const double one = error(1);
+    const double many = error(16);
+    CAPTURE(one);
+    CHECK(many < 0.8 * one);
+  }
+}
+
+TEST_CASE("of the thresholds drawn the best is taken") {
+  // The step lies where one random threshold hardly ever falls.
+  auto samples = room_for<1, 1>(1000);
+  for (Eigen::Index i = 0; i < 1000; ++i) {
+    samples.inputs(0, i) = static_cast<float>(i);
+    samples.outputs(0, i) = i < 300 ? 0 : 1;
+  }
+  const auto forest = train_extra_trees(samples, {.trees = 20, .draws = 100, .max_depth = 1}, Serial{}, 1);
+  double distance = 0;
+  for (const std::uint32_t root : forest.raw().roots) {
+    distance += std::abs(static_cast<double>(forest.raw().nodes[root].threshold()) - 299.5) / 20;
+  }
+  CHECK(distance < 15);  // the nearest of 100: about 5; of one about 290
 }
 
 TEST_CASE("data that cannot be split gives one leaf") {
@@ -285,6 +324,7 @@ TEST_CASE("wrong options and samples are named") {
   auto train = [&](const ExtraTreesOptions& options) { train_extra_trees(samples, options, Serial{}, 1); };
   CHECK_THROWS_WITH_AS(train({.trees = 0}), doctest::Contains("trees"), ForestError);
   CHECK_THROWS_WITH_AS(train({.candidates = -1}), doctest::Contains("candidates"), ForestError);
+  CHECK_THROWS_WITH_AS(train({.draws = 0}), doctest::Contains("draws"), ForestError);
   CHECK_THROWS_WITH_AS(train({.min_leaf = 0}), doctest::Contains("min_leaf"), ForestError);
   CHECK_THROWS_WITH_AS(train({.max_depth = -1}), doctest::Contains("max_depth"), ForestError);
   CHECK_THROWS_WITH_AS(train({.max_leaves = -1}), doctest::Contains("max_leaves"), ForestError);

@@ -10,8 +10,10 @@
 #include <span>
 #include <vector>
 
+#include "surefoot/core/binary.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/forest/extra_trees.hpp"
+#include "surefoot/forest/serialize.hpp"
 #include "tests/forest/samples.hpp"
 
 namespace surefoot {
@@ -107,6 +109,49 @@ TEST_CASE("a batch of any size gives what its members give alone") {
     CAPTURE(count);
     CHECK(differences == 0);
   }
+}
+
+TEST_CASE_TEMPLATE("a forest file gives the same bits on every path", Leaf, ConstantLeaf, LinearLeaf) {
+  ByteWriter file;
+  write(file, train_extra_trees<Leaf>(toy::sample(toy::ClippedLaws{}, 2000, 1), {.trees = 40}, Serial{}, 1));
+  const auto forest = load<Forest<4, 2, Leaf>>(std::span(file.bytes()));  // 40 trees: of two registers' width and rest
+  const auto in_place = view<Forest<4, 2, Leaf>>(file.bytes());
+  const Trees& trees = forest.raw();
+  const auto points = toy::sample(toy::ClippedLaws{}, 17 * 18 / 2 + 300, 2);
+  std::vector<std::uint32_t> leaves(forest.trees());
+  std::vector<unsigned char> cache(8U << 20U);  // walked to drive the forest out of the nearer caches
+  int differences = 0;
+  Eigen::Index first = 0;
+  const auto check_batch = [&](Eigen::Index size) {
+    typename Forest<4, 2, Leaf>::BatchOutput batch;
+    typename Forest<4, 2, Leaf>::BatchOutput batch_in_place;
+    forest.predict(points.inputs.middleCols(first, size), batch);
+    in_place.predict(points.inputs.middleCols(first, size), batch_in_place);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const Eigen::Matrix<float, 4, 1> x = points.inputs.col(first + i);
+      const Vec<4> wide = x.template cast<double>();
+      const Vec<2> expected = walk(forest, x);
+      if (i == 0) {
+        for (std::size_t line = 0; line < cache.size(); line += 64) ++cache[line];
+      }
+      const Vec<2> one = forest.predict(wide);  // the first one cold; by SIMD where the machine has it
+      Vec<2> portable = Vec<2>::Zero();
+      forest.leaf_indices(wide, leaves);
+      for (const std::uint32_t leaf : leaves) {
+        const std::uint32_t payload = trees.nodes[leaf].payload();
+        Leaf::add(trees.parameters.data() + payload * trees.leaf_parameters, x.data(), 4, 2, portable.data());
+      }
+      portable *= 1.0 / static_cast<double>(forest.trees());
+      differences += one != expected || portable != expected || batch.col(i) != expected ||
+                             batch_in_place.col(i) != expected || in_place.predict(wide) != expected
+                         ? 1
+                         : 0;
+    }
+    first += size;
+  };
+  for (Eigen::Index size = 1; size <= 17; ++size) check_batch(size);
+  check_batch(300);  // in blocks, where small batches go one by one
+  CHECK(differences == 0);
 }
 
 TEST_CASE_TEMPLATE("the spread is the mean and the standard deviation over the trees", Leaf, ConstantLeaf, LinearLeaf) {

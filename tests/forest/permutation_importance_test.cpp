@@ -61,8 +61,8 @@ TEST_CASE("what cannot be is refused") {
   narrow.inputs = samples.inputs.topRows(4);
   narrow.outputs = samples.outputs;
   const Forest<Eigen::Dynamic, 1> wide(forest.raw());
-  CHECK_THROWS_WITH_AS(permutation_importance(wide, narrow, Serial{}, 1), doctest::Contains("same numbers"),
-                       ForestError);
+  CHECK_THROWS_WITH_AS(permutation_importance(wide, narrow, Serial{}, 1),
+                       doctest::Contains("4 inputs and 1 outputs, but the forest 5 and 1"), ForestError);
 }
 
 }  // namespace

@@ -3,10 +3,12 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <span>
 #include <sstream>
 #include <string>
 
@@ -115,6 +117,41 @@ TEST_CASE("a forest may be part of a larger file") {
   in.expect_end();
 }
 
+TEST_CASE_TEMPLATE("a forest is used where its bytes lie, without a copy", Leaf, ConstantLeaf, LinearLeaf) {
+  const auto forest = small_forest<Leaf>();
+  const Bytes bytes = bytes_of(forest);
+  const auto in_place = view<Laws<Leaf>>(bytes);
+  const auto* first = reinterpret_cast<const std::byte*>(in_place.raw().nodes.data());
+  CHECK(first == bytes.data() + 64);
+  CHECK(in_place.bytes() == forest.bytes());
+  CHECK(in_place.leaves() == forest.leaves());
+  const auto samples = toy::sample(toy::ClippedLaws{}, 100, 7);
+  typename Laws<Leaf>::BatchOutput expected;
+  typename Laws<Leaf>::BatchOutput found;
+  forest.predict(samples.inputs, expected);
+  in_place.predict(samples.inputs, found);
+  CHECK(found == expected);
+  const Vec<4> x = samples.inputs.col(0).template cast<double>();
+  CHECK(in_place.predict(x) == forest.predict(x));
+  CHECK(in_place.predict_spread(x).deviation == forest.predict_spread(x).deviation);
+  CHECK(load<Laws<Leaf>>(std::span(bytes)) == forest);
+}
+
+TEST_CASE("bytes that cannot be used in place are refused") {
+  const Bytes good = bytes_of(small_forest<LinearLeaf>());
+  using F = Laws<LinearLeaf>;
+  Bytes shifted(4);
+  shifted.insert(shifted.end(), good.begin(), good.end());
+  CHECK_THROWS_WITH_AS(view<F>(std::span(shifted).subspan(4)), doctest::Contains("multiple of 8"), ForestError);
+  CHECK_THROWS_WITH_AS(view<F>(std::span(good).first(good.size() - 1)), doctest::Contains("ends too early"),
+                       ForestError);
+  CHECK_THROWS_WITH_AS(view<Laws<ConstantLeaf>>(good, "file a.bin"), doctest::Contains("a.bin"), ForestError);
+  Bytes longer = good;
+  longer.resize(good.size() + 1);
+  CHECK_THROWS_WITH_AS(view<F>(longer), doctest::Contains("1 bytes more"), ForestError);
+  CHECK_THROWS_WITH_AS(load<F>(std::span(longer)), doctest::Contains("1 bytes more"), ForestError);
+}
+
 TEST_CASE("an empty forest is loaded as one") {
   const Forest<4, 2> empty;
   CHECK(from_bytes<Forest<4, 2>>(bytes_of(empty)).empty());
@@ -127,6 +164,7 @@ TEST_CASE_TEMPLATE("10,000 random mutations of a file give an error or an equal 
   Rng rng(1);
   int refused = 0;
   int refused_streams = 0;
+  int used_in_place = 0;
   for (int round = 0; round < 5000; ++round) {  // for each kind of leaf
     Bytes bytes = good;
     const auto size = static_cast<std::uint32_t>(bytes.size());
@@ -155,6 +193,16 @@ TEST_CASE_TEMPLATE("10,000 random mutations of a file give an error or an equal 
       ++refused;
     }
     try {
+      const auto in_place = view<Laws<Leaf>>(bytes).raw();
+      const Trees& raw = forest.raw();
+      if (!std::ranges::equal(in_place.nodes, raw.nodes) || !std::ranges::equal(in_place.roots, raw.roots) ||
+          !std::ranges::equal(in_place.parameters, raw.parameters)) {
+        FAIL("mutation ", round, " gave another forest in place");
+      }
+      ++used_in_place;
+    } catch (const ForestError&) {
+    }
+    try {
       std::stringstream stream(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
       const bool equal = load<Laws<Leaf>>(stream) == forest;
       if (!equal) FAIL("mutation ", round, " gave another forest from a stream");
@@ -163,6 +211,7 @@ TEST_CASE_TEMPLATE("10,000 random mutations of a file give an error or an equal 
     }
   }
   CHECK(refused > 4900);
+  CHECK(used_in_place == 5000 - refused);
   CHECK(refused_streams > 3000);  // all but appended bytes, which are left in the stream
 }
 

@@ -1,6 +1,7 @@
 // One table for every number of trees and leaves: training, error, size and speed of each library's forests on the same
 // data.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstddef>
 #include <cstdio>
 #include <fstream>
@@ -23,9 +24,19 @@ struct Options {
   std::vector<int> trees = {25};
   std::size_t rounds = 7;
   std::size_t cold_calls = 50;
-  std::string only;
+  std::vector<std::string> only;
+  std::vector<std::string> without;
   std::vector<std::size_t> outputs = {1, 3};
   std::string csv;
+
+  bool asks_for(const Method& method, int trees_wanted, int leaves_wanted) const {
+    const auto named = [&](const std::string& part) { return method.name.find(part) != std::string::npos; };
+    if (!only.empty() && std::ranges::none_of(only, named)) return false;
+    if (std::ranges::any_of(without, named)) return false;
+    if (method.one_tree && trees_wanted != trees.back()) return false;  // once is enough
+    if (method.most_leaves > 0 && leaves_wanted > method.most_leaves) return false;
+    return std::ranges::find(outputs, method.outputs) != outputs.end();
+  }
 };
 
 struct Row {
@@ -45,7 +56,7 @@ std::vector<Row> train_all(const Options& options, std::size_t count, int trees,
   }
   std::vector<Row> rows;
   for (const Method& method : all_methods()) {
-    if (method.name.find(options.only) == std::string::npos || !samples.contains(method.outputs)) continue;
+    if (!options.asks_for(method, trees, leaves)) continue;
     const Samples& data = samples[method.outputs];
     const Size size = size_for(method, data, trees, leaves);
     const double start = cpu_seconds();
@@ -93,7 +104,7 @@ void print(const std::vector<Row>& rows, std::size_t count, int trees, int leave
                 ratio(&Latency::batch).c_str(), row.model->bytes());
     csv << row.method.name << ';' << row.method.outputs << ';' << leaves << ';' << row.model->leaves() << ';'
         << row.training << ';' << row.explained << ';' << latency.warm << ';' << latency.cold << ';' << latency.batch
-        << ';' << row.model->bytes() << ';' << trees << '\n';
+        << ';' << row.model->bytes() << ';' << (row.method.one_tree ? 1 : trees) << '\n';
   }
   std::fflush(stdout);
 }
@@ -108,7 +119,8 @@ int main(int argc, char** argv) {
   app.add_option("--trees", options.trees, "per forest")->delimiter(',')->capture_default_str();
   app.add_option("--rounds", options.rounds, "of measurements, one library after the other")->capture_default_str();
   app.add_option("--cold-calls", options.cold_calls, "per round")->capture_default_str();
-  app.add_option("--only", options.only, "rows whose name contains this");
+  app.add_option("--only", options.only, "rows whose name contains one of these")->delimiter(';');
+  app.add_option("--without", options.without, "rows whose name contains none of these")->delimiter(';');
   app.add_option("--outputs", options.outputs, "rows with so many outputs")->delimiter(',')->capture_default_str();
   app.add_option("--csv", options.csv, "file for the same numbers");
   CLI11_PARSE(app, argc, argv);

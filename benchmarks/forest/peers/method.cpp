@@ -18,7 +18,9 @@ std::vector<Method> all_methods() {
       {.name = "surefoot constant, portable", .train = train_constant_portable, .min_leaf = 2},
       {.name = "surefoot linear", .train = train_linear, .min_leaf = 10, .balanced = true},
       {.name = "surefoot linear, portable", .train = train_linear_portable, .min_leaf = 10, .balanced = true},
-      {.name = "surefoot distilled", .train = train_distilled, .min_leaf = 10},
+      {.name = "surefoot pruned", .train = train_pruned, .min_leaf = 10},
+      {.name = "surefoot distilled", .train = train_distilled, .min_leaf = 10, .one_tree = true},
+      {.name = "surefoot one tree", .train = train_one_tree, .min_leaf = 10, .one_tree = true},
 #ifdef HAVE_DLIB
       {.name = "dlib", .train = train_dlib},
 #endif
@@ -31,11 +33,21 @@ std::vector<Method> all_methods() {
       {.name = "surefoot constant", .outputs = 3, .train = train_constant, .min_leaf = 2},
       {.name = "surefoot constant, portable", .outputs = 3, .train = train_constant_portable, .min_leaf = 2},
       {.name = "surefoot linear", .outputs = 3, .train = train_linear, .min_leaf = 10, .balanced = true},
-      {.name = "surefoot distilled", .outputs = 3, .train = train_distilled, .min_leaf = 10},
+      {.name = "surefoot pruned", .outputs = 3, .train = train_pruned, .min_leaf = 10},
+      {.name = "surefoot distilled", .outputs = 3, .train = train_distilled, .min_leaf = 10, .one_tree = true},
+      {.name = "surefoot one tree", .outputs = 3, .train = train_one_tree, .min_leaf = 10, .one_tree = true},
 #ifdef HAVE_DLIB
       {.name = "dlib", .outputs = 3, .train = train_dlib, .each_output = true},
 #endif
   };
+  if (have_c_compiler()) {
+    const auto after_ours = std::find_if(methods.begin(), methods.end(),
+                                         [](const Method& method) { return !method.name.starts_with("surefoot"); });
+    methods.insert(after_ours,
+                   {{.name = "surefoot C tables", .train = train_c_tables, .min_leaf = 2},
+                    {.name = "surefoot C tables, int16", .train = train_c_tables_int16, .min_leaf = 2},
+                    {.name = "surefoot C branches", .train = train_c_branches, .min_leaf = 2, .most_leaves = 2'000}});
+  }
   return methods;
 }
 

@@ -18,6 +18,8 @@ struct Method {
   // Most samples per leaf to insist on where the number of leaves is the limit; 0: samples per leaf are the limit.
   int min_leaf = 0;
   bool balanced = false;  // see Size
+  bool one_tree = false;  // however many trees are wanted
+  int most_leaves = 0;    // per tree, with which it can be built in acceptable time; 0: no limit
 };
 
 /// Our own and those of the libraries that are installed.

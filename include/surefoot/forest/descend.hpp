@@ -70,19 +70,11 @@ template <bool ToLeaves = true, class First, class Move, class Last>
   last(7, h);
 }
 
-/// Sort keys shifted up by 32 bits, as Node::step wants them; the slot behind the last is 0.
-inline void widen_keys(std::span<const std::uint32_t> keys, std::uint64_t* wide_keys) {
-  for (const std::uint32_t key : keys) *wide_keys++ = std::uint64_t{key} << 32;
-  *wide_keys = 0;
-}
-
-/// Calls take(tree, leaf) for each tree, with the leaf that one input, given by its sort keys, reaches there.
+/// Calls take(tree, leaf) for each tree, with the leaf that one input, given by its wide keys, reaches there.
 template <class Take>
 inline void find_leaves_portable(const Node* nodes, std::span<const std::uint32_t> roots,
-                                 std::span<const std::uint32_t> keys, const Take& take) {
-  std::array<std::uint64_t, max_forest_inputs + 1> wide_keys;
-  widen_keys(keys, wide_keys.data());
-  const auto move = [&](const Node* node, std::size_t = 0) { return node->step(wide_keys.data()); };
+                                 std::span<const std::uint64_t> keys, const Take& take) {
+  const auto move = [&](const Node* node, std::size_t = 0) { return node->step(keys.data()); };
   for (std::size_t tree = 0; tree < roots.size(); tree += lanes) {
     const std::size_t last = std::min(lanes, roots.size() - tree) - 1;
     if (last == 0) {  // alone it is faster
@@ -96,11 +88,11 @@ inline void find_leaves_portable(const Node* nodes, std::span<const std::uint32_
   }
 }
 
-/// The payload of the leaf that one input, given by its sort keys, reaches in each tree.
-inline void find_leaves(const Node* nodes, std::span<const std::uint32_t> roots, std::span<const std::uint32_t> keys,
+/// The payload of the leaf that one input, given by its wide keys, reaches in each tree.
+inline void find_leaves(const Node* nodes, std::span<const std::uint32_t> roots, std::span<const std::uint64_t> keys,
                         std::uint32_t* payloads) {
 #ifdef SUREFOOT_AVX2
-  if (roots.size() > avx2_trees / 2 && keys.size() < avx2_slots && __builtin_cpu_supports("avx2")) {
+  if (roots.size() > avx2_trees / 2 && keys.size() <= avx2_slots && __builtin_cpu_supports("avx2")) {
     const std::size_t rest =
         roots.size() % avx2_trees;  // half of the lanes filled or fewer: eight at a time are faster
     const std::size_t vectorised = rest > avx2_trees / 2 ? roots.size() : roots.size() - rest;

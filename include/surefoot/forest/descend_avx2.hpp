@@ -102,15 +102,14 @@ template <bool TwoRegisters>
   }
 }
 
-/// The payload of the leaf that one input, given by fewer than 16 sort keys, reaches in each tree.
+/// The payload of the leaf that one input, given by at most 16 wide keys, reaches in each tree.
 [[gnu::target("avx2")]] inline void find_leaves_avx2(const Node* nodes, std::span<const std::uint32_t> roots,
-                                                     std::span<const std::uint32_t> keys, std::uint32_t* payloads) {
+                                                     std::span<const std::uint64_t> keys, std::uint32_t* payloads) {
   alignas(32) std::array<std::uint32_t, avx2_slots> slots{};
-  std::copy(keys.begin(), keys.end(), slots.begin());
-  for (std::uint32_t& slot : slots) slot ^= 0x80000000U;
+  for (std::size_t k = 0; k < keys.size(); ++k) slots[k] = static_cast<std::uint32_t>(keys[k] >> 32) ^ 0x80000000U;
   const Avx2Keys registers{_mm256_load_si256(reinterpret_cast<const __m256i*>(&slots[0])),
                            _mm256_load_si256(reinterpret_cast<const __m256i*>(&slots[8]))};
-  if (keys.size() < 8) {
+  if (keys.size() <= 8) {
     find_leaves_avx2<false>(nodes, roots, registers, payloads);
   } else {
     find_leaves_avx2<true>(nodes, roots, registers, payloads);

@@ -67,13 +67,10 @@ std::vector<double> inverse_variances(const Dataset<Inputs, Outputs>& samples) {
   return inverse;
 }
 
-/// Several trees, and by how much the splits of each input lowered the outputs' squared errors in all of them.
-using GrownForest = GrownTree;
-
 /// Does the work of train_extra_trees.
 template <LeafModel Leaf, int Inputs, int Outputs, Executor E>
-GrownForest grow_forest(const Dataset<Inputs, Outputs>& samples, const ExtraTreesOptions& options, const E& executor,
-                        std::uint64_t seed, std::stop_token stop) {
+GrownTrees grow_forest(const Dataset<Inputs, Outputs>& samples, const ExtraTreesOptions& options, const E& executor,
+                       std::uint64_t seed, std::stop_token stop) {
   check(samples);
   check(options);
   if (samples.inputs.rows() > max_forest_inputs) throw ForestError("a forest can have at most 255 inputs");
@@ -94,11 +91,11 @@ GrownForest grow_forest(const Dataset<Inputs, Outputs>& samples, const ExtraTree
       stop);
   std::size_t nodes = 0;
   std::size_t parameters = 0;
-  for (const GrownTree& tree : grown) {
+  for (const GrownTrees& tree : grown) {
     nodes += tree.trees.nodes.size();
     parameters += tree.trees.parameters.size();
   }
-  GrownForest forest = std::move(grown.front());
+  GrownTrees forest = std::move(grown.front());
   forest.trees.nodes.reserve(nodes);
   forest.trees.parameters.reserve(parameters);
   for (std::size_t tree = 1; tree < grown.size(); ++tree) {

@@ -17,6 +17,7 @@ enum class ThresholdRule {
 struct ExtraTreesOptions {
   int trees = 25;
   int candidates = 0;      // K, inputs tried per split; 0: all
+  int draws = 1;           // thresholds tried for each of them; 1, as in the paper, for trees to be averaged
   int min_leaf = 4;        // fewest samples in a leaf (n_min)
   int max_depth = 0;       // splits from the root to any leaf; 0: no limit
   int max_leaves = 0;      // per tree, grown best first; 0: no limit
@@ -34,6 +35,7 @@ inline void check(const ExtraTreesOptions& options) {
   };
   require(options.trees >= 1, "trees must be at least 1");
   require(options.candidates >= 0, "candidates must be at least 1, or 0 for all inputs");
+  require(options.draws >= 1, "draws must be at least 1");
   require(options.min_leaf >= 1, "min_leaf must be at least 1");
   require(options.max_depth >= 0, "max_depth must be at least 1, or 0 for no limit");
   require(options.max_leaves >= 0, "max_leaves must be at least 1, or 0 for no limit");

@@ -8,17 +8,15 @@
 #include <cstdint>
 #include <limits>
 #include <stop_token>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/forest/dataset.hpp"
 #include "surefoot/forest/error.hpp"
-#include "surefoot/forest/extra_trees.hpp"
 #include "surefoot/forest/forest.hpp"
 #include "surefoot/forest/leaf.hpp"
+#include "surefoot/forest/unexplained.hpp"
 
 namespace surefoot {
 
@@ -29,50 +27,33 @@ struct PermutationImportance {
 };
 
 /// Best on samples that the forest was not trained on. Two inputs that tell the same share their importance.
-/// Cost: inputs * repeats predictions of all samples, and a copy of the inputs per thread. Repeat r of input k draws
+/// Cost: inputs * repeats predictions of all samples, and a copy of the samples per thread. Repeat r of input k draws
 /// its numbers from stream (k, r) of `seed`, so the result is the same for any executor. Throws a ForestError if the
 /// forest is empty or the shapes differ.
 template <int Inputs, int Outputs, LeafModel Leaf, Executor E>
 PermutationImportance permutation_importance(const Forest<Inputs, Outputs, Leaf>& forest,
                                              const Dataset<Inputs, Outputs>& samples, const E& executor,
                                              std::uint64_t seed, int repeats = 5, std::stop_token stop = {}) {
-  check(samples);
-  auto require = [](bool good, const char* what) {
-    if (!good) throw ForestError(std::string("permutation_importance: ") + what);
-  };
-  require(repeats >= 1, "repeats must be at least 1");
-  require(!forest.empty(), "the forest is empty");
-  require(forest.inputs() == samples.inputs.rows() && forest.outputs() == samples.outputs.rows(),
-          "the forest and the samples must have the same numbers of inputs and outputs");
+  detail::check_fit(forest, samples, "permutation_importance");
+  if (repeats < 1) throw ForestError("permutation_importance: repeats must be at least 1");
   const Eigen::Index count = samples.inputs.cols();
-  require(count <= std::numeric_limits<std::int32_t>::max(), "there can be at most 2^31 - 1 samples");
+  if (count > std::numeric_limits<std::int32_t>::max()) {
+    throw ForestError("permutation_importance: there can be at most 2^31 - 1 samples");
+  }
   const Eigen::Index inputs = samples.inputs.rows();
-  const Eigen::Index outputs = samples.outputs.rows();
-  Eigen::ArrayXd weights = samples.weights.array();
-  if (weights.size() == 0) weights.setOnes(count);
-  weights /= weights.sum();
-  const std::vector<double> inverse = detail::inverse_variances(samples);
-  Eigen::ArrayXd scale = Eigen::Map<const Eigen::ArrayXd>(inverse.data(), outputs);
-  if (const auto varying = (scale > 0).count(); varying > 0) scale /= static_cast<double>(varying);
-  const auto error = [&](const Eigen::Matrix<float, Inputs, Eigen::Dynamic>& points) {
-    Eigen::Matrix<double, Outputs, Eigen::Dynamic> predicted;
-    forest.predict(points, predicted);
-    const Eigen::ArrayXXd squares = (predicted - samples.outputs).array().square();
-    return ((squares.rowwise() * weights.transpose()).rowwise().sum() * scale).sum();
-  };
-  const double before = error(samples.inputs);
+  const double before = unexplained(forest, samples);
   const auto rises = map(
       executor, static_cast<std::size_t>(inputs * repeats),
       [&](std::size_t job) {
         const auto input = static_cast<Eigen::Index>(job) / repeats;
         const auto repeat = static_cast<Eigen::Index>(job) % repeats;
         Rng rng(seed, static_cast<std::uint64_t>(input), static_cast<std::uint64_t>(repeat));
-        Eigen::Matrix<float, Inputs, Eigen::Dynamic> shuffled = samples.inputs;
+        Dataset<Inputs, Outputs> shuffled = samples;
         for (Eigen::Index i = count - 1; i > 0; --i) {
           const auto other = static_cast<Eigen::Index>(rng.below(static_cast<std::uint32_t>(i) + 1));
-          std::swap(shuffled(input, i), shuffled(input, other));
+          std::swap(shuffled.inputs(input, i), shuffled.inputs(input, other));
         }
-        return error(shuffled) - before;
+        return unexplained(forest, shuffled) - before;
       },
       stop);
   PermutationImportance importance{Eigen::VectorXd(inputs), Eigen::VectorXd(inputs)};

@@ -132,8 +132,16 @@ class TreePruner {
         if (tree_.nodes[child].is_leaf()) continue;  // where no sample comes, what is above holds
         std::copy_n(numbers(visit.node), width_, numbers(child));
       }
-      const auto middle = std::stable_partition(
-          mine.begin(), mine.end(), [&](Eigen::Index i) { return !(samples_.inputs(node.input, i) > node.threshold); });
+      auto middle = mine.begin();  // the left ones move there in order, the right ones follow in order
+      to_the_right_.clear();
+      for (const Eigen::Index i : mine) {
+        if (samples_.inputs(node.input, i) > node.threshold) {
+          to_the_right_.push_back(i);
+        } else {
+          *middle++ = i;
+        }
+      }
+      std::copy(to_the_right_.begin(), to_the_right_.end(), middle);
       const std::size_t parting = visit.begin + static_cast<std::size_t>(middle - mine.begin());
       open.push_back({node.left, visit.begin, parting});
       open.push_back({node.left + 1, parting, visit.end});
@@ -223,6 +231,7 @@ class TreePruner {
   int outputs_;
   std::size_t width_;
   std::vector<double> risk_;  // of each node as a leaf: its samples' squared errors in units of the outputs' variance
+  std::vector<Eigen::Index> to_the_right_;
   std::vector<float> records_;
   std::vector<double> predicted_;
 };

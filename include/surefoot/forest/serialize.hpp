@@ -1,30 +1,35 @@
 // Forest files: versioned, little-endian, checked to the last bit before a forest comes out.
 //
-//   0  char[8]  "SUREFRST"          24  u32  outputs                 64  u64[nodes]   the nodes as they lie in memory
-//   8  u32      version (1)         28  u32  floats per leaf             u32[trees]   index of each root
-//   12 u32      tag of the leaf     32  u64  trees                       f32[leaves * floats per leaf], unless that is
-//   1 16 u32      header bytes (64)   40  u64  nodes                       u64          checksum of all above 20 u32
-//   inputs              48  u64  leaves   56  u64  0
+//    0  char[8]  "SUREFRST"              40  u64  nodes
+//    8  u32      version (1)             48  u64  leaves
+//   12  u32      tag of the leaf         56  u64  0
+//   16  u32      header bytes (64)       64  u64[nodes]  the nodes as they lie in memory
+//   20  u32      inputs                      u32[trees]  index of each root
+//   24  u32      outputs                     f32[leaves * floats per leaf], unless that is 1
+//   28  u32      floats per leaf             u64         checksum of all above
+//   32  u64      trees
 //
-// Nodes start at a multiple of 64 bytes, so a file can be mapped. Loading is one pass, O(bytes).
+// Nodes start at a multiple of 64 bytes, so a file can be mapped and used in place (`view`). Loading is one pass,
+// O(bytes).
 #pragma once
 
 #include <algorithm>
-#include <cmath>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <istream>
-#include <limits>
 #include <ostream>
 #include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "surefoot/core/binary.hpp"
+#include "surefoot/core/error.hpp"
+#include "surefoot/forest/check_trees.hpp"
+#include "surefoot/forest/error.hpp"
 #include "surefoot/forest/forest.hpp"
 #include "surefoot/forest/trees.hpp"
 
@@ -90,65 +95,6 @@ inline ForestHeader read_header(ByteReader& in) {
   return header;
 }
 
-/// What is wrong with a node whose children, if it has any, are good or not.
-inline const char* fault(const Node& node, const Trees& trees, bool good_children) {
-  if (node.is_leaf()) {
-    return node.input() != trees.inputs ? "a leaf must name the slot behind the last input"
-                                        : "its leaf value is not a finite number or not in the table";
-  }
-  if (node.input() >= trees.inputs) return "it tests an input that does not exist";
-  return good_children ? "its threshold is not finite" : "its children are not where they can be";
-}
-
-/// Throws unless every descent ends in a leaf with finite numbers and every node belongs to one tree only. One pass
-/// whose only branch is never taken for a good forest: leaves and inner nodes come in no order that could be predicted.
-inline void check_trees(const Trees& trees, const ByteReader& in) {
-  const std::size_t count = trees.nodes.size();
-  const std::size_t nowhere = count + count % 2;
-  std::vector<std::uint8_t> reached(nowhere + 2, 0);  // has a parent, or is a root
-  std::size_t next_root = 0;
-  for (const std::uint32_t root : trees.roots) {
-    if (root >= count || root % nodes_per_line != 0 || root < next_root) in.fail("has a bad list of roots");
-    reached[root] = 1;
-    next_root = root + nodes_per_line;
-  }
-  constexpr std::uint32_t lowest = sort_key(std::numeric_limits<float>::lowest());
-  constexpr std::uint32_t highest = sort_key(std::numeric_limits<float>::max());
-  constexpr std::uint32_t infinity = 0x7F800000U;
-  const std::uint32_t number_mask = trees.inline_leaves() ? 0x7FFFFFFFU : ~0U;  // takes a float's sign off
-  const auto number_end =
-      trees.inline_leaves() ? infinity : static_cast<std::uint32_t>(std::max<std::size_t>(trees.leaves, 1));
-  const auto slot = static_cast<std::uint32_t>(trees.inputs);
-  std::size_t leaves = 0;
-  for (std::size_t i = 0; i < count; ++i) {  // numbers for truth values: compilers make branches of those
-    const Node node = trees.nodes[i];
-    const auto input = static_cast<std::uint32_t>(node.input());
-    const std::uint32_t inner = node.is_leaf() ? 0 : ~0U;  // a mask
-    const std::size_t child = i + node.distance();
-    const std::size_t target = std::min(child, nowhere);
-    const std::uint32_t bad_children = (child + 1 >= count ? 1U : 0U) | (child & 1U) | reached[target];
-    const std::uint32_t bad_inner =
-        bad_children | (input >= slot ? 1U : 0U) | (node.key() - lowest > highest - lowest ? 1U : 0U);
-    const std::uint32_t bad_leaf = (input ^ slot) | ((node.payload() & number_mask) >= number_end ? 1U : 0U);
-    if (((bad_inner & inner) | (bad_leaf & ~inner)) != 0) [[unlikely]] {
-      in.fail("has a bad node " + std::to_string(i) + ": " + fault(node, trees, bad_children == 0));
-    }
-    leaves += reached[i] & ~inner;
-    // A leaf "goes on" to itself and must not change what is known of it.
-    const std::uint32_t passed_on = reached[i] & inner;
-    const std::size_t inner_address = std::size_t{0} - (inner & 1U);
-    const std::size_t left = (target & inner_address) | (nowhere & ~inner_address);
-    reached[left] = static_cast<std::uint8_t>(passed_on);
-    reached[left + 1] = static_cast<std::uint8_t>(passed_on);
-  }
-  if (leaves != trees.leaves) {
-    in.fail("has " + std::to_string(leaves) + " leaves, its header says " + std::to_string(trees.leaves));
-  }
-  for (std::size_t i = 0; i < trees.parameters.size(); ++i) {
-    if (!std::isfinite(trees.parameters[i])) in.fail("has a leaf number that is not finite: " + std::to_string(i));
-  }
-}
-
 template <class F>
 struct ForestTraits : std::false_type {};
 template <int I, int O, LeafModel L>
@@ -178,41 +124,75 @@ void write(ByteWriter& out, const Forest<Inputs, Outputs, Leaf>& forest) {
   out.add_checksum(start);
 }
 
-/// Takes a forest out of a larger file. Throws ForestError if it is damaged or of another type.
+namespace detail {
+
+/// The sizes in the header. Throws unless a forest of type F can have them.
 template <AnyForest F>
-F read(ByteReader& in) {
-  using Traits = detail::ForestTraits<F>;
-  try {
-    const std::size_t start = in.position();
-    const detail::ForestHeader header = detail::read_header(in);
-    auto expect = [&](std::uint64_t found, std::uint64_t wanted, const char* what) {
-      if (found != wanted) {
-        in.fail("holds a forest with " + std::string(what) + " " + std::to_string(found) + ", expected " +
-                std::to_string(wanted));
-      }
-    };
-    expect(header.leaf_tag, Traits::Leaf::tag, "leaves of kind");
-    if (Traits::inputs != Eigen::Dynamic) expect(header.inputs, static_cast<std::uint32_t>(Traits::inputs), "inputs:");
-    if (Traits::outputs != Eigen::Dynamic)
-      expect(header.outputs, static_cast<std::uint32_t>(Traits::outputs), "outputs:");
-    if (header.inputs > static_cast<std::uint32_t>(max_forest_inputs) || header.outputs > 0xFFFFFFU) {
-      in.fail("has a damaged forest header: at most 255 inputs and 2^24 outputs can be");
+TreesShape shape_for(const ForestHeader& header, const ByteReader& in) {
+  using Traits = ForestTraits<F>;
+  auto expect = [&](std::uint64_t found, std::uint64_t wanted, const char* what) {
+    if (found != wanted) {
+      in.fail("holds a forest with " + std::string(what) + " " + std::to_string(found) + ", expected " +
+              std::to_string(wanted));
     }
-    Trees trees;
-    trees.inputs = static_cast<int>(header.inputs);
-    trees.outputs = static_cast<int>(header.outputs);
-    trees.leaf_parameters = Traits::Leaf::parameters(trees.inputs, trees.outputs);
-    expect(header.leaf_parameters, trees.leaf_parameters, "numbers per leaf:");
-    trees.leaves = header.leaves;
-    in.words(trees.nodes, header.nodes);
-    in.words(trees.roots, header.trees);
-    in.words(trees.parameters, header.parameters());
-    in.expect_checksum(start);
-    detail::check_trees(trees, in);
-    return F(std::move(trees));
+  };
+  expect(header.leaf_tag, Traits::Leaf::tag, "leaves of kind");
+  if (Traits::inputs != Eigen::Dynamic) expect(header.inputs, static_cast<std::uint32_t>(Traits::inputs), "inputs:");
+  if (Traits::outputs != Eigen::Dynamic)
+    expect(header.outputs, static_cast<std::uint32_t>(Traits::outputs), "outputs:");
+  if (header.inputs > static_cast<std::uint32_t>(max_forest_inputs) || header.outputs > 0xFFFFFFU) {
+    in.fail("has a damaged forest header: at most 255 inputs and 2^24 outputs can be");
+  }
+  TreesShape shape;
+  shape.inputs = static_cast<int>(header.inputs);
+  shape.outputs = static_cast<int>(header.outputs);
+  shape.leaf_parameters = Traits::Leaf::parameters(shape.inputs, shape.outputs);
+  expect(header.leaf_parameters, shape.leaf_parameters, "numbers per leaf:");
+  shape.leaves = header.leaves;
+  return shape;
+}
+
+inline void take(ByteReader& in, auto& items, std::uint64_t count) { in.words(items, count); }
+
+/// Leaves the items where they lie.
+template <Word T>
+void take(ByteReader& in, std::span<const T>& items, std::uint64_t count) {
+  const std::uint64_t one_too_many = in.remaining() / sizeof(T) + 1;  // of which the reader complains
+  const auto bytes = in.raw(std::min(count, one_too_many) * sizeof(T));
+  items = {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
+}
+
+/// Trees of F, or where they lie, checked to the last bit. Throws a CoreError.
+template <AnyForest F, class Storage>
+Storage read_trees(ByteReader& in) {
+  const std::size_t start = in.position();
+  const ForestHeader header = read_header(in);
+  Storage trees;
+  static_cast<TreesShape&>(trees) = shape_for<F>(header, in);
+  take(in, trees.nodes, header.nodes);
+  take(in, trees.roots, header.trees);
+  take(in, trees.parameters, header.parameters());
+  in.expect_checksum(start);
+  check_trees(trees, in);
+  return trees;
+}
+
+/// Calls job(); what the core complains of becomes a ForestError.
+template <class Job>
+auto as_forest_error(const Job& job) {
+  try {
+    return job();
   } catch (const CoreError& error) {
     throw ForestError(error.what());
   }
+}
+
+}  // namespace detail
+
+/// Takes a forest out of a larger file. Throws ForestError if it is damaged or of another type.
+template <AnyForest F>
+F read(ByteReader& in) {
+  return detail::as_forest_error([&] { return F(detail::read_trees<F, Trees>(in)); });
 }
 
 template <int Inputs, int Outputs, LeafModel Leaf>
@@ -227,11 +207,7 @@ template <int Inputs, int Outputs, LeafModel Leaf>
 void save(const Forest<Inputs, Outputs, Leaf>& forest, const std::filesystem::path& path) {
   ByteWriter out;
   write(out, forest);
-  try {
-    write_file_atomically(path, out.bytes());
-  } catch (const CoreError& error) {
-    throw ForestError(error.what());
-  }
+  detail::as_forest_error([&] { write_file_atomically(path, out.bytes()); });
 }
 
 /// Reads one forest and leaves the stream right behind it. `source` names the stream in messages.
@@ -248,29 +224,53 @@ F load(std::istream& stream, const std::string& source = "the stream") {
       count -= piece;
     }
   };
-  try {
+  detail::as_forest_error([&] {
     read_more(detail::forest_header_bytes);
     ByteReader header(bytes, source);
     read_more(detail::read_header(header).body_bytes());
-  } catch (const CoreError& error) {
-    throw ForestError(error.what());
-  }
+  });
   ByteReader in(bytes, source);
   return read<F>(in);
+}
+
+/// Copies a forest out of bytes that hold it and nothing else, those of a mapped file for instance. `source` names
+/// them in messages.
+template <AnyForest F>
+F load(std::span<const std::byte> bytes, const std::string& source = "the bytes") {
+  return detail::as_forest_error([&] {
+    ByteReader in(bytes, source);
+    F forest(detail::read_trees<F, Trees>(in));
+    in.expect_end();
+    return forest;
+  });
 }
 
 /// Reads a file that holds one forest and nothing else.
 template <AnyForest F>
 F load(const std::filesystem::path& path) {
-  try {
-    const Bytes bytes = read_file(path);
-    ByteReader in(bytes, "file " + path.string());
-    F forest = read<F>(in);
+  const Bytes bytes = detail::as_forest_error([&] { return read_file(path); });
+  return load<F>(std::span(bytes), "file " + path.string());
+}
+
+/// A forest of type F that stays in `bytes`, which hold it and nothing else and must outlive it unchanged: they are
+/// checked once, here, as `load` does, but not copied. They must start at a multiple of 8 bytes in memory; at one of
+/// 64, as mapped files do, predictions are as fast as a Forest's. Little-endian machines only.
+///
+///   auto* memory = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file, 0);
+///   auto forest = view<Forest<6, 1>>({static_cast<const std::byte*>(memory), size});
+template <AnyForest F>
+  requires(std::endian::native == std::endian::little)
+auto view(std::span<const std::byte> bytes, const std::string& source = "the bytes") {
+  using Traits = detail::ForestTraits<F>;
+  return detail::as_forest_error([&] {
+    ByteReader in(bytes, source);
+    if (reinterpret_cast<std::uintptr_t>(bytes.data()) % alignof(Node) != 0) {
+      in.fail("cannot be used in place: they must start at a multiple of " + std::to_string(alignof(Node)) + " bytes");
+    }
+    ForestView<Traits::inputs, Traits::outputs, typename Traits::Leaf> forest(detail::read_trees<F, TreesView>(in));
     in.expect_end();
     return forest;
-  } catch (const CoreError& error) {
-    throw ForestError(error.what());
-  }
+  });
 }
 
 }  // namespace surefoot

@@ -37,7 +37,7 @@ template <LeafModel Leaf = ConstantLeaf, int Inputs, int Outputs, Executor E>
 ReportedForest<Inputs, Outputs, Leaf> train_with_report(const Dataset<Inputs, Outputs>& samples,
                                                         const ExtraTreesOptions& options, const E& executor,
                                                         std::uint64_t seed, std::stop_token stop = {}) {
-  detail::GrownForest grown = detail::grow_forest<Leaf>(samples, options, executor, seed, stop);
+  detail::GrownTrees grown = detail::grow_forest<Leaf>(samples, options, executor, seed, stop);
   ReportedForest<Inputs, Outputs, Leaf> result;
   result.importance =
       Eigen::Map<const Eigen::VectorXd>(grown.gain.data(), static_cast<Eigen::Index>(grown.gain.size()));

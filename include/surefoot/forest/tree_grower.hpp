@@ -45,8 +45,9 @@ class FastRng {
 /// Memory that one tree after the other uses: fresh memory would cost as much as a fifth of the work.
 using GrowthBuffers = std::array<Records, 2>;
 
-struct GrownTree {
-  Trees trees;               // this one
+/// One tree or several.
+struct GrownTrees {
+  Trees trees;
   std::vector<double> gain;  // by which the splits of each input lowered the outputs' squared errors, in their scale
 };
 
@@ -80,7 +81,7 @@ class TreeGrower {
     if (linear_score && options.model_score) linear_.emplace(shape);
   }
 
-  GrownTree grow() {
+  GrownTrees grow() {
     for (Records& buffer : buffers_) buffer.resize(records_.size());
     if (options_.bootstrap) {
       float* to = buffers_[0].data();
@@ -185,12 +186,16 @@ class TreeGrower {
     if (std::equal(&low_[y], &low_[y] + outputs, &high_[y])) return open;  // all outputs the same: nothing to gain
     choose_inputs();
     if (options_.threshold_rule == ThresholdRule::uniform) {
-      for (const int input : chosen_) draw_uniform(input);
-      score(records, open);
+      for (int draw = 0; draw < options_.draws; ++draw) {
+        for (const int input : chosen_) draw_uniform(input);
+        score(records, open);
+      }
       if (open.input >= 0) return open;
     }
-    for (const int input : chosen_) draw_balanced(records, input);  // the other rule's last resort as well
-    score(records, open);
+    for (int draw = 0; draw < options_.draws; ++draw) {  // the other rule's last resort as well
+      for (const int input : chosen_) draw_balanced(records, input);
+      score(records, open);
+    }
     return open;
   }
 
@@ -227,7 +232,8 @@ class TreeGrower {
     if (low < high) draw_between(input, low, high);
   }
 
-  // Sets the split of `open` to the best of the candidates that leave min_leaf samples on both sides.
+  // Sets the split of `open` to the best of the candidates that leave min_leaf samples on both sides, if it has none
+  // that is as good.
   void score(const RecordSpan& records, Open& open) {
     if (linear_) {
       score_fits(records, open);
@@ -236,11 +242,15 @@ class TreeGrower {
     }
   }
 
+  static double gain_of(const Open& open) {
+    return open.input < 0 ? -std::numeric_limits<double>::infinity() : open.gain;
+  }
+
   void score_fits(const RecordSpan& records, Open& open) {
     linear_->measure(records, chosen_, thresholds_.data(), low_.data(), high_.data(), mean_.data());
     const double together = linear_->explained_together(output_scale_, options_.ridge);
     const auto fewest = static_cast<std::size_t>(options_.min_leaf);
-    double best = -std::numeric_limits<double>::infinity();
+    double best = gain_of(open);
     for (std::size_t c = 0; c < chosen_.size(); ++c) {
       const std::size_t left_count = linear_->left_count(c);
       if (left_count < fewest || records.count - left_count < fewest) continue;
@@ -258,7 +268,7 @@ class TreeGrower {
     sum_left(records, shape_, thresholds_.data(), &mean_[shape_.output_at()], sums_);
     const std::size_t width = 4 * shape_.input_quads();
     const auto count = static_cast<std::int64_t>(records.count);
-    double best = -std::numeric_limits<double>::infinity();
+    double best = gain_of(open);
     for (const int input : chosen_) {
       const auto k = static_cast<std::size_t>(input);
       const std::int64_t left_count = sums_.count[k];

@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <new>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +33,9 @@ constexpr std::uint32_t sort_key(float value) {
   const std::uint32_t all_if_negative = 0U - (bits >> 31);  // without a branch: signs are as good as random
   return value != value ? 0 : bits ^ (all_if_negative | 0x80000000U);
 }
+
+/// The sort key as Node::step wants it.
+constexpr std::uint64_t wide_key(float value) { return std::uint64_t{sort_key(value)} << 32; }
 
 /// The float that a sort key came from.
 constexpr float from_sort_key(std::uint32_t key) {
@@ -59,8 +63,8 @@ class Node {
   constexpr float threshold() const { return from_sort_key(key()); }  // of an inner node
   constexpr std::uint32_t payload() const { return key(); }           // of a leaf
 
-  /// How far to go from here; `wide_keys` are the inputs' sort keys shifted up by 32 bits. Comparing all 64 bits at
-  /// once compares the keys: on equal keys the link decides, which is never below 0.
+  /// How far to go from here; `wide_keys` are the inputs' (see wide_key) and, behind the last, a 0. Comparing all 64
+  /// bits at once compares the keys: on equal keys the link decides, which is never below 0.
   constexpr std::size_t step(const std::uint64_t* wide_keys) const {
     return static_cast<std::size_t>(distance()) + (bits_ < wide_keys[bits_ & 255U] ? 1U : 0U);
   }
@@ -99,17 +103,28 @@ struct CacheLineAllocator {
 using NodeArray = std::vector<Node, CacheLineAllocator<Node>>;
 constexpr std::size_t nodes_per_line = 64 / sizeof(Node);
 
-/// The trees of a forest, sizes known at run time only; Forest is the typed shell around it.
-struct Trees {
+/// Sizes of the trees of a forest.
+struct TreesShape {
   int inputs = 0;
   int outputs = 0;
   std::size_t leaf_parameters = 0;  // floats per leaf; 1: kept in the leaf's node, `parameters` is empty
   std::size_t leaves = 0;           // of all trees together
+
+  bool inline_leaves() const { return leaf_parameters == 1; }
+
+  std::string shape() const {
+    return std::to_string(inputs) + " inputs, " + std::to_string(outputs) + " outputs, " +
+           std::to_string(leaf_parameters) + " numbers per leaf";
+  }
+
+  bool operator==(const TreesShape&) const = default;
+};
+
+/// The trees of a forest, sizes known at run time only; Forest is the typed shell around it.
+struct Trees : TreesShape {
   NodeArray nodes;
   std::vector<std::uint32_t> roots;  // index of each tree's root in `nodes`
   std::vector<float> parameters;     // leaf_parameters per leaf
-
-  bool inline_leaves() const { return leaf_parameters == 1; }
 
   /// Adds the trees of another forest of the same shape behind these.
   void append(const Trees& other) {
@@ -130,12 +145,14 @@ struct Trees {
     leaves += other.leaves;
   }
 
-  std::string shape() const {
-    return std::to_string(inputs) + " inputs, " + std::to_string(outputs) + " outputs, " +
-           std::to_string(leaf_parameters) + " numbers per leaf";
-  }
-
   bool operator==(const Trees&) const = default;
+};
+
+/// Trees that lie elsewhere, as in a mapped file; that memory must outlive this.
+struct TreesView : TreesShape {
+  std::span<const Node> nodes;
+  std::span<const std::uint32_t> roots;
+  std::span<const float> parameters;
 };
 
 }  // namespace surefoot
