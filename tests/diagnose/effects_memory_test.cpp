@@ -214,10 +214,31 @@ TEST_CASE("a load behind a gap is left alone until the gap is crossed") {
   for (Eigen::Index i = 0; i <= 1000; ++i) CHECK(std::abs(x(1, i)) < 1.001);
 }
 
+TEST_CASE("a motor moves its load once it has crossed the play, and both as one then") {
+  Recording recording = recording_of(1001, 0.001, 0, 0);
+  recording.inputs.setConstant(1);  // a motor of half the inertia crosses the play of 0.2 in sqrt(0.2) s
+  const auto x = simulated(effects::backlash_motor(), {0.2, 0.5}, recording, {.stiffness = 0}).states;
+  CHECK(x(1, 440) == doctest::Approx(0));
+  CHECK(x(1, 455) == doctest::Approx(0.455));  // the impulse of both, however it was handed on
+  CHECK(x(1, 1000) == doctest::Approx(1));
+  const double crossed = std::sqrt(0.2);  // then at half the motor's speed, with the acceleration of both
+  CHECK(x(0, 1000) == doctest::Approx(crossed * (1 - crossed) + 0.5 * (1 - crossed) * (1 - crossed)).epsilon(1e-4));
+}
+
+TEST_CASE("a motor without play changes nothing") {
+  Recording recording = recording_of(301, 0.005, 0.3, 1);
+  for (Eigen::Index i = 0; i < 301; ++i) recording.inputs(0, i) = i % 60 < 30 ? 20.0 : -20.0;
+  const auto tight = simulated(effects::backlash_motor(), {0, 0.3}, recording).states;
+  const auto one = simulated(effects::constant_force(), {0}, recording).states;
+  CHECK((tight - one).cwiseAbs().maxCoeff() < 1e-12);
+  const auto narrow = simulated(effects::backlash_motor(), {1e-4, 0.3}, recording).states;
+  CHECK((narrow.row(0) - one.row(0)).cwiseAbs().maxCoeff() < 2e-3);
+}
+
 TEST_CASE("hidden states are stable for any parameters at steps of 1 to 10 ms") {
   for (const Effect& effect :
        {effects::hysteresis(), effects::hysteresis_squared(), effects::backlash(), effects::backlash_gap(),
-        effects::joint_elasticity(), effects::cogging(), effects::cubic_stiffness()}) {
+        effects::backlash_motor(), effects::joint_elasticity(), effects::cogging(), effects::cubic_stiffness()}) {
     CAPTURE(effect.name);
     CAPTURE(effect.form);
     for (std::uint64_t seed = 0; seed < 60; ++seed) {

@@ -12,7 +12,7 @@
 namespace toys {
 
 /// Noise of an output that swings at up to 3 units per second.
-inline surefoot::NoiseSeries noise_series(const surefoot::NoiseModel& model, Eigen::Index rows, double interval,
+inline surefoot::NoiseSeries noise_series(const surefoot::ResidualNoise& model, Eigen::Index rows, double interval,
                                           std::uint64_t seed) {
   surefoot::Rng rng(seed, 0x6e6fu);
   surefoot::NoiseSeries series{Eigen::VectorXd::LinSpaced(rows, 0, interval * static_cast<double>(rows - 1)),
@@ -28,7 +28,7 @@ inline surefoot::NoiseSeries noise_series(const surefoot::NoiseModel& model, Eig
   return series;
 }
 
-inline std::vector<surefoot::NoiseSeries> noise_recordings(const surefoot::NoiseModel& model, int count,
+inline std::vector<surefoot::NoiseSeries> noise_recordings(const surefoot::ResidualNoise& model, int count,
                                                            Eigen::Index rows, double interval, std::uint64_t seed) {
   std::vector<surefoot::NoiseSeries> series;
   for (int i = 0; i < count; ++i) {

@@ -15,8 +15,8 @@ namespace {
 TEST_CASE("the likelihood is that of the Gaussian with the same covariance, gaps or not") {
   NoiseSeries series = toys::noise_series({.rest = 0.4, .growth = 0.3, .time = 0.05, .share = 0.7}, 30, 0.02, 1);
   for (Eigen::Index i = 10; i < 30; ++i) series.time[i] += 0.031 * static_cast<double>(i / 4);
-  for (const NoiseModel& model : {NoiseModel{0.5, 0, 0, 0}, NoiseModel{0.4, 0.3, 0, 0}, NoiseModel{0.5, 0, 0.04, 1},
-                                  NoiseModel{0.3, 0.2, 0.06, 0.6}}) {
+  for (const ResidualNoise& model : {ResidualNoise{0.5, 0, 0, 0}, ResidualNoise{0.4, 0.3, 0, 0},
+                                     ResidualNoise{0.5, 0, 0.04, 1}, ResidualNoise{0.3, 0.2, 0.06, 0.6}}) {
     const Eigen::Index n = series.value.size();
     Eigen::MatrixXd covariance(n, n);
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -35,10 +35,11 @@ TEST_CASE("the likelihood is that of the Gaussian with the same covariance, gaps
 }
 
 TEST_CASE("the fit finds the numbers of the noise, in intervals that hold them") {
-  const NoiseModel truth{.rest = 0.002, .growth = 0.001, .time = 0.012, .share = 0.8};
+  const ResidualNoise truth{.rest = 0.002, .growth = 0.001, .time = 0.012, .share = 0.8};
   const NoiseFit fit = fit_noise(toys::noise_recordings(truth, 12, 2000, 0.005, 3),
                                  {.memory = NoiseMemory::fading_and_white, .grows = true});
-  for (const auto number : {&NoiseModel::rest, &NoiseModel::growth, &NoiseModel::time, &NoiseModel::share}) {
+  for (const auto number :
+       {&ResidualNoise::rest, &ResidualNoise::growth, &ResidualNoise::time, &ResidualNoise::share}) {
     CHECK(fit.model.*number == doctest::Approx(truth.*number).epsilon(0.1));
     CHECK(fit.low.*number < truth.*number);
     CHECK(fit.high.*number > truth.*number);

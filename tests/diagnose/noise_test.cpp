@@ -17,7 +17,7 @@ namespace {
 
 const OutputInfo angle{"theta_rad", "rad"};
 
-std::vector<NoiseFinding> found(const NoiseModel& truth, std::uint64_t seed) {
+std::vector<NoiseFinding> found(const ResidualNoise& truth, std::uint64_t seed) {
   return find_noise(toys::noise_recordings(truth, 6, 600, 0.005, seed), angle, SimulatorKind::ode);
 }
 

@@ -55,7 +55,7 @@ inline std::vector<AttachedEffect> attachments(const Rig& rig, const std::vector
   int rank = -1;
   for (const Effect& effect : effects) {
     ++rank;
-    if (effect.needs_drive && info.inputs.empty()) continue;  // nothing drives it
+    if ((effect.needs_drive || effect.needs_damping) && info.inputs.empty()) continue;  // nothing drives it
     const auto shared = std::make_shared<const Effect>(effect);
     const auto attach = [&](std::size_t at, const std::string& place, int other = -1) {
       result.push_back({shared, static_cast<int>(at), other, place, rank});
@@ -81,7 +81,7 @@ inline std::vector<AttachedEffect> attachments(const Rig& rig, const std::vector
           if (is_position || rig.facts.velocity[i] || pose) continue;  // there forces act, or walking effects
           const std::string& unit = info.states[i].unit;
           const bool angle = unit == "rad" || unit == "deg";
-          if (effect.stored && (angle || (info.kind == SimulatorKind::ode && !rig.facts.matters[i]))) continue;
+          if (effect.stored && (angle || !rig.facts.matters[i])) continue;
           if (!effect.spills) {
             attach(i, info.states[i].name);
             continue;

@@ -156,12 +156,24 @@ inline Integration choose_integration(const Rig& rig, const Hypothesis& hypothes
   return fine;
 }
 
+namespace detail {
+
+/// Rates from each row to the next [1/s, or per step]; none for less than two rows.
+inline Eigen::MatrixXd row_rates(const Eigen::VectorXd& time, const Eigen::MatrixXd& states) {
+  const Eigen::Index intervals = std::max<Eigen::Index>(0, states.cols() - 1);
+  const Eigen::VectorXd steps = time.tail(intervals) - time.head(intervals);
+  const Eigen::MatrixXd changes = states.rightCols(intervals) - states.leftCols(intervals);
+  return changes * steps.cwiseInverse().asDiagonal();
+}
+
+}  // namespace detail
+
 /// Typical sizes of everything along the trajectories of a hypothesis.
 inline Sizes measure_sizes(const Rig& rig, const Hypothesis& hypothesis, const std::vector<std::size_t>& recordings,
                            const std::vector<SimulatedRun>& trajectories) {
   Sizes sizes = rig.sizes;
   const auto n = rig.info.states.size(), m = rig.info.inputs.size(), s = rig.info.signals.size();
-  std::vector<double> state(n), position(n), effort(n), input(m), signal(s);
+  std::vector<double> state(n), position(n), rate(n), effort(n), input(m), signal(s);
   sizes.state_peak.assign(n, 0.0);
   sizes.input_peak.assign(m, 0.0);
   sizes.signal_peak.assign(s, 0.0);
@@ -195,6 +207,7 @@ inline Sizes measure_sizes(const Rig& rig, const Hypothesis& hypothesis, const s
     };
     add(state, states, false);
     add(position, states, true);
+    add(rate, detail::row_rates(recording.time, states), false);
     add(effort, efforts, rig.info.kind == SimulatorKind::map);
     add(input, recording.inputs, false);
     add(signal, signals, false);
@@ -210,6 +223,7 @@ inline Sizes measure_sizes(const Rig& rig, const Hypothesis& hypothesis, const s
   };
   finish(sizes.state, state);
   finish(sizes.position, position);
+  finish(sizes.rate, rate);
   finish(sizes.effort, effort);
   finish(sizes.input, input);
   finish(sizes.signal, signal);

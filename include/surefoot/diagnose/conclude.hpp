@@ -57,18 +57,21 @@ inline void conclude(Investigation& investigation, const std::vector<AttachedEff
   const FitProblem& problem = investigation.problem.fit;
   Selection& selection = investigation.selection;
   const auto& training = investigation.split.training;
-  const Hypothesis calibrated = selection.nominal.hypothesis;
+  // Unknown initial states of the test recordings are estimated for each model alike.
+  const auto ready = [&](const Hypothesis& hypothesis) {
+    return with_estimated_starts(rig, hypothesis, investigation.split.test, problem, parallel);
+  };
+  const Hypothesis calibrated = ready(selection.nominal.hypothesis);
+  Hypothesis chosen = ready(selection.chosen.hypothesis);
   const std::size_t known = calibrated.effects.size();
-  const bool refuted = selection.chosen.hypothesis.effects.size() > known &&
-                       !confirmed(investigation, calibrated, selection.chosen.hypothesis, parallel);
-  if (refuted) {
+  if (chosen.effects.size() > known && !confirmed(investigation, calibrated, chosen, parallel)) {
+    chosen = calibrated;
     selection.alternatives.assign(1, selection.chosen);
     selection.chosen = selection.nominal;
     diagnosis.remarks.push_back({"",
                                  "effects that seemed to explain the mismatch did not lower the error on the test "
                                  "recordings, and were dropped"});
   }
-  const Hypothesis chosen = selection.chosen.hypothesis;
   const bool found_any = chosen.effects.size() > known;
   diagnosis.integration_order = rig.integration.order;
   diagnosis.integration_step = rig.integration.step;

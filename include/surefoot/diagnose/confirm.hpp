@@ -16,14 +16,12 @@
 namespace surefoot {
 
 /// Whether effects lower the error of the test recordings in the units in which they were chosen, and do not raise it
-/// where whole recordings are simulated. Unknown initial states are estimated.
-inline bool confirmed(const Investigation& investigation, const Hypothesis& calibrated, const Hypothesis& chosen,
+/// where whole recordings are simulated. Both hypotheses need the initial states of those recordings.
+inline bool confirmed(const Investigation& investigation, const Hypothesis& before, const Hypothesis& after,
                       const Parallel& parallel) {
   const Rig& rig = investigation.rig;
   const FitProblem& problem = investigation.problem.fit;
   const auto& test = investigation.split.test;
-  const Hypothesis before = with_estimated_starts(rig, calibrated, test, problem, parallel);
-  const Hypothesis after = with_estimated_starts(rig, chosen, test, problem, parallel);
   const auto error = [&](const Hypothesis& one) {
     return score(rig, one, test, problem.weighting, problem.integration, parallel).rms();
   };
@@ -39,14 +37,14 @@ struct Remainder {
   double times = 0;  // root mean square, in units of the noise
 };
 
+/// Both hypotheses need the initial states of the test recordings.
 inline Remainder remainder_on_test(const Investigation& investigation, const Hypothesis& calibrated,
                                    const Hypothesis& chosen, const Parallel& parallel) {
   const Rig& rig = investigation.rig;
   const FitProblem& problem = investigation.problem.fit;
   const auto& test = investigation.split.test;
   const auto sizes = [&](const Hypothesis& hypothesis) {
-    const Hypothesis ready = with_estimated_starts(rig, hypothesis, test, problem, parallel);
-    return residual_sizes(rig, test, simulate_all(rig, ready, test, problem.integration, parallel));
+    return residual_sizes(rig, test, simulate_all(rig, hypothesis, test, problem.integration, parallel));
   };
   const Eigen::VectorXd before = sizes(calibrated), after = sizes(chosen), spreads = output_spreads(rig, test);
   double missed = 0, left = 0, squares = 0;

@@ -33,10 +33,6 @@ inline Eigen::VectorXd series_of(const Rig& rig, std::size_t r, const SimulatedR
   return series;
 }
 
-}  // namespace detail
-
-namespace detail {
-
 /// Sums of products of neighbours `lag` rows apart, by lag, over all series.
 inline Eigen::VectorXd lagged_products(const std::vector<Eigen::VectorXd>& series, Eigen::Index from, Eigen::Index to) {
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(to - from + 1);

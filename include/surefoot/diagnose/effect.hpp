@@ -27,9 +27,9 @@ enum class Place : std::uint8_t {
 
 /// Powers of the natural measures at the place of attachment; the measure of a parameter is their product. `value`
 /// belongs to the thing attached to (velocity or state, input, output, parameter), `position` to what a velocity is the
-/// speed of, `effort` to the force on it, `time` is that of 200 rows.
+/// speed of, `effort` to the force on it, `rate` to what this force changes, `time` is that of 200 rows.
 struct Measure {
-  int effort = 0, value = 0, position = 0, time = 0;
+  int effort = 0, value = 0, position = 0, time = 0, rate = 0;
 };
 
 /// A parameter of an effect. Bounds and starting values are multiples of the typical size of its measure in the
@@ -52,7 +52,8 @@ struct Moment {
   double rate = 0;      // of the state it is attached to, as the simulator has it
   double effort = 1;    // what turns this rate into a force or torque
   double drive = 0;     // force due to the inputs, if the effect asks for it (needs_drive)
-  double load = 0;      // force that remains with inputs and speed at zero, likewise
+  double load = 0;      // force that remains with inputs and speed at zero, likewise (or needs_damping)
+  double damping = 0;   // by how much the force falls per unit of `value` (needs_damping)
 };
 
 using Values = std::span<const double>;
@@ -78,12 +79,17 @@ struct Effect {
 
   int memories = 0;
   bool needs_drive = false;
+  bool needs_damping = false;
+  bool impacts = false;   // its mark does not grow in proportion: starts are ranked as they are, and not scaled
   bool at_start = false;  // a sensor's fault that an initial state read off that sensor has, too
   bool stored = false;  // needs a state of which there is more or less (Place::state): no angle, and rates depend on it
   bool spills = false;  // also tried with each other state as `other` (limit)
 
   /// Force on a velocity, in effort units; for Place::state the addition to the rate.
   std::function<double(const Moment&, Values p, Values memory)> force = {};
+  /// Addition to the rate of what a velocity is the speed of: where impacts within a step move it otherwise than their
+  /// mean force does.
+  std::function<double(const Moment&, Values p, Values memory)> position_rate = {};
   /// Level of dry friction, at least 0: the force that holds the velocity at zero, or opposes it.
   std::function<double(const Moment&, Values p)> dry = {};
   /// Hidden states: values at the start (zero without this), rates, and what is done once after each step.

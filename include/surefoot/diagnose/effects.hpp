@@ -57,6 +57,7 @@ inline std::vector<Effect> velocity_effects() {
           effects::hysteresis_squared(),
           effects::backlash(),
           effects::backlash_gap(),
+          effects::backlash_motor(),
           effects::joint_elasticity(),
           effects::cogging(),
           effects::gravity_offset(),

@@ -18,7 +18,7 @@ namespace surefoot {
 struct SimulatorFacts {
   std::vector<int> position_of;     // by state: the state whose rate it is, or -1
   std::vector<bool> velocity;       // by state: forces may act on it
-  std::vector<bool> matters;        // by state: some rate (map: next value of another state) depends on it
+  std::vector<bool> matters;        // by state: some rate depends on it (maps are not asked: always)
   std::vector<int> output_of;       // by state: the output that reads it directly, or -1
   std::vector<bool> driven_signal;  // by signal: changes with the inputs
   bool all_states_measured = false;
@@ -27,7 +27,7 @@ struct SimulatorFacts {
 /// Typical sizes, root mean squares over the recordings.
 struct Sizes {
   std::vector<double> state, input, signal, output;
-  std::vector<double> effort;                               // by state: of rate * effort
+  std::vector<double> rate, effort;                         // by state: from row to row; of rate * effort
   std::vector<double> position;                             // by state: deviation from its mean
   std::vector<double> state_peak, input_peak, signal_peak;  // largest absolute values
   double time = 1;                                          // of 200 rows [s], or steps
@@ -37,7 +37,7 @@ struct Sizes {
 inline Sizes unit_sizes(const SimulatorInfo& info) {
   Sizes sizes;
   sizes.state.assign(info.states.size(), 1.0);
-  sizes.effort = sizes.position = sizes.state;
+  sizes.rate = sizes.effort = sizes.position = sizes.state;
   sizes.input.assign(info.inputs.size(), 1.0);
   sizes.signal.assign(info.signals.size(), 1.0);
   sizes.output.assign(info.outputs.size(), 1.0);
@@ -123,7 +123,7 @@ SimulatorFacts find_facts(const S& simulator, const SimulatorInfo& info, const R
   detail::prepare(s, parameters);
   SimulatorFacts facts;
   facts.driven_signal.assign(info.signals.size(), false);
-  facts.matters.assign(n, false);
+  facts.matters.assign(n, info.kind == SimulatorKind::map);
   std::vector<std::vector<bool>> speed(n, std::vector<bool>(n, true)), reads(n, std::vector<bool>(k, true));
   Rng rng(1);
   std::vector<double> seen(info.signals.size());
@@ -153,13 +153,12 @@ SimulatorFacts find_facts(const S& simulator, const SimulatorInfo& info, const R
         if (!detail::close(y[static_cast<Eigen::Index>(j)], x[row])) reads[i][j] = false;
       }
     }
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = 0; i < n && info.kind == SimulatorKind::ode; ++i) {
       auto moved = x;
       moved[static_cast<Eigen::Index>(i)] += scale * (0.1 + rng.uniform());
       const auto changed = detail::evaluate(s, moved, u, parameters, NoTap{});
       for (std::size_t j = 0; j < n; ++j) {
         const auto row = static_cast<Eigen::Index>(j);
-        if (info.kind == SimulatorKind::map && i == j) continue;
         if (!detail::close(rate[row], changed[row])) facts.matters[i] = true;
       }
     }

@@ -48,12 +48,13 @@ inline std::vector<SimulatedRun> simulate_all(const Rig& rig, const Hypothesis& 
 inline double measure_size(const Rig& rig, const AttachedEffect& attached, const Measure& measure) {
   const auto at = static_cast<std::size_t>(attached.at);
   const auto inputs = rig.info.inputs.size();
-  double value = 1, effort = 1, position = 1;
+  double value = 1, effort = 1, position = 1, rate = 1;
   switch (attached.effect->place) {
     case Place::velocity:
     case Place::state: {
       value = rig.sizes.state[at];
       effort = rig.sizes.effort[at];
+      rate = rig.sizes.rate[at];
       const int of = rig.facts.position_of[at];
       if (of >= 0) position = rig.sizes.position[static_cast<std::size_t>(of)];
       break;
@@ -69,7 +70,7 @@ inline double measure_size(const Rig& rig, const AttachedEffect& attached, const
       break;
   }
   return std::pow(effort, measure.effort) * std::pow(value, measure.value) * std::pow(position, measure.position) *
-         std::pow(rig.sizes.time, measure.time);
+         std::pow(rate, measure.rate) * std::pow(rig.sizes.time, measure.time);
 }
 
 namespace detail {
@@ -116,9 +117,9 @@ inline std::string measure_unit(const Rig& rig, const AttachedEffect& attached, 
   }
   std::string above, below;
   detail::append_unit(above, below, effort, measure.effort);
-  detail::append_unit(above, below, value, measure.value);
+  detail::append_unit(above, below, value, measure.value + measure.rate);
   detail::append_unit(above, below, position, measure.position);
-  detail::append_unit(above, below, map ? "step" : "s", measure.time);
+  detail::append_unit(above, below, map ? "step" : "s", measure.time - measure.rate);
   if (above.empty()) above = "1";
   if (below.empty()) return above;
   return above + "/" + (below.find(' ') != std::string::npos ? "(" + below + ")" : below);

@@ -59,7 +59,7 @@ inline std::pair<std::vector<double>, double> heldout_likelihood(const std::vect
     for (std::size_t i = 0; i < parts.size(); ++i) {
       if (i % folds != fold) others.push_back(parts[i]);
     }
-    const NoiseModel model = refit_noise(others, all);
+    const ResidualNoise model = refit_noise(others, all);
     for (std::size_t i = fold; i < parts.size(); i += folds) {
       const Eigen::VectorXd each = log_likelihoods(model, parts[i]);
       const Eigen::Index count = blocks_of(each.size());
@@ -152,7 +152,7 @@ inline std::vector<NoiseFinding> find_noise(const std::vector<NoiseSeries>& seri
   if (correlated && too_long) return {};
 
   std::vector<NoiseFinding> findings;
-  const auto number = [&fit](const char* name, const std::string& unit, double NoiseModel::* of) {
+  const auto number = [&fit](const char* name, const std::string& unit, double ResidualNoise::* of) {
     return FittedValue{name, unit, fit.model.*of, fit.low.*of, fit.high.*of};
   };
   if (growing) {
@@ -163,7 +163,8 @@ inline std::vector<NoiseFinding> find_noise(const std::vector<NoiseSeries>& seri
                                                    : output.unit) +
                             (kind == SimulatorKind::ode ? "/s" : "/row");
     NoiseFinding one{output.name, "speed_dependent_noise", {}, grows.gain, grows.p_value, ""};
-    one.parameters = {number("rest", output.unit, &NoiseModel::rest), number("growth", time_unit, &NoiseModel::growth)};
+    one.parameters = {number("rest", output.unit, &ResidualNoise::rest),
+                      number("growth", time_unit, &ResidualNoise::growth)};
     one.sentence = "noise of " + output.name + " grows with its speed, from " + with_unit(fit.model.rest, output.unit) +
                    " at rest to " + with_unit(std::hypot(fit.model.rest, fit.model.growth * speed), output.unit) +
                    " at " + with_unit(speed, per);
@@ -171,8 +172,8 @@ inline std::vector<NoiseFinding> find_noise(const std::vector<NoiseSeries>& seri
   }
   if (correlated) {
     NoiseFinding one{output.name, "correlated_noise", {}, remembers.gain, remembers.p_value, ""};
-    one.parameters = {number("time", time_unit, &NoiseModel::time)};
-    if (memory == NoiseMemory::fading_and_white) one.parameters.push_back(number("share", "1", &NoiseModel::share));
+    one.parameters = {number("time", time_unit, &ResidualNoise::time)};
+    if (memory == NoiseMemory::fading_and_white) one.parameters.push_back(number("share", "1", &ResidualNoise::share));
     one.sentence = "noise of " + output.name + " is correlated over " + with_unit(fit.model.time, time_unit);
     findings.push_back(std::move(one));
   }

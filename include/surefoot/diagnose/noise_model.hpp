@@ -27,14 +27,14 @@ struct NoiseSeries {
 /// What is left of a sample in the next one: nothing, some, or some beside white noise.
 enum class NoiseMemory : std::uint8_t { none, fading, fading_and_white };
 
-struct NoiseShape {
+struct ResidualNoiseShape {
   NoiseMemory memory = NoiseMemory::none;
   bool grows = false;  // with speed
 
   int numbers() const { return 1 + static_cast<int>(memory) + (grows ? 1 : 0); }
 };
 
-struct NoiseModel {
+struct ResidualNoise {
   double rest = 1;    // standard deviation at rest
   double growth = 0;  // of the standard deviation with speed [s, or rows]
   double time = 0;    // of correlation [s, or rows]; 0: white
@@ -42,7 +42,7 @@ struct NoiseModel {
 };
 
 /// Logarithm of the probability density of each sample, given those before it.
-inline Eigen::VectorXd log_likelihoods(const NoiseModel& model, const NoiseSeries& series) {
+inline Eigen::VectorXd log_likelihoods(const ResidualNoise& model, const NoiseSeries& series) {
   Eigen::VectorXd result(series.value.size());
   const double root = std::sqrt(model.share);
   double mean = 0, variance = 1, last_gap = -1, kept = 0;  // of the correlated part
@@ -70,10 +70,10 @@ inline Eigen::VectorXd log_likelihoods(const NoiseModel& model, const NoiseSerie
 
 /// A maximum of the likelihood.
 struct NoiseFit {
-  NoiseModel model = {};
-  NoiseShape shape = {};
+  ResidualNoise model = {};
+  ResidualNoiseShape shape = {};
   double log_likelihood = -std::numeric_limits<double>::infinity();
-  NoiseModel low = {}, high = {};  // ends of the 95 % intervals
+  ResidualNoise low = {}, high = {};  // ends of the 95 % intervals
 };
 
 namespace detail {
@@ -81,7 +81,7 @@ namespace detail {
 /// The numbers of a noise model as coordinates without bounds: logarithms of rest, growth and time, logit of the share.
 class NoiseCoordinates {
  public:
-  NoiseCoordinates(NoiseShape shape, const std::vector<NoiseSeries>& series) : shape_(shape) {
+  NoiseCoordinates(ResidualNoiseShape shape, const std::vector<NoiseSeries>& series) : shape_(shape) {
     std::vector<double> gaps;
     double values = 0, speeds = 0;
     for (const NoiseSeries& one : series) {
@@ -100,8 +100,8 @@ class NoiseCoordinates {
   double count() const { return count_; }
   double row() const { return row_; }
 
-  NoiseModel model(const Eigen::VectorXd& z) const {
-    NoiseModel model;
+  ResidualNoise model(const Eigen::VectorXd& z) const {
+    ResidualNoise model;
     model.rest = size_ * std::exp(std::clamp(z[0], -12.0, 3.0));
     Eigen::Index k = 1;
     if (shape_.grows) model.growth = model.rest / speed_ * std::exp(std::clamp(z[k++], -5.0, 5.0));
@@ -112,7 +112,7 @@ class NoiseCoordinates {
   }
 
   /// Where a model lies that has these numbers.
-  Eigen::VectorXd at(const NoiseModel& model) const {
+  Eigen::VectorXd at(const ResidualNoise& model) const {
     Eigen::VectorXd z(shape_.numbers());
     z[0] = std::log(model.rest / size_);
     Eigen::Index k = 1;
@@ -126,11 +126,11 @@ class NoiseCoordinates {
   Eigen::VectorXd start(double rows) const { return at({size_, size_ / speed_, rows * row_, 0.5}); }
 
  private:
-  NoiseShape shape_;
+  ResidualNoiseShape shape_;
   double row_ = 1, size_ = 1, speed_ = 1, count_ = 0;
 };
 
-inline double total_log_likelihood(const NoiseModel& model, const std::vector<NoiseSeries>& series) {
+inline double total_log_likelihood(const ResidualNoise& model, const std::vector<NoiseSeries>& series) {
   double sum = 0;
   for (const NoiseSeries& one : series) sum += log_likelihoods(model, one).sum();
   return std::isfinite(sum) ? sum : -std::numeric_limits<double>::max();
@@ -164,7 +164,7 @@ inline double climb(const NoiseCoordinates& coordinates, const std::vector<Noise
 }  // namespace detail
 
 /// Maximum likelihood by a coordinate search, from short and from long correlation; some hundred passes.
-inline NoiseFit fit_noise(const std::vector<NoiseSeries>& series, NoiseShape shape) {
+inline NoiseFit fit_noise(const std::vector<NoiseSeries>& series, ResidualNoiseShape shape) {
   const detail::NoiseCoordinates coordinates(shape, series);
   NoiseFit best{.shape = shape};
   if (!(coordinates.count() > 0)) return best;
@@ -199,14 +199,14 @@ inline NoiseFit fit_noise(const std::vector<NoiseSeries>& series, NoiseShape sha
   }
   const Eigen::MatrixXd covariance = curvature.inverse();
   const auto half = [](double variance) { return 1.96 * std::sqrt(std::clamp(variance, 0.0, 4.0)); };
-  const auto around = [&](double NoiseModel::* number, double width) {
+  const auto around = [&](double ResidualNoise::* number, double width) {
     best.low.*number = best.model.*number * std::exp(-width);
     best.high.*number = best.model.*number * std::exp(width);
   };
-  around(&NoiseModel::rest, half(covariance(0, 0)));
-  if (shape.grows) around(&NoiseModel::growth, half(covariance(0, 0) + covariance(1, 1) + 2 * covariance(0, 1)));
+  around(&ResidualNoise::rest, half(covariance(0, 0)));
+  if (shape.grows) around(&ResidualNoise::growth, half(covariance(0, 0) + covariance(1, 1) + 2 * covariance(0, 1)));
   const Eigen::Index k = shape.grows ? 2 : 1;
-  if (shape.memory != NoiseMemory::none) around(&NoiseModel::time, half(covariance(k, k)));
+  if (shape.memory != NoiseMemory::none) around(&ResidualNoise::time, half(covariance(k, k)));
   if (shape.memory == NoiseMemory::fading_and_white) {
     Eigen::VectorXd z = at;
     z[k + 1] = at[k + 1] - half(covariance(k + 1, k + 1));
@@ -218,7 +218,7 @@ inline NoiseFit fit_noise(const std::vector<NoiseSeries>& series, NoiseShape sha
 }
 
 /// The most likely model close to one of other series, in some ten passes.
-inline NoiseModel refit_noise(const std::vector<NoiseSeries>& series, const NoiseFit& near) {
+inline ResidualNoise refit_noise(const std::vector<NoiseSeries>& series, const NoiseFit& near) {
   const detail::NoiseCoordinates coordinates(near.shape, series);
   if (!(coordinates.count() > 0)) return near.model;
   Eigen::VectorXd z = coordinates.at(near.model);

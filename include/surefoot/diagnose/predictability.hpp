@@ -18,35 +18,20 @@ namespace surefoot {
 
 namespace detail {
 
-/// The same from one set of features.
-inline Comparison predictability_from(const Rig& rig, const Hypothesis& hypothesis, const FitProblem& problem,
-                                      const std::vector<std::vector<std::size_t>>& folds, bool states_only,
-                                      const Parallel& parallel, std::uint64_t seed) {
-  constexpr double samples = 6000;
-  const Eigen::VectorXd& sigma = problem.weighting.sigma;
-  const double limit = problem.weighting.robust;
-  std::vector<FeatureTable> tables(folds.size());
-  std::vector<Eigen::MatrixXd> residuals(folds.size());
-  double rows = 1;
-  for (const auto& fold : folds) {
-    for (const std::size_t r : fold) rows += static_cast<double>(rig.recordings[r].rows());
-  }
-  const auto stride = static_cast<Eigen::Index>(std::ceil(rows / samples));
-  for (std::size_t f = 0; f < folds.size(); ++f) {
-    const auto runs = simulate_all(rig, hypothesis, folds[f], problem.integration, parallel);
-    tables[f] = make_features(rig, folds[f], runs, stride);
-    if (states_only) tables[f] = only_states(rig, tables[f]);
-    residuals[f] = residual_table(rig, folds[f], runs, sigma, tables[f], limit);
-  }
+/// What a forest leaves, by fold, of residuals in units of sigma that it predicts from features after it has learned
+/// from the other folds. Fewer than 50 samples teach it nothing.
+inline std::vector<Eigen::MatrixXd> left_unpredicted(const std::vector<FeatureTable>& tables,
+                                                     const std::vector<Eigen::MatrixXd>& residuals,
+                                                     const Parallel& parallel, std::uint64_t seed) {
   std::vector<Eigen::MatrixXd> left = residuals;
-  parallel(folds.size(), [&](std::size_t f) {
+  parallel(tables.size(), [&](std::size_t f) {
     Eigen::Index count = 0, at = 0;
-    for (std::size_t g = 0; g < folds.size(); ++g) count += g == f ? 0 : tables[g].values.cols();
+    for (std::size_t g = 0; g < tables.size(); ++g) count += g == f ? 0 : tables[g].values.cols();
     if (count < 50) return;
     Dataset<Eigen::Dynamic, Eigen::Dynamic> known;
     known.inputs.resize(tables[f].values.rows(), count);
-    known.outputs.resize(sigma.size(), count);
-    for (std::size_t g = 0; g < folds.size(); ++g) {
+    known.outputs.resize(residuals[f].rows(), count);
+    for (std::size_t g = 0; g < tables.size(); ++g) {
       if (g == f) continue;
       known.inputs.middleCols(at, tables[g].values.cols()) = tables[g].values.cast<float>();
       known.outputs.middleCols(at, tables[g].values.cols()) = residuals[g];
@@ -60,9 +45,16 @@ inline Comparison predictability_from(const Rig& rig, const Hypothesis& hypothes
       left[f].col(j) -= forest.predict(Eigen::VectorXd(tables[f].values.col(j)));
     }
   });
-  std::vector<Score> before(static_cast<std::size_t>(sigma.size())), after = before;
-  for (std::size_t f = 0; f < folds.size(); ++f) {
-    for (Eigen::Index k = 0; k < sigma.size(); ++k) {
+  return left;
+}
+
+/// For the output that a prediction helps most; the p-value pays for the choice. Cut off at `limit`.
+inline Comparison most_predicted(const std::vector<Eigen::MatrixXd>& residuals,
+                                 const std::vector<Eigen::MatrixXd>& left, double limit) {
+  const Eigen::Index outputs = residuals.empty() ? 0 : residuals.front().rows();
+  std::vector<Score> before(static_cast<std::size_t>(outputs)), after = before;
+  for (std::size_t f = 0; f < residuals.size(); ++f) {
+    for (Eigen::Index k = 0; k < outputs; ++k) {
       add_to_score(before[static_cast<std::size_t>(k)], residuals[f].row(k), limit);
       add_to_score(after[static_cast<std::size_t>(k)], left[f].row(k), limit);
     }
@@ -83,9 +75,27 @@ inline Comparison predictability_from(const Rig& rig, const Hypothesis& hypothes
 inline Comparison residual_predictability(const Rig& rig, const Hypothesis& hypothesis, const FitProblem& problem,
                                           const std::vector<std::vector<std::size_t>>& folds, const Parallel& parallel,
                                           std::uint64_t seed) {
+  constexpr double samples = 6000;
+  const double limit = problem.weighting.robust;
+  double rows = 1;
+  for (const auto& fold : folds) {
+    for (const std::size_t r : fold) rows += static_cast<double>(rig.recordings[r].rows());
+  }
+  const auto stride = static_cast<Eigen::Index>(std::ceil(rows / samples));
+  std::vector<FeatureTable> tables;
+  std::vector<Eigen::MatrixXd> residuals;
+  for (const auto& fold : folds) {
+    const auto runs = simulate_all(rig, hypothesis, fold, problem.integration, parallel);
+    tables.push_back(make_features(rig, fold, runs, stride));
+    residuals.push_back(residual_table(rig, fold, runs, problem.weighting.sigma, tables.back(), limit));
+  }
   Comparison best;
   for (const bool states_only : {false, true}) {
-    Comparison one = detail::predictability_from(rig, hypothesis, problem, folds, states_only, parallel, seed);
+    if (states_only) {
+      for (FeatureTable& table : tables) table = only_states(rig, table);
+    }
+    const auto left = detail::left_unpredicted(tables, residuals, parallel, seed);
+    Comparison one = detail::most_predicted(residuals, left, limit);
     one.p_value = std::min(1.0, 2 * one.p_value);
     if (one.p_value < best.p_value) best = one;
   }

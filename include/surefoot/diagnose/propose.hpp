@@ -108,6 +108,10 @@ inline std::vector<Proposal> propose(const Rig& rig, const Hypothesis& base, con
         share[m] = std::clamp(share[m], 0.0, 1.0);
         continue;
       }
+      if (candidate.effect->impacts) {
+        share[m] = 1;
+        continue;
+      }
       const Eigen::Index k = strengths[static_cast<std::size_t>(m)];
       const EffectParameter& parameter = parameters[static_cast<std::size_t>(k)];
       const double unit = measure_size(rig, candidate, parameter.measure), start = jobs[j].start[k];

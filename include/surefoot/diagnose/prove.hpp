@@ -31,7 +31,8 @@ struct ParallelExecutor {
   }
 };
 
-/// Errors on the test recordings: whole recordings are simulated, whatever the fit did.
+/// Errors on the test recordings, of which both hypotheses need the initial states: whole recordings are simulated,
+/// whatever the fit did.
 inline void prove(Investigation& investigation, const Hypothesis& calibrated, const Hypothesis& chosen,
                   const Parallel& parallel, std::uint64_t seed) {
   const Rig& rig = investigation.rig;
@@ -41,13 +42,11 @@ inline void prove(Investigation& investigation, const Hypothesis& calibrated, co
   Integration whole = rig.integration;
   whole.restart = 0;
   const Eigen::VectorXd scale = error_scale(rig);
-  // Unknown initial states of test recordings are estimated for each model alike.
-  const auto ready = [&](const Hypothesis& h) {
-    return with_estimated_starts(rig, h, test, investigation.problem.fit, parallel);
-  };
-  const Hypothesis models[3] = {ready(investigation.nominal), ready(calibrated), ready(chosen)};
+  const Hypothesis nominal =
+      with_estimated_starts(rig, investigation.nominal, test, investigation.problem.fit, parallel);
+  const Hypothesis* models[3] = {&nominal, &calibrated, &chosen};
   std::vector<SimulatedRun> runs[3];
-  for (int m = 0; m < 3; ++m) runs[m] = simulate_all(rig, models[m], test, whole, parallel);
+  for (int m = 0; m < 3; ++m) runs[m] = simulate_all(rig, *models[m], test, whole, parallel);
 
   std::vector<double> errors[3];
   for (std::size_t i = 0; i < test.size(); ++i) {

@@ -13,19 +13,42 @@ namespace surefoot::detail {
 /// What a dry friction does during a step.
 enum class Mode : std::int8_t { back = -1, stuck = 0, forth = 1 };
 
-/// Splits the force on a state into what inputs cause and what remains at rest.
+/// The rate of a state as it would be without inputs.
 template <Simulator S>
-void split_drive(const AugmentedSimulator<S>& m, Moment& now, const Slot& slot, const typename S::State& x,
-                 const typename S::Input& u) {
+double undriven_rate(const AugmentedSimulator<S>& m, const Slot& slot, const typename S::State& x,
+                     const typename S::Input& u) {
   auto undriven = copied(u);
   if (!m.driven_signals) undriven.setZero();
   const auto no_drive = [&m](int i, double value) {
     return m.facts.driven_signal[static_cast<std::size_t>(i)] ? 0.0 : value;
   };
-  now.drive = now.effort * (now.rate - evaluate(m.simulator, x, undriven, m.p, no_drive)[slot.at]);
+  return evaluate(m.simulator, x, undriven, m.p, no_drive)[slot.at];
+}
+
+/// By how much the force on a state falls as the state grows, by a difference over a tenth of its size.
+template <Simulator S>
+double damping_of(const AugmentedSimulator<S>& m, const Moment& now, const Slot& slot, const typename S::State& x,
+                  const typename S::Input& u) {
+  const double by = 0.1 * slot.size;
+  if (!(by > 0)) return 0;
+  auto faster = copied(x);
+  faster[slot.at] += by;
+  const bool as_it_is = m.slots.taps.empty() && m.slots.seen.empty();  // then it has been evaluated already
+  const double slow = as_it_is ? now.rate : evaluate(m.simulator, x, u, m.p, NoTap{})[slot.at];
+  return now.effort * (slow - evaluate(m.simulator, faster, u, m.p, NoTap{})[slot.at]) / by;
+}
+
+/// Fills in what an effect asks for of the parts of the force on a state.
+template <Simulator S>
+void split_force(const AugmentedSimulator<S>& m, Moment& now, const Slot& slot, const typename S::State& x,
+                 const typename S::Input& u) {
+  const Effect& effect = *slot.effect;
+  if (!effect.needs_drive && !effect.needs_damping) return;
+  if (effect.needs_drive) now.drive = now.effort * (now.rate - undriven_rate(m, slot, x, u));
+  if (effect.needs_damping) now.damping = damping_of(m, now, slot, x, u);
   auto rest = copied(x);
   rest[slot.at] = 0;
-  now.load = now.effort * evaluate(m.simulator, rest, undriven, m.p, no_drive)[slot.at];
+  now.load = now.effort * undriven_rate(m, slot, rest, u);
 }
 
 /// Level of a dry friction.
@@ -33,7 +56,7 @@ template <Simulator S>
 double level(const AugmentedSimulator<S>& m, const Slot& slot, const typename S::State& x, const typename S::State& f,
              const typename S::State& e, const typename S::Input& u, double t, double h) {
   Moment now = moment_at_state(m, slot, x, f, e, t, h);
-  if (slot.effect->needs_drive) split_drive(m, now, slot, x, u);
+  split_force(m, now, slot, x, u);
   return std::max(0.0, slot.effect->dry(now, slot.p));
 }
 
@@ -63,8 +86,11 @@ typename S::State rates(AugmentedSimulator<S>& m, const typename S::State& x, co
   const auto e = effort(m, x, u);
   for (const Slot& slot : m.slots.forces) {
     Moment now = moment_at_state(m, slot, x, model, e, t, h);
-    if (slot.effect->needs_drive) split_drive(m, now, slot, x, u);
+    split_force(m, now, slot, x, u);
     if (slot.effect->memory_rate) slot.effect->memory_rate(now, slot.p, slot.hidden(z), slot.hidden(dz));
+    if (slot.effect->position_rate && slot.position >= 0) {
+      add_at(rate, slot.position, slot.effect->position_rate(now, slot.p, slot.hidden(z)));
+    }
     if (slot.effect->force) {
       const double force = slot.effect->force(now, slot.p, slot.hidden(z));
       add_at(rate, slot.at, slot.effect->place == Place::velocity ? force * (1 / e[slot.at]) : force);

@@ -11,7 +11,7 @@
 
 namespace surefoot::detail {
 
-/// Error of one recording over outputs, each in units of its scale; by output in `by_output` as sums of squares.
+/// Root mean square error of one recording over its outputs, each in units of its scale.
 inline double recording_error(const Rig& rig, std::size_t r, const SimulatedRun& trajectory,
                               const Eigen::VectorXd& scale) {
   const std::vector<Cell> cells = cells_of(rig.recordings[r]);

@@ -181,7 +181,7 @@ struct Search {
 };
 
 /// Whatever is no longer worth its numbers goes.
-inline void prune(const Search& search, Judged& chosen) {
+inline void drop_idle_effects(const Search& search, Judged& chosen) {
   std::size_t i = search.problem.known;
   while (search.effects(chosen) > 1 && i < chosen.hypothesis.effects.size() && !search.problem.stopped()) {
     const Judged less = search.without(chosen, i);
@@ -219,7 +219,7 @@ inline void grow(const Search& search, Selection& selection) {
     selection.chosen = next[*choice];
     next.erase(next.begin() + static_cast<std::ptrdiff_t>(*choice));
     selection.alternatives = next;
-    prune(search, selection.chosen);
+    drop_idle_effects(search, selection.chosen);
   }
 }
 
@@ -287,7 +287,7 @@ inline Selection select_effects(const Rig& rig, const Fit& calibrated, const Sel
   detail::try_pair_instead(search, selection);
   if (search.effects(selection.chosen) == 0) return selection;
   if (detail::compare_with_others(search, selection, true)) {
-    detail::prune(search, selection.chosen);
+    detail::drop_idle_effects(search, selection.chosen);
     detail::compare_with_others(search, selection, false);
   }
   return selection;

@@ -2,7 +2,8 @@
 // M. Nordin, P.-O. Gutman: "Controlling mechanical systems with backlash - a survey", Automatica 38, 2002. The play
 // operator: M. A. Krasnosel'skii, A. V. Pokrovskii: "Systems with hysteresis", 1989, section 2.
 // Forms: "" - the equations see the position through the play; "gap" - a second inertia is coupled through a stiff
-// spring that engages at either end of the play; "sensor" - the sensor sees its quantity through the play.
+// spring that engages at either end of the play; "motor" - the drive acts on an inertia before the play, and what the
+// equations and the sensor see is behind it; "sensor" - the sensor sees its quantity through the play.
 // Confusable with a delay (at one amplitude and frequency), with dry friction and hysteresis, which also lose motion at
 // each reversal, and with elasticity, which gives way but without a gap.
 #pragma once
@@ -10,6 +11,7 @@
 #include <algorithm>
 
 #include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/playing_motor.hpp"
 #include "surefoot/diagnose/effects/two_masses.hpp"
 
 namespace surefoot::effects {
@@ -68,6 +70,41 @@ inline Effect backlash_gap() {
                   Values memory) { return detail::force_of(detail::gap_joint(p), m, memory); },
       .start = [](const Moment& m, Values, Memory memory) { detail::start(m, memory); },
       .advance = [](const Moment& m, Values p, Memory memory) { detail::advance(detail::gap_joint(p), m, memory); }};
+}
+
+/// Rigid parts (see playing_motor.hpp). The inertia of the equations is that of both.
+inline Effect backlash_motor() {
+  return {.name = "backlash",
+          .sentence = "a motor of inertia {motor_inertia} before backlash of {half_width} to either side at {at}",
+          .place = Place::velocity,
+          .parameters = {{.name = "half_width",
+                          .measure = {.position = 1},
+                          .low = 0,
+                          .high = 1,
+                          .starts = {0.01, 0.02, 0.04, 0.09},
+                          .strength = true},
+                         {.name = "motor_inertia",
+                          .measure = {.effort = 1, .rate = -1},
+                          .low = 0.05,
+                          .high = 2,
+                          .starts = {0.25, 0.45, 0.65, 0.9}}},
+          .confusable_with = {"first_order_lag", "joint_elasticity", "input_delay", "hysteresis"},
+          .experiment = "slow reversals at two amplitudes: lost motion is the same for both",
+          .form = "motor",
+          .memories = 4,
+          .needs_damping = true,
+          .impacts = true,
+          .force = [](const Moment& m, Values p,
+                      Values memory) { return detail::PlayingMotor{p[0], p[1]}.force(m, memory); },
+          .position_rate = [](const Moment& m, Values p,
+                              Values memory) { return detail::PlayingMotor{p[0], p[1]}.position_rate(m, memory); },
+          .memory_rate =
+              [](const Moment& m, Values p, Values memory, Memory rates) {
+                const detail::Offset mean = detail::PlayingMotor{p[0], p[1]}.mean_rates(m, memory);
+                rates[2] = mean.d;
+                rates[3] = mean.w;
+              },
+          .advance = [](const Moment&, Values p, Memory memory) { detail::PlayingMotor{p[0], p[1]}.advance(memory); }};
 }
 
 inline Effect backlash_sensor() {
