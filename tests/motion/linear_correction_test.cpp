@@ -6,6 +6,8 @@
 #include <string_view>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/motion/previous_order_correction.hpp"
+#include "tests/support/quadratic_correction.hpp"
 
 using surefoot::FullLinearCorrection;
 using surefoot::ProportionalCorrection;
@@ -13,7 +15,8 @@ using surefoot::SimpleLinearCorrection;
 using surefoot::Vec;
 
 // What every motion model owes its users; a new one joins the list.
-TEST_CASE_TEMPLATE("a motion model", Model, ProportionalCorrection, SimpleLinearCorrection, FullLinearCorrection) {
+TEST_CASE_TEMPLATE("a motion model", Model, ProportionalCorrection, SimpleLinearCorrection, FullLinearCorrection,
+                   surefoot::PreviousOrderCorrection, toys::QuadraticCorrection) {
   static_assert(surefoot::MotionModel<Model>);
   const surefoot::Box<Model::parameter_count> box = surefoot::parameter_box<Model>();
   surefoot::Rng rng(1);
@@ -23,14 +26,15 @@ TEST_CASE_TEMPLATE("a motion model", Model, ProportionalCorrection, SimpleLinear
     CHECK(Model::from_parameters(parameters).parameters() == parameters);
   }
   SUBCASE("obeys its orders by default, which lies in its ranges") {
-    CHECK(Model().displacement({0.1, -0.2, 0.3}).vec() == Vec<3>{0.1, -0.2, 0.3});
+    CHECK(surefoot::cycle_displacement(Model(), {0.1, -0.2, 0.3}, {0.5, 0.5, 0.5}).vec() == Vec<3>{0.1, -0.2, 0.3});
     CHECK(box.contains(Model().parameters()));
   }
   SUBCASE("moves differently when any one of its parameters changes") {
     for (int i = 0; i < Model::parameter_count; ++i) {
       auto parameters = Model().parameters();
       parameters[i] += 0.1;
-      CHECK(Model::from_parameters(parameters).displacement({0.3, 0.5, 0.7}).vec() != Vec<3>{0.3, 0.5, 0.7});
+      CHECK(surefoot::cycle_displacement(Model::from_parameters(parameters), {0.3, 0.5, 0.7}, {0.2, 0.4, 0.6}).vec() !=
+            Vec<3>{0.3, 0.5, 0.7});
     }
   }
   SUBCASE("names every parameter once, with a unit and a range") {

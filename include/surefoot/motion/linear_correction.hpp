@@ -7,6 +7,8 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <string_view>
+#include <utility>
 
 #include "surefoot/core/vec.hpp"
 #include "surefoot/motion/motion_model.hpp"
@@ -20,6 +22,7 @@ template <int Count>
 class LinearCorrection {
  public:
   static constexpr int parameter_count = Count;
+  static constexpr std::string_view name = Count == 3 ? "proportional" : Count == 6 ? "simple linear" : "full linear";
   using Parameters = Vec<Count>;
   using Matrix = Eigen::Matrix<double, 3, 4>;  // rows: dx, dy, dt; columns: offset, ordered dx, dy, dt
 

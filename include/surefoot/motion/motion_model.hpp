@@ -4,6 +4,7 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 #include "surefoot/core/box.hpp"
@@ -32,14 +33,45 @@ struct ModelParameter {
 ///     }
 ///     double scale = 1;
 ///   };
+///
+/// A walk that is measured between two phases carries part of the last order: a model may ask for it by taking
+/// `displacement(orders, previous)` instead, `previous` being the orders of the cycle before. A default-constructed
+/// model is the one to start a calibration from: nothing is known of the robot, it does what it is told.
 template <class M>
-concept MotionModel = requires(const M& model, const Vec<3>& orders, const Vec<M::parameter_count>& parameters) {
-  requires M::parameter_count > 0;
-  { M::parameter_info() } -> std::same_as<std::array<ModelParameter, std::size_t{M::parameter_count}>>;
-  { M::from_parameters(parameters) } -> std::same_as<M>;
-  { model.parameters() } -> std::same_as<Vec<M::parameter_count>>;
-  { model.displacement(orders) } -> std::same_as<Pose2>;
-};
+concept MotionModel = std::default_initializable<M> &&
+                      requires(const M& model, const Vec<3>& orders, const Vec<M::parameter_count>& parameters) {
+                        requires M::parameter_count > 0;
+                        {
+                          M::parameter_info()
+                        } -> std::same_as<std::array<ModelParameter, std::size_t{M::parameter_count}>>;
+                        { M::from_parameters(parameters) } -> std::same_as<M>;
+                        { model.parameters() } -> std::same_as<Vec<M::parameter_count>>;
+                        requires requires {
+                          { model.displacement(orders) } -> std::same_as<Pose2>;
+                        } || requires {
+                          { model.displacement(orders, orders) } -> std::same_as<Pose2>;
+                        };
+                      };
+
+/// Displacement of a cycle with these orders after one with the orders `previous`, by any model.
+template <MotionModel M>
+Pose2 cycle_displacement(const M& model, const Vec<3>& orders, const Vec<3>& previous) {
+  if constexpr (requires { model.displacement(orders, previous); }) {
+    return model.displacement(orders, previous);
+  } else {
+    return model.displacement(orders);
+  }
+}
+
+/// What a model is called: its static member `name` if it has one, else "N parameters".
+template <MotionModel M>
+std::string model_name() {
+  if constexpr (requires { std::string(M::name); }) {
+    return std::string(M::name);
+  } else {
+    return std::to_string(M::parameter_count) + " parameters";
+  }
+}
 
 /// The ranges of all parameters of a model.
 template <MotionModel M>

@@ -1,0 +1,51 @@
+// The walk of Sigmaban as Hofer and Rouxel (ICAPS 2017) calibrated it, for tests of the motion area.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
+#include "surefoot/core/vec.hpp"
+#include "surefoot/motion/linear_correction.hpp"
+#include "surefoot/motion/motion_noise.hpp"
+#include "surefoot/motion/simulate_walk.hpp"
+#include "surefoot/motion/walk_sequence.hpp"
+
+namespace sigmaban {
+
+using Model = surefoot::FullLinearCorrection;
+
+inline Model model() {
+  return Model::from_parameters(surefoot::Vec<12>{0.0093, 1.30, -0.17, 0.001,    //
+                                                  -0.0026, -0.075, 1.47, 0.101,  //
+                                                  0.0002, -0.35, 0.05, 0.909});
+}
+
+/// With one of its parameters multiplied by a factor.
+inline Model bent(int parameter, double factor) {
+  surefoot::Vec<12> parameters = model().parameters();
+  parameters[parameter] *= factor;
+  return Model::from_parameters(parameters);
+}
+
+inline surefoot::MotionNoise noise(double factor = 1) {
+  constexpr double degree = std::numbers::pi / 180;
+  return surefoot::UniformNoise{factor * surefoot::Vec<3>{0.02, 0.02, 5 * degree}}.as_motion_noise();
+}
+
+/// Every order walked once.
+inline std::vector<surefoot::WalkSequence> walked(const Model& model, const surefoot::MotionNoise& noise,
+                                                  const std::vector<Eigen::Matrix3Xd>& orders, bool every_pose,
+                                                  std::uint64_t seed) {
+  surefoot::Rng rng(seed);
+  std::vector<surefoot::WalkSequence> result;
+  for (const Eigen::Matrix3Xd& one : orders) {
+    const surefoot::WalkSequence planned = surefoot::planned_sequence(one, every_pose);
+    result.push_back(surefoot::simulate_walk(model, noise, surefoot::PoseAccuracy(), planned, rng));
+  }
+  return result;
+}
+
+}  // namespace sigmaban
