@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# The main job on a bare Debian 12, within ten minutes after the build: diagnoses a machine, then goes from nothing to
-# policies for the ball approach: trains and tunes them for both problems, compares, draws and exports them. Ctrl-C ends
-# it at any time. The machine is a real motor if SUREFOOT_RECORDINGS names the folder of recordings, else one of our plants.
+# The main job on a bare Debian 12, within ten minutes after the build: diagnoses a machine, calibrates a walk, then goes
+# from nothing to policies for the ball approach: trains and tunes them for both problems, compares, draws and exports
+# them. Ctrl-C ends it at any time. Machine and walk are real recordings if SUREFOOT_RECORDINGS names their folder, else
+# a plant and a robot of ours.
 # Results go to $SUREFOOT_RESULTS_DIR, by default results; the build to $SUREFOOT_BUILD_DIR, by default build/release.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -11,7 +12,8 @@ require_packages "${build_packages[@]}" gnuplot-nox
 build=${SUREFOOT_BUILD_DIR:-build/release}
 results=${SUREFOOT_RESULTS_DIR:-results}
 cmake --preset release -B "$build" -D SUREFOOT_TESTS=OFF -D SUREFOOT_EXAMPLES=ON -D SUREFOOT_BENCHMARKS=ON
-cmake --build "$build" --target sigmaban_approach minimal surefoot-diagnose diagnose_own concealed_plants
+cmake --build "$build" --target sigmaban_approach minimal surefoot-diagnose surefoot-calibrate diagnose_own \
+  concealed_plants
 
 echo
 if [[ -d ${SUREFOOT_RECORDINGS:-} ]]; then
@@ -24,6 +26,18 @@ else
   "$build/bin/surefoot-diagnose" --model "$results/plant/cases/case_0002/model.toml" --out "$results/diagnosis" \
     "$results"/plant/cases/case_0002/rec_*.csv
   echo "concealed was: $results/plant/truth/case_0002.json"
+fi
+
+echo
+calibrate=$build/bin/surefoot-calibrate
+if [[ -d ${SUREFOOT_RECORDINGS:-} ]]; then
+  echo "== how does a robot really walk? (final poses of 60 sequences, judged on 25 others)"
+  "$calibrate" fit --final-only --steps-per-cycle 2 --test "$SUREFOOT_RECORDINGS/twin_walk/plain.csv" \
+    --out "$results/walk" "$SUREFOOT_RECORDINGS/twin_walk/plain_more.csv"
+else
+  echo "== how does a robot really walk? (SUREFOOT_RECORDINGS is not set: the robot of the paper is simulated)"
+  "$calibrate" simulate --final-only --sequences 25 --seed 1 --out "$results/walks.csv"
+  "$calibrate" fit --out "$results/walk" "$results/walks.csv"
 fi
 
 step() {
@@ -45,4 +59,4 @@ done
 step trajectories --results "$results"
 step table --results "$results"
 echo
-echo "Policies, C files for the robot, pictures and table.json are in $results/; the diagnosis is $results/diagnosis/report.html"
+echo "Policies, C files for the robot, pictures and table.json are in $results/; the diagnosis is $results/diagnosis/report.html, the walk $results/walk/motion.json"

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "../sigmaban_approach/interrupt.hpp"
+#include "../common/interrupt.hpp"
 #include "command_line.hpp"
 #include "known_effects.hpp"
 #include "layout.hpp"
@@ -30,7 +30,7 @@ int run(const S& simulator, const Layout& layout, const CommandLine& line, const
   options.max_effects = line.max_effects;
   options.budget_seconds = line.budget;
   prepare_folder(line.out);
-  sigmaban::Interrupt interrupt;
+  example::Interrupt interrupt;
   Progress progress(line.quiet);
   options.progress = [&progress](std::string_view stage, double share, std::string_view best) {
     progress.show(stage, share, best);

@@ -1,6 +1,8 @@
 // Any policy that the command line can name: Winner2016 with some parameters, or a forest.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -12,15 +14,31 @@
 
 namespace sigmaban {
 
-using AnyPolicy = std::variant<Winner2016, surefoot::ForestPolicy<Approach>>;
+template <class Problem>
+using AnyPolicyOf = std::variant<Winner2016, surefoot::ForestPolicy<Problem>>;
+using AnyPolicy = AnyPolicyOf<Approach>;
 
-/// "winner2016", "tuned" (the parameters in the public history of the paper's authors), a parameter file of `tune`,
-/// or a policy file of `train`. Throws surefoot::Error if the file is none of these.
-AnyPolicy load_any_policy(const Approach& problem, const std::string& name_or_file);
+/// "winner2016", "tuned" (the parameters in the public history of the paper's authors), or a parameter file of `tune`;
+/// none if it is no such thing, but a file. Throws surefoot::Error if there is no such file.
+std::optional<Winner2016> load_winner2016(const std::string& name_or_file);
+
+/// One of those, or a policy file of `train`. Throws surefoot::Error if the file is none of these.
+template <class Problem>
+AnyPolicyOf<Problem> load_any_policy(const Problem& problem, const std::string& name_or_file) {
+  if (const auto policy = load_winner2016(name_or_file)) return *policy;
+  return surefoot::load_policy<Problem>(problem, name_or_file);
+}
 
 /// The mean cost of independent runs.
-surefoot::Estimate mean_cost(const Approach& problem, const AnyPolicy& policy, int trials, std::uint64_t seed,
-                             const surefoot::Threads& threads);
+template <class Problem>
+surefoot::Estimate mean_cost(const Problem& problem, const AnyPolicyOf<Problem>& policy, int trials, std::uint64_t seed,
+                             const surefoot::Threads& threads) {
+  const surefoot::RolloutOptions options{.runs = trials, .horizon = Problem::horizon};
+  surefoot::Estimate result =
+      std::visit([&](const auto& p) { return surefoot::evaluate(problem, p, options, threads, seed); }, policy);
+  result.mean = -result.mean;
+  return result;
+}
 
 /// The seed of the runs that `evaluate` and `table` make unless told otherwise.
 inline constexpr std::uint64_t evaluation_seed = 2016;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cmath>
+#include <concepts>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -14,25 +15,31 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/motion/linear_correction.hpp"
+#include "surefoot/motion/motion_model.hpp"
+#include "surefoot/motion/motion_noise.hpp"
 #include "surefoot/motion/pose2.hpp"
 
 namespace sigmaban {
 
 inline constexpr double degree = std::numbers::pi / 180.0;  // [rad]
 
-/// Every figure of the problem. Speeds, accelerations and noise are ordered (forward, left, turn).
+/// Displacement of a walk cycle = A (1, orders of the cycle): calibrated on the real robot [m, m, rad].
+inline surefoot::FullLinearCorrection sigmaban_walk() {
+  return surefoot::FullLinearCorrection::from_parameters(surefoot::Vec<12>{0.0093, 1.30, -0.17, 0.001,    // forward
+                                                                           -0.0026, -0.075, 1.47, 0.101,  // left
+                                                                           0.0002, -0.35, 0.05, 0.909});  // turn
+}
+
+/// The noise of a walk cycle, as published [m, m, rad].
+inline surefoot::UniformNoise sigmaban_noise() { return {{0.02, 0.02, 5 * degree}}; }
+
+/// Every other figure of the problem. Speeds and accelerations are ordered (forward, left, turn).
 struct ApproachConstants {
   surefoot::Vec<3> min_speed{-0.02, -0.02, -0.2};       // commanded [m/step, m/step, rad/step]
   surefoot::Vec<3> max_speed{0.04, 0.02, 0.2};          // commanded [m/step, m/step, rad/step]
   surefoot::Vec<3> max_acceleration{0.02, 0.01, 0.15};  // per walk cycle, either sign [m/step, m/step, rad/step]
-  surefoot::Vec<3> noise{0.02, 0.02, 5 * degree};       // half width, uniform, per walk cycle [m, m, rad]
   double steps_per_cycle = 2;                           // one transition is one walk cycle
-
-  // Displacement of a walk cycle = A (1, orders of the cycle): calibrated on the real robot [m, m, rad].
-  surefoot::FullLinearCorrection walk =
-      surefoot::FullLinearCorrection::from_parameters(surefoot::Vec<12>{0.0093, 1.30, -0.17, 0.001,    // forward
-                                                                        -0.0026, -0.075, 1.47, 0.101,  // left
-                                                                        0.0002, -0.35, 0.05, 0.909});  // turn
+  bool turn_first = true;  // a displacement is seen from the robot as it has turned: published so; calibrated: before
 
   double kick_min_x = 0.15, kick_max_x = 0.30, kick_max_y = 0.06;                  // ball in the kick zone [m]
   double kick_tolerance = 10 * degree;                                             // of the kick direction [rad]
@@ -45,26 +52,31 @@ struct ApproachConstants {
 
 /// State: ball distance d [m], ball direction b [rad], kick direction k [rad], commanded speed vx, vy [m/step],
 /// vt [rad/step]. Action: change of the commanded speed. A run is `horizon` transitions, or ends when the ball is
-/// lost; standing in the kick zone costs nothing and does not end it. Cost = -(sum of rewards), no discount.
-struct Approach {
+/// lost; standing in the kick zone costs nothing and does not end it. Cost = -(sum of rewards), no discount. Walk and
+/// noise are those of the published robot, or whatever was calibrated on another.
+template <surefoot::MotionModel Walk = surefoot::FullLinearCorrection,
+          surefoot::NoiseModel Noise = surefoot::UniformNoise>
+struct ApproachWith {
   static constexpr int state_dim = 6, action_dim = 3;
   static constexpr int horizon = 50;  // [walk cycles]
   using State = surefoot::Vec<state_dim>;
   using Action = surefoot::Vec<action_dim>;
 
   ApproachConstants constants;
+  Walk walk = published<Walk>();
+  Noise noise = published<Noise>();
 
   /// Holonomic approach: the robot as it is.
-  static Approach ha() { return {}; }
+  static ApproachWith ha() { return {}; }
 
-  /// Almost non-holonomic approach: lateral steps are five times weaker, lateral noise is half.
-  static Approach anha() {
-    Approach problem;
+  /// Almost non-holonomic approach: lateral steps are five times weaker, published lateral noise is half.
+  static ApproachWith anha() {
+    ApproachWith problem;
     ApproachConstants& c = problem.constants;
     c.min_speed[1] /= 5;
     c.max_speed[1] /= 5;
     c.max_acceleration[1] /= 5;
-    c.noise[1] /= 2;
+    if constexpr (std::same_as<Noise, surefoot::UniformNoise>) problem.noise.half_width[1] /= 2;
     return problem;
   }
 
@@ -90,8 +102,8 @@ struct Approach {
   }
 
   surefoot::Step<State> step(const State& state, const Action& action, surefoot::Rng& rng) const {
-    const surefoot::Vec<3> speed = speed_after(state.tail<3>(), action);
-    const surefoot::Pose2 move = walk_cycle(speed, rng);
+    const surefoot::Vec<3> speed = speed_after(state.template tail<3>(), action);
+    const surefoot::Pose2 move = walk_cycle(speed, state.template tail<3>(), rng);
     // The robot turns, then walks.
     const double direction = state[1] - move.angle;
     return arrive(state[0] * std::cos(direction) - move.x, state[0] * std::sin(direction) - move.y,
@@ -104,13 +116,12 @@ struct Approach {
     return (speed + change).cwiseMax(constants.min_speed).cwiseMin(constants.max_speed);
   }
 
-  /// What the robot really does in one walk cycle with that commanded speed.
-  surefoot::Pose2 walk_cycle(const surefoot::Vec<3>& speed, surefoot::Rng& rng) const {
-    surefoot::Pose2 move = constants.walk.displacement(constants.steps_per_cycle * speed);
-    move.x += rng.uniform(-constants.noise[0], constants.noise[0]);
-    move.y += rng.uniform(-constants.noise[1], constants.noise[1]);
-    move.angle += rng.uniform(-constants.noise[2], constants.noise[2]);
-    return move;
+  /// What the robot really does in one walk cycle with that commanded speed, after one with the speed `before`: seen
+  /// from the robot as it has turned.
+  surefoot::Pose2 walk_cycle(const surefoot::Vec<3>& speed, const surefoot::Vec<3>& before, surefoot::Rng& rng) const {
+    const surefoot::Vec<3> orders = constants.steps_per_cycle * speed, previous = constants.steps_per_cycle * before;
+    const surefoot::Vec<3> noise_here = noise.sample(orders, previous, rng);
+    return seen_after_turn(surefoot::Pose2::from_vec(cycle_displacement(walk, orders, previous).vec() + noise_here));
   }
 
   /// The state, reward and end of arriving with the ball at (x, y) [m] and the kick target in direction `kick` [rad].
@@ -143,13 +154,14 @@ struct Approach {
   /// its direction from the kick line now, and the speed. `export` writes the same lines in C.
   static constexpr int feature_dim = 11;
   surefoot::Vec<feature_dim> features(const State& s) const {
-    const surefoot::Pose2 move = constants.walk.displacement(constants.steps_per_cycle * s.tail<3>());
+    const surefoot::Vec<3> orders = constants.steps_per_cycle * s.template tail<3>();
+    const surefoot::Pose2 move = seen_after_turn(cycle_displacement(walk, orders, orders));
     const double direction = s[1] - move.angle, kick = s[2] - move.angle;
     const double x = s[0] * std::cos(direction) - move.x, y = s[0] * std::sin(direction) - move.y;
     const double c = std::cos(kick), k = std::sin(kick);
     surefoot::Vec<feature_dim> f;
     f << x, y, std::atan2(y, x), kick, c * x + k * y, c * y - k * x, s[0], surefoot::wrap_angle(s[1] - s[2]),
-        s.tail<3>();
+        s.template tail<3>();
     return f;
   }
 
@@ -160,7 +172,24 @@ struct Approach {
   std::vector<std::string> action_names() const {
     return {"forward acceleration [m/step]", "lateral acceleration [m/step]", "turn acceleration [rad/step]"};
   }
+
+ private:
+  surefoot::Pose2 seen_after_turn(const surefoot::Pose2& move) const {
+    if (constants.turn_first) return move;
+    const double c = std::cos(move.angle), s = std::sin(move.angle);
+    return {c * move.x + s * move.y, c * move.y - s * move.x, move.angle};
+  }
+
+  template <class T>
+  static T published() {
+    if constexpr (std::same_as<T, surefoot::FullLinearCorrection>) return sigmaban_walk();
+    if constexpr (std::same_as<T, surefoot::UniformNoise>) return sigmaban_noise();
+    return T();
+  }
 };
+
+/// The problem as published.
+using Approach = ApproachWith<>;
 
 static_assert(surefoot::Problem<Approach>);
 static_assert(surefoot::HasFeatures<Approach>);

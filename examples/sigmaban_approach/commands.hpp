@@ -5,10 +5,13 @@
 #include <cstddef>
 #include <string>
 
+#include "../common/usage_error.hpp"
 #include "approach.hpp"
-#include "surefoot/core/error.hpp"
 
 namespace sigmaban {
+
+using example::Interrupted;
+using example::UsageError;
 
 void add_train(CLI::App& program);
 void add_tune(CLI::App& program);
@@ -16,14 +19,6 @@ void add_evaluate(CLI::App& program);
 void add_trajectories(CLI::App& program);
 void add_export(CLI::App& program);
 void add_table(CLI::App& program);
-
-/// A file or option that cannot be used, or a program that is missing; the message names it and the cure.
-struct UsageError : surefoot::Error {
-  using Error::Error;
-};
-
-/// Thrown after Ctrl-C, once everything worth keeping is on disk.
-struct Interrupted {};
 
 /// The option --problem ha|anha.
 inline void add_problem_option(CLI::App& command, std::string& problem) {

@@ -9,21 +9,23 @@
 
 #include "any_policy.hpp"
 #include "commands.hpp"
+#include "motion.hpp"
 
 namespace sigmaban {
 namespace {
 
 struct Options {
-  std::string problem, policy;
+  std::string problem, policy, motion;
   int trials = 10'000;
   std::uint64_t seed = evaluation_seed;
   std::size_t threads = 0;
   bool json = false;
 };
 
-void run(const Options& options) {
-  const Approach problem = problem_named(options.problem);
-  const AnyPolicy policy = load_any_policy(problem, options.policy);
+template <class Problem>
+void run(const Problem& problem, const Options& options) {
+  check_motion(options.policy, options.motion);
+  const auto policy = load_any_policy(problem, options.policy);
   const auto start = std::chrono::steady_clock::now();
   const auto cost = mean_cost(problem, policy, options.trials, options.seed, surefoot::Threads(options.threads));
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
@@ -35,7 +37,7 @@ void run(const Options& options) {
     std::cout << json.dump(2) << '\n';
   } else {
     std::printf("%s, %s: cost %.3f +- %.3f (95 %%), %d trials of %d walk cycles in %.2f s\n", options.problem.c_str(),
-                options.policy.c_str(), cost.mean, cost.half_width(), options.trials, Approach::horizon,
+                options.policy.c_str(), cost.mean, cost.half_width(), options.trials, Problem::horizon,
                 elapsed.count());
   }
 }
@@ -46,6 +48,7 @@ void add_evaluate(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("evaluate", "Measure the mean cost of a policy");
   add_problem_option(*command, options->problem);
+  add_motion_option(*command, options->motion);
   command->add_option("--policy", options->policy, "winner2016, tuned, or a file written by train or tune")->required();
   command->add_option("--trials", options->trials, "independent runs")
       ->check(CLI::Range(2, 100'000'000))
@@ -53,7 +56,9 @@ void add_evaluate(CLI::App& program) {
   command->add_option("--seed", options->seed, "of starts and noise")->capture_default_str();
   add_threads_option(*command, options->threads);
   command->add_flag("--json", options->json, "print JSON");
-  command->callback([options] { run(*options); });
+  command->callback([options] {
+    with_problem(options->problem, options->motion, [&](const auto& problem) { run(problem, *options); });
+  });
 }
 
 }  // namespace sigmaban

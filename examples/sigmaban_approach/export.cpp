@@ -5,10 +5,11 @@
 #include <memory>
 #include <string>
 
+#include "../common/files.hpp"
 #include "any_policy.hpp"
 #include "commands.hpp"
 #include "distill.hpp"
-#include "files.hpp"
+#include "motion.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rollout.hpp"
 #include "surefoot/forest/export_c.hpp"
@@ -17,10 +18,12 @@
 namespace sigmaban {
 namespace {
 
-using Policy = surefoot::ForestPolicy<Approach>;
+using example::prepare_output;
+using example::write_text;
 
 struct Options {
   std::filesystem::path policy, out;
+  std::string motion;
   std::size_t max_kb = 2000;  // [1000 bytes]
   int runs = DistillOptions{}.runs;
   int trials = 10'000;
@@ -28,12 +31,13 @@ struct Options {
   std::size_t threads = 0;
 };
 
-/// The problem is the one whose action box the file holds.
-Policy load_forest(const std::filesystem::path& path) {
+/// The problem, `named` ha or anha, is the one whose action box the file holds.
+template <class Named>
+auto load_forest(const std::filesystem::path& path, Named&& named) {
   try {
-    return surefoot::load_policy(Approach::ha(), path);
+    return surefoot::load_policy(named("ha"), path);
   } catch (const surefoot::SolveError&) {
-    return surefoot::load_policy(Approach::anha(), path);
+    return surefoot::load_policy(named("anha"), path);
   }
 }
 
@@ -48,11 +52,28 @@ std::string braces(const auto& numbers) {
   return list + "}";
 }
 
+/// What a walk does at a speed that stays the same.
+Eigen::Matrix<double, 3, 4> steady_walk(const surefoot::FullLinearCorrection& walk) { return walk.matrix(); }
+Eigen::Matrix<double, 3, 4> steady_walk(const surefoot::PreviousOrderCorrection& walk) {
+  Eigen::Matrix<double, 3, 4> result = walk.present().matrix();
+  result.rightCols<3>() += walk.previous();
+  return result;
+}
+
 /// The same sums in C, in the same order, as Approach::features and ForestPolicy make.
-std::string wrapper(const Approach& problem) {
+template <class Problem>
+std::string wrapper(const Problem& problem) {
   const ApproachConstants& c = problem.constants;
   std::string walk;
-  for (int row = 0; row < 3; ++row) walk += (row == 0 ? "" : ", ") + braces(c.walk.matrix().row(row));
+  const Eigen::Matrix<double, 3, 4> steady = steady_walk(problem.walk);
+  for (int row = 0; row < 3; ++row) walk += (row == 0 ? "" : ", ") + braces(steady.row(row));
+  // Calibrated displacements are seen from the robot as it was before it turned.
+  const std::string turned = c.turn_first ? "" : R"(
+  ck = cos(move[2]);
+  sk = sin(move[2]);
+  x = ck * move[0] + sk * move[1];
+  move[1] = ck * move[1] - sk * move[0];
+  move[0] = x;)";
   return R"(#include <math.h>
 
 /* state: ball distance [m], ball direction [rad], kick direction [rad], commanded speed forward, left [m/step], turn
@@ -71,7 +92,8 @@ void surefoot_policy(const double state[6], double action[3]) {
   for (i = 0; i < 3; ++i) {
     move[i] = walk[i][0] + (walk[i][1] * (steps * state[3]) + walk[i][2] * (steps * state[4]) +
                             walk[i][3] * (steps * state[5]));
-  }
+  })" + turned +
+         R"(
   turn = state[1] - move[2];
   kick = state[2] - move[2];
   x = state[0] * cos(turn) - move[0];
@@ -99,35 +121,38 @@ void surefoot_policy(const double state[6], double action[3]) {
 }
 static_assert(Approach::feature_dim == 11, "wrapper() must write the features of Approach");
 
-std::string c_file(const Policy& policy) {
+template <class Problem>
+std::string c_file(const surefoot::ForestPolicy<Problem>& policy) {
   return surefoot::export_c(policy.forest(), {.table = surefoot::CTable::text, .wrapper = wrapper(policy.problem())});
 }
 
 double kilobytes(const std::string& text) { return static_cast<double>(text.size()) / 1000; }
 
 /// The largest imitation whose C file fits.
-Policy shrink(const Policy& policy, const Options& options, const surefoot::Threads& threads) {
-  const DistillOptions distill{.runs = options.runs, .horizon = Approach::horizon};
+template <class Problem>
+surefoot::ForestPolicy<Problem> shrink(const surefoot::ForestPolicy<Problem>& policy, const Options& options,
+                                       const surefoot::Threads& threads) {
+  const DistillOptions distill{.runs = options.runs, .horizon = Problem::horizon};
   const auto data = demonstrations(policy, distill, threads, options.seed);
   int leaves = static_cast<int>(1000 * options.max_kb / 240);  // about what a leaf takes in the file [bytes]
   for (;;) {
-    Policy small = imitate(policy.problem(), data, leaves, distill, threads, options.seed);
+    surefoot::ForestPolicy<Problem> small = imitate(policy.problem(), data, leaves, distill, threads, options.seed);
     const double share = kilobytes(c_file(small)) / static_cast<double>(options.max_kb);
     if (share <= 1 || leaves == 1) return small;
     leaves = std::max(1, static_cast<int>(0.99 * leaves / share));
   }
 }
 
-void run(const Options& options) {
+template <class Problem>
+void run(const surefoot::ForestPolicy<Problem>& policy, const Options& options) {
   prepare_output(options.out);
-  Policy policy = load_forest(options.policy);
   std::string code = c_file(policy);
   if (options.max_kb > 0 && kilobytes(code) > static_cast<double>(options.max_kb)) {
     std::printf("The policy itself would take %.0f kB in C; learning a smaller one from it.\n", kilobytes(code));
     std::fflush(stdout);
     const surefoot::Threads threads(options.threads);
-    const surefoot::RolloutOptions trials{.runs = options.trials, .horizon = Approach::horizon};
-    const Policy small = shrink(policy, options, threads);
+    const surefoot::RolloutOptions trials{.runs = options.trials, .horizon = Problem::horizon};
+    const auto small = shrink(policy, options, threads);
     const auto& problem = policy.problem();
     const auto before = surefoot::evaluate(problem, policy, trials, threads, evaluation_seed);
     const auto after = surefoot::evaluate(problem, small, trials, threads, evaluation_seed);
@@ -151,6 +176,7 @@ void add_export(CLI::App& program) {
   CLI::App* command = program.add_subcommand("export", "Write a policy as one C99 file without dependencies but libm");
   command->add_option("--policy", options->policy, "policy file of train")->required();
   command->add_option("--out", options->out, "C file")->required();
+  add_motion_option(*command, options->motion);
   command
       ->add_option(
           "--max-kb", options->max_kb,
@@ -166,7 +192,15 @@ void add_export(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--seed", options->seed, "of that learning")->capture_default_str();
   add_threads_option(*command, options->threads);
-  command->callback([options] { run(*options); });
+  command->callback([options] {
+    check_motion(options->policy, options->motion);
+    if (options->motion.empty()) {
+      run(load_forest(options->policy, [](const char* name) { return problem_named(name); }), *options);
+    } else {
+      run(load_forest(options->policy, [&](const char* name) { return calibrated_approach(name, options->motion); }),
+          *options);
+    }
+  });
 }
 
 }  // namespace sigmaban

@@ -4,13 +4,16 @@
 #include <sstream>
 #include <string>
 
+#include "../common/files.hpp"
+#include "../common/gnuplot.hpp"
 #include "commands.hpp"
-#include "files.hpp"
-#include "gnuplot.hpp"
 #include "published.hpp"
 
 namespace sigmaban {
 namespace {
+
+using example::draw;
+using example::read_text;
 
 /// CPU seconds, cost of the current policy and of the best one so far, one line per measurement.
 std::string curve(const std::filesystem::path& record) {

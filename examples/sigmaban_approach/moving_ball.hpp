@@ -51,7 +51,7 @@ struct MovingBall {
 
   surefoot::Step<State> step(const State& state, const Action& action, surefoot::Rng& rng) const {
     const surefoot::Vec<3> speed = robot.speed_after(state.segment<3>(3), action);
-    const surefoot::Pose2 move = robot.walk_cycle(speed, rng);
+    const surefoot::Pose2 move = robot.walk_cycle(speed, state.segment<3>(3), rng);
 
     // The ball rolls in the old robot frame; it may stop in mid-cycle.
     surefoot::Vec<2> ball{state[0] * std::cos(state[1]), state[0] * std::sin(state[1])};

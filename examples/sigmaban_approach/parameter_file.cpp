@@ -3,10 +3,12 @@
 #include <cmath>
 #include <string>
 
+#include "../common/files.hpp"
 #include "commands.hpp"
-#include "files.hpp"
 
 namespace sigmaban {
+
+using example::read_text;
 
 nlohmann::ordered_json to_json(const Winner2016Parameters& parameters) {
   nlohmann::ordered_json json;

@@ -8,14 +8,17 @@
 #include <string>
 #include <vector>
 
+#include "../common/files.hpp"
 #include "any_policy.hpp"
 #include "commands.hpp"
-#include "files.hpp"
 #include "published.hpp"
 #include "results.hpp"
 
 namespace sigmaban {
 namespace {
+
+using example::read_text;
+using example::write_text;
 
 struct Options {
   Results results{"results"};

@@ -9,9 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "../common/files.hpp"
+#include "../common/interrupt.hpp"
 #include "commands.hpp"
-#include "files.hpp"
-#include "interrupt.hpp"
+#include "motion.hpp"
 #include "results.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rollout.hpp"
@@ -22,8 +23,12 @@
 namespace sigmaban {
 namespace {
 
+using example::Interrupt;
+using example::prepare_output;
+using example::write_text;
+
 struct Options {
-  std::string problem;
+  std::string problem, motion;
   std::string preset = "default";
   double budget = 300;                                    // [s] of one nominal core
   double wall = std::numeric_limits<double>::infinity();  // [s]
@@ -37,13 +42,14 @@ struct Options {
 constexpr int seed_runs = 25;  // as in the paper
 
 /// The states of the runs that the paper starts from.
-std::vector<Approach::State> seed_states(const Approach& problem, std::uint64_t seed) {
-  std::vector<Approach::State> states;
+template <class Problem>
+std::vector<typename Problem::State> seed_states(const Problem& problem, std::uint64_t seed) {
+  std::vector<typename Problem::State> states;
   for (int i = 0; i < seed_runs; ++i) {
     const surefoot::Rng rng(seed, i);
     surefoot::Rng start = rng.stream(0);
     const auto run =
-        surefoot::trajectory(problem, Winner2016(), problem.initial_state(start), Approach::horizon, rng.stream(1));
+        surefoot::trajectory(problem, Winner2016(), problem.initial_state(start), Problem::horizon, rng.stream(1));
     states.insert(states.end(), run.states.begin(), run.states.end() - (run.terminal ? 1 : 0));
   }
   return states;
@@ -56,10 +62,16 @@ void print_progress(const surefoot::RfpiProgress& p) {
   std::fflush(stdout);
 }
 
-nlohmann::ordered_json record(const Options& options, const surefoot::RfpiResult<Approach>& result) {
+template <class Problem>
+nlohmann::ordered_json record(const Options& options, const surefoot::RfpiResult<Problem>& result) {
   nlohmann::ordered_json json{{"problem", options.problem}, {"preset", options.preset}, {"seed", options.seed},
                               {"budget", options.budget},   {"cost", result.cost.mean}, {"low", result.cost.low()},
                               {"high", result.cost.high()}};
+  if (!options.motion.empty()) {
+    const auto walk = result.policy.problem().walk.parameters();
+    json["motion"] = options.motion;
+    json["walk"] = std::vector<double>(walk.begin(), walk.end());
+  }
   json["cpu_seconds"] = result.history.empty() ? 0 : result.history.back().cpu_seconds;
   json["history"] = nlohmann::json::array();
   for (const surefoot::RfpiProgress& p : result.history) {
@@ -73,10 +85,10 @@ nlohmann::ordered_json record(const Options& options, const surefoot::RfpiResult
   return json;
 }
 
-void run(const Options& options) {
+template <class Problem>
+void run(const Problem& problem, const Options& options) {
   prepare_output(options.out);
   const Interrupt interrupt;
-  const Approach problem = problem_named(options.problem);
   surefoot::RfpiOptions rfpi = options.preset == "paper" ? surefoot::RfpiOptions::paper() : surefoot::RfpiOptions{};
   rfpi.budget.seconds = options.budget;
   rfpi.budget.wall_seconds = options.wall;
@@ -105,6 +117,7 @@ void add_train(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("train", "Train a policy by RFPI; Ctrl-C ends early and keeps the best");
   add_problem_option(*command, options->problem);
+  add_motion_option(*command, options->motion);
   command
       ->add_option("--budget", options->budget,
                    "work in seconds of one nominal core, all threads together: the same policy on any machine")
@@ -121,7 +134,9 @@ void add_train(CLI::App& program) {
       ->check(CLI::Range(0.0, 1e7))
       ->capture_default_str();
   command->add_flag("--resume", options->resume, "go on from FILE.checkpoint, if it is there");
-  command->callback([options] { run(*options); });
+  command->callback([options] {
+    with_problem(options->problem, options->motion, [&](const auto& problem) { run(problem, *options); });
+  });
 }
 
 }  // namespace sigmaban

@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
+#include "../common/gnuplot.hpp"
 #include "any_policy.hpp"
 #include "commands.hpp"
-#include "gnuplot.hpp"
 #include "learning_curve.hpp"
 #include "results.hpp"
 #include "surefoot/core/rng.hpp"
@@ -18,6 +18,8 @@
 
 namespace sigmaban {
 namespace {
+
+using example::draw;
 
 struct Options {
   Results results{"results"};

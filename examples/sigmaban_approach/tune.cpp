@@ -10,9 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "../common/files.hpp"
+#include "../common/interrupt.hpp"
 #include "commands.hpp"
-#include "files.hpp"
-#include "interrupt.hpp"
+#include "motion.hpp"
 #include "parameter_file.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/solve/policy_search.hpp"
@@ -21,8 +22,12 @@
 namespace sigmaban {
 namespace {
 
+using example::Interrupt;
+using example::prepare_output;
+using example::write_text;
+
 struct Options {
-  std::string problem;
+  std::string problem, motion;
   double budget = 50;                                     // [s] of one nominal core
   double wall = std::numeric_limits<double>::infinity();  // [s]
   std::uint64_t seed = 1;
@@ -58,12 +63,12 @@ class Progress {
   double printed_ = 0;  // [s]
 };
 
-void run(const Options& options) {
+template <class Problem>
+void run(const Problem& problem, const Options& options) {
   prepare_output(options.out);
   const Interrupt interrupt;
-  const Approach problem = problem_named(options.problem);
   surefoot::PolicySearchOptions search;
-  search.horizon = Approach::horizon;
+  search.horizon = Problem::horizon;
   search.total_runs = static_cast<std::uint64_t>(options.budget / run_seconds);
   search.max_seconds = options.wall;
   search.observer = Progress(search.total_runs, static_cast<std::uint64_t>(search.min_runs / 2));
@@ -77,6 +82,7 @@ void run(const Options& options) {
                               {"seed", options.seed},         {"runs", result.runs},
                               {"cpu_seconds", cpu_seconds()}, {"cost", -result.value.mean},
                               {"low", -result.value.high()},  {"high", -result.value.low()}};
+  if (!options.motion.empty()) json["motion"] = options.motion;
   json["parameters"] = to_json(Winner2016Parameters::from_vec(result.parameters));
   write_text(options.out, json.dump(2) + "\n");
   std::printf("%s: cost %.2f +- %.2f (95 %%) after %llu runs, best of %zu finalists\n", options.out.c_str(),
@@ -91,6 +97,7 @@ void add_tune(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("tune", "Tune Winner2016 by CMA-ES; Ctrl-C ends early and keeps the best");
   add_problem_option(*command, options->problem);
+  add_motion_option(*command, options->motion);
   command
       ->add_option("--budget", options->budget,
                    "work in seconds of one nominal core, all threads together: the same parameters on any machine")
@@ -100,7 +107,9 @@ void add_tune(CLI::App& program) {
   command->add_option("--seed", options->seed, "same seed, same parameters")->capture_default_str();
   add_threads_option(*command, options->threads);
   command->add_option("--out", options->out, "parameter file (JSON)")->required();
-  command->callback([options] { run(*options); });
+  command->callback([options] {
+    with_problem(options->problem, options->motion, [&](const auto& problem) { run(problem, *options); });
+  });
 }
 
 }  // namespace sigmaban

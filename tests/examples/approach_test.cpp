@@ -5,6 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "surefoot/motion/motion_noise.hpp"
+#include "surefoot/motion/previous_order_correction.hpp"
+
 using sigmaban::Approach;
 using sigmaban::degree;
 
@@ -14,7 +17,7 @@ constexpr double pi = std::numbers::pi;
 
 Approach without_noise() {
   Approach problem = Approach::ha();
-  problem.constants.noise.setZero();
+  problem.noise.half_width.setZero();
   return problem;
 }
 
@@ -36,7 +39,7 @@ TEST_CASE("an action is clamped, added to the speed, and the speed is clamped") 
 
 TEST_CASE("a walk cycle is two steps through the calibrated correction") {
   surefoot::Rng rng(1);
-  const surefoot::Pose2 move = without_noise().walk_cycle({0.04, -0.02, 0.1}, rng);
+  const surefoot::Pose2 move = without_noise().walk_cycle({0.04, -0.02, 0.1}, {0, 0, 0}, rng);
   CHECK(move.x == doctest::Approx(0.0093 + 1.30 * 0.08 + 0.17 * 0.04 + 0.001 * 0.2));
   CHECK(move.y == doctest::Approx(-0.0026 - 0.075 * 0.08 - 1.47 * 0.04 + 0.101 * 0.2));
   CHECK(move.angle == doctest::Approx(0.0002 - 0.35 * 0.08 - 0.05 * 0.04 + 0.909 * 0.2));
@@ -47,7 +50,7 @@ TEST_CASE("the robot turns by the displacement's angle, then moves in the turned
   surefoot::Rng rng(1);
   const auto start = state(0.8, 0.5, 0.1, 0.02, 0, 0.2);
   const auto step = problem.step(start, {0, 0, 0}, rng);
-  const surefoot::Pose2 move = problem.walk_cycle({0.02, 0, 0.2}, rng);
+  const surefoot::Pose2 move = problem.walk_cycle({0.02, 0, 0.2}, {0.02, 0, 0.2}, rng);
   const double x = 0.8 * std::cos(0.5 - move.angle) - move.x;
   const double y = 0.8 * std::sin(0.5 - move.angle) - move.y;
   CHECK(step.next[0] == doctest::Approx(std::hypot(x, y)));
@@ -116,11 +119,11 @@ TEST_CASE("the noise fills its box evenly and nothing else") {
   const Approach problem = Approach::ha();
   surefoot::Rng rng(1);
   surefoot::Vec<3> sum = surefoot::Vec<3>::Zero();
-  const surefoot::Vec<3> mean = problem.constants.walk.displacement({0, 0, 0}).vec();
+  const surefoot::Vec<3> mean = problem.walk.displacement({0, 0, 0}).vec();
   constexpr int draws = 10'000;
   for (int i = 0; i < draws; ++i) {
     const surefoot::Vec<3> scaled =
-        (problem.walk_cycle({0, 0, 0}, rng).vec() - mean).cwiseQuotient(problem.constants.noise);
+        (problem.walk_cycle({0, 0, 0}, {0, 0, 0}, rng).vec() - mean).cwiseQuotient(problem.noise.half_width);
     REQUIRE(scaled.cwiseAbs().maxCoeff() <= 1 + 1e-12);
     sum += scaled.cwiseAbs2();
   }
@@ -134,6 +137,29 @@ TEST_CASE("ANHA is HA with a fifth of the lateral steps and half of the lateral 
   CHECK(anha.max_speed == surefoot::Vec<3>{0.04, 0.004, 0.2});
   CHECK(anha.min_speed == surefoot::Vec<3>{-0.02, -0.004, -0.2});
   CHECK(anha.max_acceleration == surefoot::Vec<3>{0.02, 0.002, 0.15});
-  CHECK(anha.noise == surefoot::Vec<3>{0.02, 0.01, ha.noise[2]});
-  CHECK(anha.walk.matrix() == ha.walk.matrix());
+  CHECK(Approach::anha().noise.half_width == surefoot::Vec<3>{0.02, 0.01, Approach::ha().noise.half_width[2]});
+  CHECK(Approach::anha().walk.matrix() == Approach::ha().walk.matrix());
+  CHECK(anha.turn_first == ha.turn_first);
+}
+
+TEST_CASE("a calibrated walk and noise take the place of the published ones") {
+  using Calibrated = sigmaban::ApproachWith<surefoot::PreviousOrderCorrection, surefoot::MotionNoise>;
+  static_assert(surefoot::Problem<Calibrated>);
+  Calibrated problem = Calibrated::ha();
+  problem.constants.turn_first = false;
+  surefoot::Vec<21> coefficients = surefoot::PreviousOrderCorrection().parameters();
+  coefficients[12] = 0.5;  // half of the last forward order is carried out as well
+  problem.walk = surefoot::PreviousOrderCorrection::from_parameters(coefficients);
+  surefoot::Rng rng(1);
+  const auto start = state(0.8, 0, 0, 0.04, 0, 0.2);
+  const auto after = problem.step(start, {0, 0, 0}, rng).next;
+  const surefoot::Pose2 robot{0.08 + 0.5 * 0.08, 0, 0.4};
+  const surefoot::Vec<2> ball = robot.inverse().transform({0.8, 0});
+  CHECK(after[0] == doctest::Approx(ball.norm()));
+  CHECK(after[1] == doctest::Approx(std::atan2(ball[1], ball[0])));
+
+  problem.noise.per_speed = {0.05, 0, 0};
+  CHECK(problem.step(start, {0, 0, 0}, rng).next[0] != doctest::Approx(ball.norm()));
+  const auto standing = state(0.8, 0, 0, 0, 0, 0);
+  CHECK(problem.step(standing, {0, 0, 0}, rng).next[0] == doctest::Approx(0.8));
 }

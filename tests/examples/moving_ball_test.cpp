@@ -15,14 +15,14 @@ namespace {
 MovingBall without_noise() {
   MovingBall problem;
   problem.noise = 0;
-  problem.robot.constants.noise.setZero();
+  problem.robot.noise.half_width.setZero();
   return problem;
 }
 
 /// A robot at rest whose walk does not drift.
 MovingBall standing_robot() {
   MovingBall problem = without_noise();
-  problem.robot.constants.walk = surefoot::FullLinearCorrection();
+  problem.robot.walk = surefoot::FullLinearCorrection();
   return problem;
 }
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace sigmaban {
+namespace example {
 
 /// Writes BASE.gp with `commands` and BASE.dat with `data`, then draws BASE.svg and BASE.png. The commands name the
 /// data file as `data`; they set neither terminal nor output. `width` and `height` are in pixels.
@@ -12,4 +12,4 @@ namespace sigmaban {
 void draw(const std::filesystem::path& base, const std::string& commands, const std::string& data, int width,
           int height);
 
-}  // namespace sigmaban
+}  // namespace example

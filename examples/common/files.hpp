@@ -6,10 +6,10 @@
 #include <string>
 #include <system_error>
 
-#include "commands.hpp"
 #include "surefoot/core/binary.hpp"
+#include "usage_error.hpp"
 
-namespace sigmaban {
+namespace example {
 
 inline std::string read_text(const std::filesystem::path& path) {
   const surefoot::Bytes bytes = surefoot::read_file(path);
@@ -31,4 +31,4 @@ inline void write_text(const std::filesystem::path& path, const std::string& tex
   surefoot::write_file_atomically(path, text);
 }
 
-}  // namespace sigmaban
+}  // namespace example

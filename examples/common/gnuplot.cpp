@@ -7,12 +7,12 @@
 #include <filesystem>
 #include <string>
 
-#include "commands.hpp"
 #include "files.hpp"
+#include "usage_error.hpp"
 
 extern char** environ;
 
-namespace sigmaban {
+namespace example {
 namespace {
 
 std::string in_quotes(const std::filesystem::path& path) {
@@ -57,4 +57,4 @@ void draw(const std::filesystem::path& base, const std::string& commands, const 
   }
 }
 
-}  // namespace sigmaban
+}  // namespace example

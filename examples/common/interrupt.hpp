@@ -9,7 +9,7 @@
 #include <stop_token>
 #include <thread>
 
-namespace sigmaban {
+namespace example {
 
 /// While it lives, the first Ctrl-C requests a stop and the second one ends the program at once.
 /// Build it before any other thread: SIGINT is blocked in this thread and in those that it starts.
@@ -51,4 +51,4 @@ class Interrupt {
   std::thread watcher_;
 };
 
-}  // namespace sigmaban
+}  // namespace example

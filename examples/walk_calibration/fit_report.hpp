@@ -1,0 +1,15 @@
+// What `fit` found, as text for the terminal.
+#pragma once
+
+#include <string>
+
+#include "fit_walk.hpp"
+
+namespace calibrate_program {
+
+std::string fit_report(const FittedWalk& fitted);
+
+/// The table of models and their errors.
+std::string judged_table(const std::vector<JudgedModel>& models);
+
+}  // namespace calibrate_program
