@@ -96,6 +96,7 @@
 #include "surefoot/diagnose/sequence_residual.hpp"
 #include "surefoot/diagnose/simulate.hpp"
 #include "surefoot/diagnose/simulator.hpp"
+#include "surefoot/diagnose/slip_by_place.hpp"
 #include "surefoot/diagnose/slots.hpp"
 #include "surefoot/diagnose/split.hpp"
 #include "surefoot/diagnose/starting_values.hpp"

@@ -33,7 +33,7 @@ Diagnosis diagnose_servo(std::vector<NamedEffect> effects, std::uint64_t seed) {
   return diagnose(ServoPendulum{}, recordings, {}, surefoot::Threads{}, seed);
 }
 
-const auto nothing = [](Pose2 moved, double /*heading*/) { return moved; };
+const auto nothing = [](Pose2 moved, Pose2 /*at*/) { return moved; };
 
 bool holds(const surefoot::FittedValue& value, double truth) {
   const double slack = 0.5 * (value.high - value.low);  // intervals of 95 % may miss
@@ -145,16 +145,14 @@ TEST_CASE("walking: noise accumulates, and is not taken for physics") {
 }
 
 TEST_CASE("walking effects are found from final poses alone") {
-  const auto drift = [](Pose2 moved, double /*heading*/) {
+  const auto drift = [](Pose2 moved, Pose2 /*at*/) {
     return Pose2{moved.x + 0.003, moved.y - 0.002, moved.angle + 0.01};
   };
-  const auto slope = [](Pose2 moved, double heading) {
-    const double c = std::cos(heading), s = std::sin(heading);
+  const auto slope = [](Pose2 moved, Pose2 at) {
+    const double c = std::cos(at.angle), s = std::sin(at.angle);
     return Pose2{moved.x + c * 0.004 + s * 0.003, moved.y - s * 0.004 + c * 0.003, moved.angle};
   };
-  const auto coupling = [](Pose2 moved, double /*heading*/) {
-    return Pose2{moved.x, moved.y, moved.angle + 1.5 * moved.x};
-  };
+  const auto coupling = [](Pose2 moved, Pose2 /*at*/) { return Pose2{moved.x, moved.y, moved.angle + 1.5 * moved.x}; };
   const auto name = [](const auto& change) {
     const auto recordings = toys::walk_recordings(change, true, 60, 11);
     const Diagnosis diagnosis = diagnose(WalkingRobot{}, recordings, {}, surefoot::Threads{}, 11);

@@ -32,7 +32,7 @@ TEST_CASE("a level is no velocity, and neither are the states of a map") {
   CHECK(tank.velocity == std::vector<bool>{false});
   CHECK(tank.position_of == std::vector<int>{-1});
   const auto robot =
-      facts_of(toys::WalkingRobot{}, toys::walk_recordings([](Pose2 moved, double) { return moved; }, false, 1, 1)[0]);
+      facts_of(toys::WalkingRobot{}, toys::walk_recordings([](Pose2 moved, Pose2) { return moved; }, false, 1, 1)[0]);
   CHECK(robot.velocity == std::vector<bool>(3, false));
   CHECK(robot.output_of == std::vector<int>{0, 1, 2});
 }

@@ -142,7 +142,7 @@ TEST_CASE("residuals of simulated recordings: each output is judged by itself") 
 }
 
 TEST_CASE("noise that accumulates is judged step by step") {
-  const auto nothing = [](Pose2 moved, double /*heading*/) { return moved; };
+  const auto nothing = [](Pose2 moved, Pose2 /*at*/) { return moved; };
   Rig rig = make_rig(toys::WalkingRobot{}, toys::walk_recordings(nothing, false, 60, 3));
   rig.integration.restart = 1;
   Hypothesis truth = nominal_hypothesis(rig);

@@ -26,15 +26,15 @@ Comparison predicted(Change&& change, std::uint64_t seed) {
 TEST_CASE("steps that are as ordered but for noise cannot be predicted better") {
   int alarms = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const Comparison found = predicted([](Pose2 moved, double) { return moved; }, seed);
+    const Comparison found = predicted([](Pose2 moved, Pose2) { return moved; }, seed);
     alarms += found.gain > 0.03 && found.p_value < 0.005 ? 1 : 0;
   }
   CHECK(alarms == 0);
 }
 
 TEST_CASE("a twist that depends on the heading is predicted") {
-  const auto twist = [](Pose2 moved, double heading) {
-    return Pose2{moved.x, moved.y, moved.angle + 0.05 * std::cos(heading)};
+  const auto twist = [](Pose2 moved, Pose2 at) {
+    return Pose2{moved.x, moved.y, moved.angle + 0.05 * std::cos(at.angle)};
   };
   const Comparison found = predicted(twist, 3);
   CHECK(found.gain > 0.1);
@@ -43,7 +43,7 @@ TEST_CASE("a twist that depends on the heading is predicted") {
 
 TEST_CASE("the same seed gives the same bits on any number of threads") {
   Rig rig =
-      make_rig(toys::WalkingRobot{}, toys::walk_recordings([](Pose2 moved, double) { return moved; }, false, 12, 1));
+      make_rig(toys::WalkingRobot{}, toys::walk_recordings([](Pose2 moved, Pose2) { return moved; }, false, 12, 1));
   rig.integration.restart = 1;
   FitProblem problem;
   problem.integration = rig.integration;

@@ -16,7 +16,7 @@ namespace {
 using toys::WalkingRobot;
 
 std::vector<Recording> walks(bool final_pose_only, int count, std::uint64_t seed) {
-  return toys::walk_recordings([](Pose2 moved, double) { return moved; }, final_pose_only, count, seed);
+  return toys::walk_recordings([](Pose2 moved, Pose2) { return moved; }, final_pose_only, count, seed);
 }
 
 Hypothesis with_gains(const Rig& rig, const Vec<3>& gains) {

@@ -53,7 +53,7 @@ TEST_CASE("two effects on one signal act in the order in which they are named") 
 }
 
 TEST_CASE("a planar effect changes each step as seen from the body") {
-  const auto recordings = toys::walk_recordings([](Pose2 moved, double) { return moved; }, false, 1, 5);
+  const auto recordings = toys::walk_recordings([](Pose2 moved, Pose2) { return moved; }, false, 1, 5);
   const SimulatedRun run = simulate_augmented(
       toys::WalkingRobot{},
       machine({}, {{.name = "body_drift", .attached_to = "planar", .values = {0.003, -0.002, 0.01}}}), recordings[0]);

@@ -39,8 +39,8 @@ struct WalkingRobot {
 };
 static_assert(surefoot::Simulator<WalkingRobot>);
 
-/// Sequences of 25 steps of random orders. `change` is what really becomes of a displacement, in a pose; each step has
-/// noise (3 mm, 10 mrad). Poses are measured after every step, or in the end only, by tape (5 mm, 20 mrad).
+/// Sequences of 25 steps of random orders. `change` is what really becomes of a displacement, where it begins; each
+/// step has noise (3 mm, 10 mrad). Poses are measured after every step, or in the end only, by tape (5 mm, 20 mrad).
 template <class Change>
 std::vector<surefoot::Recording> walk_recordings(Change&& change, bool final_pose_only, int count, std::uint64_t seed) {
   std::vector<surefoot::Recording> recordings;
@@ -62,7 +62,7 @@ std::vector<surefoot::Recording> walk_recordings(Change&& change, bool final_pos
                     .cwiseProduct(surefoot::Vec<3>(rng.uniform() - 0.5, rng.uniform() - 0.5, rng.uniform() - 0.5));
       orders = orders.cwiseMax(surefoot::Vec<3>(-0.02, -0.02, -0.2)).cwiseMin(surefoot::Vec<3>(0.04, 0.02, 0.2));
       recording.inputs.col(i) = orders;
-      surefoot::Pose2 moved = change(surefoot::Pose2{1.2 * orders[0], 0.9 * orders[1], 1.1 * orders[2]}, heading);
+      surefoot::Pose2 moved = change(surefoot::Pose2{1.2 * orders[0], 0.9 * orders[1], 1.1 * orders[2]}, pose);
       moved.x += 0.003 * rng.normal();
       moved.y += 0.003 * rng.normal();
       moved.angle += 0.01 * rng.normal();

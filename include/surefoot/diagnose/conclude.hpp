@@ -19,6 +19,7 @@
 #include "surefoot/diagnose/predictability.hpp"
 #include "surefoot/diagnose/prove.hpp"
 #include "surefoot/diagnose/sequence_residual.hpp"
+#include "surefoot/diagnose/slip_by_place.hpp"
 #include "surefoot/diagnose/wording.hpp"
 
 namespace surefoot {
@@ -97,7 +98,8 @@ inline void conclude(Investigation& investigation, const std::vector<AttachedEff
     open = sequence_structure(rig, chosen, problem, folds, parallel).p_value < 0.005;
   } else if (investigation.noise == NoiseKind::process) {
     const Comparison pattern = residual_predictability(rig, chosen, problem, folds, parallel, seed);
-    open = open || (pattern.gain > 0.03 && pattern.p_value < 0.005);
+    const Comparison slip = slip_by_place(rig, chosen, problem, folds, parallel, seed);
+    open = open || (pattern.gain > 0.03 && pattern.p_value < 0.005) || (slip.gain > 0.03 && slip.p_value < 0.005);
   }
   if (open) {
     diagnosis.verdict = Verdict::unexplained;

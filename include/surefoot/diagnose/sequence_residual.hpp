@@ -23,9 +23,9 @@ namespace surefoot {
 namespace detail {
 
 /// What a change of steps may depend on; each has its own kernel.
-enum class StepFeature : unsigned char { orders, change_of_orders, heading, place, time, parity, third };
+enum class StepFeature : unsigned char { orders, change_of_orders, heading, place, slip, time, parity, third };
 inline constexpr StepFeature step_features[] = {
-    StepFeature::orders, StepFeature::change_of_orders, StepFeature::heading, StepFeature::place,
+    StepFeature::orders, StepFeature::change_of_orders, StepFeature::heading, StepFeature::place, StepFeature::slip,
     StepFeature::time,   StepFeature::parity,           StepFeature::third};
 
 /// One step of a sequence: what it may depend on, and how its change moves the final cells.
@@ -50,6 +50,8 @@ inline Eigen::VectorXd features_of_step(const Rig& rig, std::size_t r, const Sim
       return Eigen::Vector2d(std::cos(heading), std::sin(heading)) / 0.7;
     case StepFeature::place:
       return Eigen::Vector2d(run.states(planar.x, step), run.states(planar.y, step)) / (0.4 * extent);
+    case StepFeature::slip:  // a share of the step, as on slippery floor, that depends on the place
+      return Eigen::Vector2d(run.states(planar.x, step), run.states(planar.y, step)) / (0.15 * extent);
     case StepFeature::time:
       return Eigen::VectorXd::Constant(1, 3 * static_cast<double>(step) / static_cast<double>(recording.rows()));
     case StepFeature::parity:
@@ -79,6 +81,13 @@ inline Eigen::MatrixXd lever_of_step(const Rig& rig, const SimulatedRun& run, co
     if (reads(planar.heading)) lever.row(row) << 0, 0, 1;
   }
   return lever;
+}
+
+/// Simulated displacement of a step, in the body's frame.
+inline Eigen::Vector3d moved_in_step(const PlanarInfo& planar, const SimulatedRun& run, Eigen::Index step) {
+  const auto moved = (run.states.col(step + 1) - run.states.col(step)).eval();
+  const double heading = run.states(planar.heading, step), c = std::cos(heading), s = std::sin(heading);
+  return {c * moved[planar.x] + s * moved[planar.y], c * moved[planar.y] - s * moved[planar.x], moved[planar.heading]};
 }
 
 /// Covariance of whitened final residuals, if every step changes by 5 % of its usual size as the kernel of this feature
@@ -199,7 +208,7 @@ inline Comparison sequence_structure(const Rig& rig, const Hypothesis& hypothesi
   }
   squares[1] = squares[0];
   Eigen::Vector3d step_size;
-  for (int k = 0; k < 3; ++k) step_size[k] = std::sqrt(squares[k] / std::max(steps, 1.0));
+  for (int k = 0; k < 3; ++k) step_size[k] = std::sqrt(std::max(squares[k] / std::max(steps, 1.0), 1e-24));
 
   // All that was measured, and the headings by themselves, which are sums over steps however far a path goes astray.
   const std::size_t features = std::size(detail::step_features), count = 2 * features;
@@ -226,6 +235,9 @@ inline Comparison sequence_structure(const Rig& rig, const Hypothesis& hypothesi
         Eigen::MatrixXd lever = detail::lever_of_step(rig, runs[i], cells, step);
         if (!headings_only && order[i] < whitening.size() && whitening[order[i]].cols() == lever.rows()) {
           lever = (whitening[order[i]] * lever).eval();
+        }
+        if (feature == detail::StepFeature::slip) {
+          lever *= detail::moved_in_step(planar, runs[i], step).cwiseQuotient(step_size).asDiagonal();
         }
         sequences[i].push_back(
             {detail::features_of_step(rig, order[i], runs[i], step, feature, input_scale, std::max(extent, 1e-9)),

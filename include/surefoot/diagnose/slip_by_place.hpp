@@ -1,0 +1,167 @@
+// Whether a walk loses a share of its steps at some places: slippery or sticky floor. The error of a step is then its
+// own size times a factor that depends on the place, so that it averages out over orders to all sides, and place alone
+// predicts nothing. The factor is learned by a forest on all folds but one: as the ratio of the means of error times
+// step and of step squared, for each direction of the body by itself.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/predictability.hpp"
+
+namespace surefoot {
+
+namespace detail {
+
+/// Steps of a walk of which the poses before and after were measured.
+struct MeasuredSteps {
+  Eigen::Matrix2Xd place;                // where the step began
+  Eigen::Matrix3Xd simulated, residual;  // simulated displacement, and simulated minus measured, in the body's frame
+};
+
+/// Each step is simulated from the measured pose before it. Nothing if the simulator is not planar or an output does
+/// not read x, y and heading each.
+inline std::optional<MeasuredSteps> measured_steps(const Rig& rig, const std::vector<std::size_t>& recordings,
+                                                   const std::vector<SimulatedRun>& runs) {
+  if (!rig.info.planar) return std::nullopt;
+  const auto output_of = [&](int state) { return rig.facts.output_of[static_cast<std::size_t>(state)]; };
+  const int x = output_of(rig.info.planar->x), y = output_of(rig.info.planar->y),
+            heading = output_of(rig.info.planar->heading);
+  if (x < 0 || y < 0 || heading < 0) return std::nullopt;
+  Eigen::Index count = 0;
+  for (const std::size_t r : recordings) count += rig.recordings[r].rows();
+  MeasuredSteps steps;
+  steps.place.resize(2, count);
+  steps.simulated.resize(3, count);
+  steps.residual.resize(3, count);
+  Eigen::Index at = 0;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const Eigen::MatrixXd& measured = rig.recordings[recordings[i]].outputs;
+    const auto pose = [&](const Eigen::MatrixXd& outputs, Eigen::Index row) {
+      return Eigen::Vector3d(outputs(x, row), outputs(y, row), outputs(heading, row));
+    };
+    for (Eigen::Index row = 1; row < measured.cols(); ++row) {
+      const Eigen::Vector3d before = pose(measured, row - 1), after = pose(measured, row);
+      const Eigen::Vector3d expected = pose(runs[i].outputs, row);
+      if (!before.allFinite() || !after.allFinite() || !expected.allFinite()) continue;
+      const double c = std::cos(before[2]), s = std::sin(before[2]);
+      const auto in_body = [&](const Eigen::Vector3d& d) {
+        return Eigen::Vector3d(c * d[0] + s * d[1], c * d[1] - s * d[0], wrap_angle(d[2]));
+      };
+      steps.place.col(at) = before.head<2>();
+      steps.simulated.col(at) = in_body(expected - before);
+      steps.residual.col(at) = in_body(expected - after);
+      ++at;
+    }
+  }
+  steps.place.conservativeResize(2, at);
+  steps.simulated.conservativeResize(3, at);
+  steps.residual.conservativeResize(3, at);
+  return steps;
+}
+
+/// Steps over which noise may be correlated.
+inline constexpr Eigen::Index stretch = 3;
+
+/// One-sided: how often a sum is as large if each of its terms may as well have the other sign.
+inline double sign_flip_p_value(const std::vector<double>& terms) {
+  constexpr int draws = 4000;
+  const double sum = std::accumulate(terms.begin(), terms.end(), 0.0);
+  Rng rng(1);
+  int as_large = 1;
+  for (int draw = 0; draw < draws; ++draw) {
+    double flipped = 0;
+    for (const double term : terms) flipped += rng.uniform() < 0.5 ? term : -term;
+    as_large += flipped >= sum ? 1 : 0;
+  }
+  return static_cast<double>(as_large) / (draws + 1);
+}
+
+}  // namespace detail
+
+/// The gain, on folds not used, of predicting the errors of steps by such a factor over no prediction, for the
+/// direction that shows it best; the p-value, by random signs, pays for that choice. Few steps at one place are enough.
+/// For walks with a pose in every row, simulated from each to the next.
+inline Comparison slip_by_place(const Rig& rig, const Hypothesis& hypothesis, const FitProblem& problem,
+                                const std::vector<std::vector<std::size_t>>& folds, const Parallel& parallel,
+                                std::uint64_t seed) {
+  std::vector<detail::MeasuredSteps> by_fold;
+  Eigen::Array3d step_square = Eigen::Array3d::Zero(), error_square = step_square;
+  double count = 0;
+  for (const auto& fold : folds) {
+    const auto runs = simulate_all(rig, hypothesis, fold, problem.integration, parallel);
+    auto steps = detail::measured_steps(rig, fold, runs);
+    if (!steps) return {};
+    step_square += steps->simulated.array().square().rowwise().sum();
+    error_square += steps->residual.array().square().rowwise().sum();
+    count += static_cast<double>(steps->place.cols());
+    by_fold.push_back(std::move(*steps));
+  }
+  if (count < 100) return {};
+  const Eigen::Array3d step_size = (step_square / count).sqrt().max(1e-12);
+  const Eigen::Array3d error_size = (error_square / count).sqrt().max(1e-12);
+  const double limit = problem.weighting.robust;
+  for (auto& steps : by_fold) {
+    steps.simulated.array().colwise() /= step_size;
+    steps.residual = (steps.residual.array().colwise() / error_size).max(-limit).min(limit);
+  }
+
+  std::vector<Eigen::Matrix3Xd> left(by_fold.size());
+  parallel(by_fold.size(), [&](std::size_t f) {
+    Dataset<2, 6> known;
+    Eigen::Index at = 0;
+    const auto total = static_cast<Eigen::Index>(count) - by_fold[f].place.cols();
+    known.inputs.resize(2, total);
+    known.outputs.resize(6, total);
+    for (std::size_t g = 0; g < by_fold.size(); ++g) {
+      if (g == f) continue;
+      const auto& steps = by_fold[g];
+      const Eigen::Index length = steps.place.cols();
+      known.inputs.middleCols(at, length) = steps.place.cast<float>();
+      known.outputs.middleCols(at, length).topRows<3>() = steps.residual.cwiseProduct(steps.simulated);
+      known.outputs.middleCols(at, length).bottomRows<3>() = steps.simulated.cwiseAbs2();
+      at += length;
+    }
+    ExtraTreesOptions options;
+    options.trees = 40;
+    options.min_leaf = std::max(10, static_cast<int>(total / 100));
+    const auto forest = train_extra_trees(known, options, Serial{}, seed + f);
+    left[f] = by_fold[f].residual;
+    for (Eigen::Index j = 0; j < left[f].cols(); ++j) {
+      const Eigen::Matrix<double, 6, 1> means =
+          forest.predict(Eigen::Vector2d(by_fold[f].place.col(j))).template cast<double>();
+      const Eigen::Array3d factor = means.head<3>().array() / means.tail<3>().array().max(0.05);
+      left[f].col(j) -= (factor * by_fold[f].simulated.col(j).array()).matrix();
+    }
+  });
+  Comparison best;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    double before = 0, after = 0;
+    std::vector<double> agreement;  // of what was predicted with what was left, by stretches of steps
+    for (std::size_t f = 0; f < by_fold.size(); ++f) {
+      before += by_fold[f].residual.row(k).squaredNorm();
+      after += left[f].row(k).squaredNorm();
+      const auto agreed = by_fold[f].residual.row(k).cwiseProduct(by_fold[f].residual.row(k) - left[f].row(k)).eval();
+      for (Eigen::Index from = 0; from < agreed.size(); from += detail::stretch) {
+        agreement.push_back(agreed.segment(from, std::min(detail::stretch, agreed.size() - from)).sum());
+      }
+    }
+    const double gain = before > 0 ? 1 - std::sqrt(after / before) : 0;
+    const double p_value = std::min(1.0, 3 * detail::sign_flip_p_value(agreement));
+    if (p_value < best.p_value || (p_value == best.p_value && gain > best.gain)) {
+      best = {.gain = gain, .stderr_ = 0, .t = 0, .p_value = p_value};
+    }
+  }
+  return best;
+}
+
+}  // namespace surefoot
