@@ -1,5 +1,6 @@
 // `evaluate`: the mean cost of a policy.
 #include <chrono>
+#include <concepts>
 #include <cstdint>
 #include <cstdio>
 #include <iostream>
@@ -15,7 +16,7 @@ namespace sigmaban {
 namespace {
 
 struct Options {
-  std::string problem, policy, motion;
+  std::string problem, policy, motion, robot;
   int trials = 10'000;
   std::uint64_t seed = evaluation_seed;
   std::size_t threads = 0;
@@ -26,8 +27,12 @@ template <class Problem>
 void run(const Problem& problem, const Options& options) {
   check_motion(options.policy, options.motion);
   const auto policy = load_any_policy(problem, options.policy);
+  Problem played = problem;
+  if constexpr (std::same_as<Problem, CalibratedApproach>) {
+    if (!options.robot.empty()) played = calibrated_approach(options.problem, options.robot);
+  }
   const auto start = std::chrono::steady_clock::now();
-  const auto cost = mean_cost(problem, policy, options.trials, options.seed, surefoot::Threads(options.threads));
+  const auto cost = mean_cost(played, policy, options.trials, options.seed, surefoot::Threads(options.threads));
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   if (options.json) {
     const nlohmann::ordered_json json{{"problem", options.problem}, {"policy", options.policy},
@@ -49,6 +54,11 @@ void add_evaluate(CLI::App& program) {
   CLI::App* command = program.add_subcommand("evaluate", "Measure the mean cost of a policy");
   add_problem_option(*command, options->problem);
   add_motion_option(*command, options->motion);
+  command
+      ->add_option("--robot", options->robot,
+                   "motion.json of the robot that plays, where it is another than the policy believes (--motion)")
+      ->needs("--motion")
+      ->check(CLI::ExistingFile);
   command->add_option("--policy", options->policy, "winner2016, tuned, or a file written by train or tune")->required();
   command->add_option("--trials", options->trials, "independent runs")
       ->check(CLI::Range(2, 100'000'000))

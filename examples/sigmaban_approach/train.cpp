@@ -14,11 +14,10 @@
 #include "commands.hpp"
 #include "motion.hpp"
 #include "results.hpp"
+#include "seed_states.hpp"
 #include "surefoot/core/executor.hpp"
-#include "surefoot/core/rollout.hpp"
 #include "surefoot/solve/forest_policy.hpp"
 #include "surefoot/solve/rfpi.hpp"
-#include "winner2016.hpp"
 
 namespace sigmaban {
 namespace {
@@ -38,22 +37,6 @@ struct Options {
   double checkpoint_seconds = 10;
   bool resume = false;
 };
-
-constexpr int seed_runs = 25;  // as in the paper
-
-/// The states of the runs that the paper starts from.
-template <class Problem>
-std::vector<typename Problem::State> seed_states(const Problem& problem, std::uint64_t seed) {
-  std::vector<typename Problem::State> states;
-  for (int i = 0; i < seed_runs; ++i) {
-    const surefoot::Rng rng(seed, i);
-    surefoot::Rng start = rng.stream(0);
-    const auto run =
-        surefoot::trajectory(problem, Winner2016(), problem.initial_state(start), Problem::horizon, rng.stream(1));
-    states.insert(states.end(), run.states.begin(), run.states.end() - (run.terminal ? 1 : 0));
-  }
-  return states;
-}
 
 void print_progress(const surefoot::RfpiProgress& p) {
   const double left = p.share > 0 ? p.seconds * std::max(0.0, 1 - p.share) / p.share : 0;

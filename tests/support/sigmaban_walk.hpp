@@ -12,16 +12,13 @@
 #include "surefoot/motion/motion_noise.hpp"
 #include "surefoot/motion/simulate_walk.hpp"
 #include "surefoot/motion/walk_sequence.hpp"
+#include "tests/support/walks.hpp"
 
 namespace sigmaban {
 
 using Model = surefoot::FullLinearCorrection;
 
-inline Model model() {
-  return Model::from_parameters(surefoot::Vec<12>{0.0093, 1.30, -0.17, 0.001,    //
-                                                  -0.0026, -0.075, 1.47, 0.101,  //
-                                                  0.0002, -0.35, 0.05, 0.909});
-}
+inline Model model() { return toys::paper_walk(); }
 
 /// With one of its parameters multiplied by a factor.
 inline Model bent(int parameter, double factor) {

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/motion/linear_correction.hpp"
 #include "surefoot/motion/motion_noise.hpp"
+#include "surefoot/motion/order_plan.hpp"
+#include "surefoot/motion/simulate_walk.hpp"
 #include "surefoot/motion/walk_sequence.hpp"
 
 namespace toys {
@@ -23,26 +24,11 @@ inline surefoot::UniformNoise paper_noise() { return {{0.02, 0.02, 0.0873}}; }
 template <surefoot::MotionModel M, surefoot::NoiseModel N>
 std::vector<surefoot::WalkSequence> walks(const M& model, const N& noise, int count, std::uint64_t seed,
                                           int cycles = 25) {
+  const surefoot::PoseAccuracy exact{.position = 0, .heading = 0};
   std::vector<surefoot::WalkSequence> result;
-  for (int s = 0; s < count; ++s) {
-    surefoot::Rng rng(seed, static_cast<std::uint64_t>(s));
-    surefoot::WalkSequence sequence;
-    sequence.name = std::to_string(s);
-    sequence.orders.resize(3, cycles);
-    sequence.poses.resize(3, cycles);
-    surefoot::Vec<3> orders = surefoot::Vec<3>::Zero();
-    surefoot::Pose2 pose;
-    for (int i = 0; i < cycles; ++i) {
-      const surefoot::Vec<3> previous = orders;
-      const surefoot::Vec<3> change{rng.uniform(-0.04, 0.04), rng.uniform(-0.02, 0.02), rng.uniform(-0.3, 0.3)};
-      orders = (orders + change).cwiseMax(surefoot::Vec<3>(-0.04, -0.04, -0.4));
-      orders = orders.cwiseMin(surefoot::Vec<3>(0.08, 0.04, 0.4)).eval();
-      sequence.orders.col(i) = orders;
-      const surefoot::Vec<3> moved = surefoot::cycle_displacement(model, orders, previous).vec();
-      pose = pose * surefoot::Pose2::from_vec(moved + noise.sample(orders, previous, rng));
-      sequence.poses.col(i) = pose.vec();
-    }
-    result.push_back(sequence);
+  for (const Eigen::Matrix3Xd& orders : surefoot::plan_orders({}, count, cycles, seed)) {
+    surefoot::Rng rng(seed, result.size(), 1);
+    result.push_back(surefoot::simulate_walk(model, noise, exact, surefoot::planned_sequence(orders, true), rng));
   }
   return result;
 }

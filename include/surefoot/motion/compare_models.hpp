@@ -20,7 +20,8 @@ namespace surefoot {
 struct CompareOptions {
   PredictorOptions predictor = {};
   std::size_t folds = 10;
-  double clearly = 1;  // a simpler model is preferred if it is behind by at most this [standard errors]
+  double clearly = 1;     // a simpler model is preferred if it is behind by at most this [standard errors]
+  double matters = 0.02;  // or by no more than this share of the error
 };
 
 /// One model, judged. Errors are root mean squares over the sequences, each predicted by a fit to the other folds.
@@ -107,8 +108,8 @@ struct AsOrdered {
 }  // namespace detail
 
 /// The orders as they are, then each model, in the order named: name simpler ones first. The chosen one is the first
-/// that is behind the best by no more than `clearly` standard errors of the difference between the two. Throws
-/// MotionError if there are fewer than two sequences.
+/// that is behind the best by no more than `clearly` standard errors of the difference between the two, or by no more
+/// than what matters. Throws MotionError if there are fewer than two sequences.
 template <MotionModel... Models, Executor E>
 std::vector<ModelScore> compare_models(std::span<const WalkSequence> sequences, const CompareOptions& options,
                                        const E& executor, std::uint64_t seed) {
@@ -132,7 +133,8 @@ std::vector<ModelScore> compare_models(std::span<const WalkSequence> sequences, 
   }
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const Eigen::ArrayXd behind = errors[i].position - errors[best].position;
-    if (i != best && behind.mean() > options.clearly * detail::standard_error(behind)) continue;
+    const bool certain = behind.mean() > options.clearly * detail::standard_error(behind);
+    if (certain && scores[i].position > (1 + options.matters) * scores[best].position) continue;
     scores[i].chosen = true;
     break;
   }
