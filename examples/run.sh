@@ -7,7 +7,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source cmake/packages.sh
-require_packages "${build_packages[@]}" gnuplot-nox
+require_packages "${build_packages[@]}" gnuplot-nox libmujoco-dev
 
 build=${SUREFOOT_BUILD_DIR:-build/release}
 results=${SUREFOOT_RESULTS_DIR:-results}

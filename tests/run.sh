@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source cmake/packages.sh
-require_packages "${build_packages[@]}" doctest-dev gnuplot-nox
+require_packages "${build_packages[@]}" doctest-dev gnuplot-nox libmujoco-dev
 
 build=${SUREFOOT_BUILD_DIR:-build/dev}
 cmake --preset dev -B "$build" -D SUREFOOT_TESTS=ON -D SUREFOOT_EXAMPLES=ON -D SUREFOOT_BENCHMARKS=OFF

@@ -11,7 +11,9 @@
 
 #include "examples/sigmaban_robot/dynamixel/protocol1.hpp"
 #include "examples/sigmaban_robot/dynamixel/protocol2.hpp"
+#include "examples/sigmaban_robot/servos/servo_group.hpp"
 #include "examples/sigmaban_robot/walk_engine/spline_walk.hpp"
+#include "tests/examples/robot_bus_line.hpp"
 
 namespace {
 std::atomic<long> allocations{0};
@@ -57,4 +59,26 @@ TEST_CASE("encoding and decoding allocate nothing") {
   }
   CHECK(allocations == before);
   CHECK(packets >= 300);
+}
+
+TEST_CASE_TEMPLATE("a cycle of a group of servos allocates nothing, whatever happens on the line", Protocol,
+                   dynamixel::Protocol1, dynamixel::Protocol2) {
+  using namespace dynamixel;
+  TestLine<Protocol> line(20, {.faults = {.lost = 0.02, .corrupted = 0.02, .late = 0.01, .duplicated = 0.01}});
+  std::vector<Joint> joints;
+  for (const std::uint8_t id : line.ids) joints.push_back({.name = std::to_string(id), .id = id});
+  ServoGroup<Bus<Protocol, MemoryTransport<Protocol>>> group(line.bus, mx_64<Protocol>(), joints);
+  group.start();
+  const std::vector<double> goals(joints.size(), 0.1);
+  std::size_t answered = 0;
+  const long before = allocations;
+  for (int i = 0; i < 500; ++i) {
+    if (i == 100) line.answerer.set_silent(3, true);
+    if (i == 300) line.answerer.set_silent(3, false);
+    group.set_goals(goals);
+    answered += group.update();
+    line.bus.port().wait(from_seconds(0.005));
+  }
+  CHECK(allocations == before);
+  CHECK(answered > 9'000);
 }

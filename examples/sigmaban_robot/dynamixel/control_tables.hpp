@@ -2,6 +2,7 @@
 // ROBOTIS e-Manual, pages MX-28, MX-64, MX-28(2.0) and MX-64(2.0), section Control Table.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -96,6 +97,16 @@ inline std::optional<std::uint32_t> bits_from_value(const Register& r, double va
 
 namespace control_table_detail {
 
+/// The registers of both tables, sorted by address.
+template <std::size_t N, std::size_t M>
+constexpr std::array<Register, N + M> with_more(const std::array<Register, N>& table,
+                                                const std::array<Register, M>& more) {
+  std::array<Register, N + M> result;
+  std::copy(more.begin(), more.end(), std::copy(table.begin(), table.end(), result.begin()));
+  std::sort(result.begin(), result.end(), [](const Register& a, const Register& b) { return a.address < b.address; });
+  return result;
+}
+
 inline constexpr Access read_only = Access::read_only, read_write = Access::read_write;
 
 inline constexpr std::array mx_28_protocol_1{
@@ -135,47 +146,14 @@ inline constexpr std::array mx_28_protocol_1{
     Register{"realtime_tick", 50, 2, read_only, Unit::second, realtime_tick_s},
     Register{"goal_acceleration", 73, 1, read_write, Unit::radian_per_second2, acceleration1_rad_per_s2}};
 
-inline constexpr std::array mx_64_protocol_1{
-    Register{"model_number", 0, 2, read_only},
-    Register{"firmware_version", 2, 1, read_only},
-    Register{"id", 3, 1, read_write},
-    Register{"baud_rate", 4, 1, read_write},
-    Register{"return_delay_time", 5, 1, read_write, Unit::second, return_delay_s},
-    Register{"cw_angle_limit", 6, 2, read_write, Unit::radian, position_rad},
-    Register{"ccw_angle_limit", 8, 2, read_write, Unit::radian, position_rad},
-    Register{"temperature_limit", 11, 1, read_write, Unit::celsius, temperature_celsius},
-    Register{"min_voltage_limit", 12, 1, read_write, Unit::volt, voltage_v},
-    Register{"max_voltage_limit", 13, 1, read_write, Unit::volt, voltage_v},
-    Register{"max_torque", 14, 2, read_write, Unit::share, load_share},
-    Register{"status_return_level", 16, 1, read_write},
-    Register{"alarm_led", 17, 1, read_write},
-    Register{"shutdown", 18, 1, read_write},
-    Register{"multi_turn_offset", 20, 2, read_write, Unit::radian, position_rad, Encoding::signed_value},
-    Register{"resolution_divider", 22, 1, read_write},
-    Register{"torque_enable", 24, 1, read_write},
-    Register{"led", 25, 1, read_write},
-    Register{"d_gain", 26, 1, read_write, Unit::none, 0.004},
-    Register{"i_gain", 27, 1, read_write, Unit::none, 1000.0 / 2048.0},
-    Register{"p_gain", 28, 1, read_write, Unit::none, 0.125},
-    Register{"goal_position", 30, 2, read_write, Unit::radian, position_rad, Encoding::signed_value},
-    Register{"moving_speed", 32, 2, read_write, Unit::radian_per_second, speed1_rad_per_s, Encoding::direction_bit},
-    Register{"torque_limit", 34, 2, read_write, Unit::share, load_share},
-    Register{"present_position", 36, 2, read_only, Unit::radian, position_rad, Encoding::signed_value},
-    Register{"present_speed", 38, 2, read_only, Unit::radian_per_second, speed1_rad_per_s, Encoding::direction_bit},
-    Register{"present_load", 40, 2, read_only, Unit::share, load_share, Encoding::direction_bit},
-    Register{"present_voltage", 42, 1, read_only, Unit::volt, voltage_v},
-    Register{"present_temperature", 43, 1, read_only, Unit::celsius, temperature_celsius},
-    Register{"registered", 44, 1, read_only},
-    Register{"moving", 46, 1, read_only},
-    Register{"lock", 47, 1, read_write},
-    Register{"punch", 48, 2, read_write},
-    Register{"realtime_tick", 50, 2, read_only, Unit::second, realtime_tick_s},
-    Register{"current", 68, 2, read_write, Unit::ampere, current1_a, Encoding::centered},
-    Register{"torque_ctrl_mode_enable", 70, 1, read_write},
-    Register{"goal_torque", 71, 2, read_write, Unit::ampere, current1_a, Encoding::direction_bit},
-    Register{"goal_acceleration", 73, 1, read_write, Unit::radian_per_second2, acceleration1_rad_per_s2}};
+/// Measures and controls its current as well.
+inline constexpr std::array mx_64_protocol_1 = with_more(
+    mx_28_protocol_1,
+    std::array{Register{"current", 68, 2, read_write, Unit::ampere, current1_a, Encoding::centered},
+               Register{"torque_ctrl_mode_enable", 70, 1, read_write},
+               Register{"goal_torque", 71, 2, read_write, Unit::ampere, current1_a, Encoding::direction_bit}});
 
-inline constexpr std::array mx_28_protocol_2{
+inline constexpr std::array common_protocol_2{
     Register{"model_number", 0, 2, read_only},
     Register{"model_information", 2, 4, read_only},
     Register{"firmware_version", 6, 1, read_only},
@@ -219,7 +197,6 @@ inline constexpr std::array mx_28_protocol_2{
     Register{"moving", 122, 1, read_only},
     Register{"moving_status", 123, 1, read_only},
     Register{"present_pwm", 124, 2, read_only, Unit::share, pwm_share, Encoding::signed_value},
-    Register{"present_load", 126, 2, read_only, Unit::share, load_share, Encoding::signed_value},
     Register{"present_velocity", 128, 4, read_only, Unit::radian_per_second, velocity2_rad_per_s,
              Encoding::signed_value},
     Register{"present_position", 132, 4, read_only, Unit::radian, position_rad, Encoding::signed_value},
@@ -233,65 +210,15 @@ inline constexpr std::array mx_28_protocol_2{
     Register{"indirect_address_29", 578, 2, read_write, Unit::none, 1, Encoding::unsigned_value, 28},
     Register{"indirect_data_29", 634, 1, read_write, Unit::none, 1, Encoding::unsigned_value, 28}};
 
-inline constexpr std::array mx_64_protocol_2{
-    Register{"model_number", 0, 2, read_only},
-    Register{"model_information", 2, 4, read_only},
-    Register{"firmware_version", 6, 1, read_only},
-    Register{"id", 7, 1, read_write},
-    Register{"baud_rate", 8, 1, read_write},
-    Register{"return_delay_time", 9, 1, read_write, Unit::second, return_delay_s},
-    Register{"drive_mode", 10, 1, read_write},
-    Register{"operating_mode", 11, 1, read_write},
-    Register{"secondary_id", 12, 1, read_write},
-    Register{"protocol_version", 13, 1, read_write},
-    Register{"homing_offset", 20, 4, read_write, Unit::radian, position_rad, Encoding::signed_value},
-    Register{"moving_threshold", 24, 4, read_write, Unit::radian_per_second, velocity2_rad_per_s},
-    Register{"temperature_limit", 31, 1, read_write, Unit::celsius, temperature_celsius},
-    Register{"max_voltage_limit", 32, 2, read_write, Unit::volt, voltage_v},
-    Register{"min_voltage_limit", 34, 2, read_write, Unit::volt, voltage_v},
-    Register{"pwm_limit", 36, 2, read_write, Unit::share, pwm_share},
-    Register{"current_limit", 38, 2, read_write, Unit::ampere, current2_a},
-    Register{"acceleration_limit", 40, 4, read_write, Unit::radian_per_second2, acceleration2_rad_per_s2},
-    Register{"velocity_limit", 44, 4, read_write, Unit::radian_per_second, velocity2_rad_per_s},
-    Register{"max_position_limit", 48, 4, read_write, Unit::radian, position_rad},
-    Register{"min_position_limit", 52, 4, read_write, Unit::radian, position_rad},
-    Register{"shutdown", 63, 1, read_write},
-    Register{"torque_enable", 64, 1, read_write},
-    Register{"led", 65, 1, read_write},
-    Register{"status_return_level", 68, 1, read_write},
-    Register{"registered_instruction", 69, 1, read_only},
-    Register{"hardware_error_status", 70, 1, read_only},
-    Register{"velocity_i_gain", 76, 2, read_write, Unit::none, 1.0 / 65536.0},
-    Register{"velocity_p_gain", 78, 2, read_write, Unit::none, 1.0 / 128.0},
-    Register{"position_d_gain", 80, 2, read_write, Unit::none, 1.0 / 16.0},
-    Register{"position_i_gain", 82, 2, read_write, Unit::none, 1.0 / 65536.0},
-    Register{"position_p_gain", 84, 2, read_write, Unit::none, 1.0 / 128.0},
-    Register{"feedforward_2nd_gain", 88, 2, read_write, Unit::none, 0.25},
-    Register{"feedforward_1st_gain", 90, 2, read_write, Unit::none, 0.25},
-    Register{"bus_watchdog", 98, 1, read_write, Unit::second, bus_watchdog_s, Encoding::signed_value},
-    Register{"goal_pwm", 100, 2, read_write, Unit::share, pwm_share, Encoding::signed_value},
-    Register{"goal_current", 102, 2, read_write, Unit::ampere, current2_a, Encoding::signed_value},
-    Register{"goal_velocity", 104, 4, read_write, Unit::radian_per_second, velocity2_rad_per_s, Encoding::signed_value},
-    Register{"profile_acceleration", 108, 4, read_write, Unit::radian_per_second2, acceleration2_rad_per_s2},
-    Register{"profile_velocity", 112, 4, read_write, Unit::radian_per_second, velocity2_rad_per_s},
-    Register{"goal_position", 116, 4, read_write, Unit::radian, position_rad, Encoding::signed_value},
-    Register{"realtime_tick", 120, 2, read_only, Unit::second, realtime_tick_s},
-    Register{"moving", 122, 1, read_only},
-    Register{"moving_status", 123, 1, read_only},
-    Register{"present_pwm", 124, 2, read_only, Unit::share, pwm_share, Encoding::signed_value},
-    Register{"present_current", 126, 2, read_only, Unit::ampere, current2_a, Encoding::signed_value},
-    Register{"present_velocity", 128, 4, read_only, Unit::radian_per_second, velocity2_rad_per_s,
-             Encoding::signed_value},
-    Register{"present_position", 132, 4, read_only, Unit::radian, position_rad, Encoding::signed_value},
-    Register{"velocity_trajectory", 136, 4, read_only, Unit::radian_per_second, velocity2_rad_per_s,
-             Encoding::signed_value},
-    Register{"position_trajectory", 140, 4, read_only, Unit::radian, position_rad, Encoding::signed_value},
-    Register{"present_input_voltage", 144, 2, read_only, Unit::volt, voltage_v},
-    Register{"present_temperature", 146, 1, read_only, Unit::celsius, temperature_celsius},
-    Register{"indirect_address_1", 168, 2, read_write, Unit::none, 1, Encoding::unsigned_value, 28},
-    Register{"indirect_data_1", 224, 1, read_write, Unit::none, 1, Encoding::unsigned_value, 28},
-    Register{"indirect_address_29", 578, 2, read_write, Unit::none, 1, Encoding::unsigned_value, 28},
-    Register{"indirect_data_29", 634, 1, read_write, Unit::none, 1, Encoding::unsigned_value, 28}};
+inline constexpr std::array mx_28_protocol_2 =
+    with_more(common_protocol_2,
+              std::array{Register{"present_load", 126, 2, read_only, Unit::share, load_share, Encoding::signed_value}});
+
+inline constexpr std::array mx_64_protocol_2 = with_more(
+    common_protocol_2,
+    std::array{Register{"current_limit", 38, 2, read_write, Unit::ampere, current2_a},
+               Register{"goal_current", 102, 2, read_write, Unit::ampere, current2_a, Encoding::signed_value},
+               Register{"present_current", 126, 2, read_only, Unit::ampere, current2_a, Encoding::signed_value}});
 
 }  // namespace control_table_detail
 

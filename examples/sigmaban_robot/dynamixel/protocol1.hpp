@@ -100,8 +100,9 @@ inline Bytes read(Buffer out, std::uint8_t id, std::uint16_t address, std::uint1
   return packet.finish();
 }
 
-inline Bytes write(Buffer out, std::uint8_t id, std::uint16_t address, Bytes data) {
-  PacketWriter packet(out, id, Instruction::write);
+inline Bytes write(Buffer out, std::uint8_t id, std::uint16_t address, Bytes data,
+                   Instruction code = Instruction::write) {
+  PacketWriter packet(out, id, code);
   packet.put_byte(address);
   packet.put(data);
   return packet.finish();
@@ -109,10 +110,7 @@ inline Bytes write(Buffer out, std::uint8_t id, std::uint16_t address, Bytes dat
 
 /// A write that waits for an action.
 inline Bytes reg_write(Buffer out, std::uint8_t id, std::uint16_t address, Bytes data) {
-  PacketWriter packet(out, id, Instruction::reg_write);
-  packet.put_byte(address);
-  packet.put(data);
-  return packet.finish();
+  return write(out, id, address, data, Instruction::reg_write);
 }
 
 /// `count` bytes to each id; `data` holds them one servo after the other.

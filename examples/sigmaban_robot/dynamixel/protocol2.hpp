@@ -140,8 +140,9 @@ inline Bytes read(Buffer out, std::uint8_t id, std::uint16_t address, std::uint1
   return packet.finish();
 }
 
-inline Bytes write(Buffer out, std::uint8_t id, std::uint16_t address, Bytes data) {
-  PacketWriter packet(out, id, Instruction::write);
+inline Bytes write(Buffer out, std::uint8_t id, std::uint16_t address, Bytes data,
+                   Instruction code = Instruction::write) {
+  PacketWriter packet(out, id, code);
   packet.put_word(address);
   packet.put(data);
   return packet.finish();
@@ -149,10 +150,7 @@ inline Bytes write(Buffer out, std::uint8_t id, std::uint16_t address, Bytes dat
 
 /// A write that waits for an action.
 inline Bytes reg_write(Buffer out, std::uint8_t id, std::uint16_t address, Bytes data) {
-  PacketWriter packet(out, id, Instruction::reg_write);
-  packet.put_word(address);
-  packet.put(data);
-  return packet.finish();
+  return write(out, id, address, data, Instruction::reg_write);
 }
 
 /// The same `count` bytes of each id; the servos answer in this order.

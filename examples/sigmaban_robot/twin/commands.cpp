@@ -1,0 +1,28 @@
+#include "commands.hpp"
+
+#include <sstream>
+
+namespace sigmaban {
+
+void add_twin_options(CLI::App& command, TwinOptions& options) {
+  std::ostringstream help;
+  help << "physics that is off by default, NAME or NAME=VALUE, several times:";
+  for (const TwinSwitch& s : twin_switches) help << ' ' << s.name << '=' << s.usual << " [" << s.unit << ']';
+  command.add_option("--switch", options.switches, help.str());
+  command.add_option("--noise", options.noise, "[rad] standard deviation of noise on every joint target")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_option("--seed", options.seed, "of all randomness")->capture_default_str();
+  command.add_option("--threads", options.threads, "0: as many as the machine has; results do not depend on it")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+}
+
+WalkingTwinOptions walking_twin_options(const TwinOptions& options) {
+  WalkingTwinOptions result;
+  for (const std::string& text : options.switches) set_switch(result.switches, text);
+  result.target_noise = options.noise;
+  return result;
+}
+
+}  // namespace sigmaban

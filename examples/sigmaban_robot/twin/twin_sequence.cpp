@@ -1,0 +1,89 @@
+#include "twin_sequence.hpp"
+
+#include <Eigen/QR>
+#include <array>
+#include <cstdio>
+
+#include "surefoot/core/rng.hpp"
+
+namespace sigmaban {
+
+TwinSequence record_sequence(const WalkingTwinOptions& options, const Eigen::Matrix3Xd& orders, std::size_t number,
+                             std::uint64_t seed) {
+  TwinSequence result{.number = number, .orders = {}, .moved = {}};
+  WalkingTwin robot(options, surefoot::Rng(seed, number).stream(1));
+  for (Eigen::Index cycle = 0; cycle < orders.cols() && !robot.fallen(); ++cycle) {
+    const surefoot::Vec<3> order = orders.col(cycle) / steps_per_cycle;
+    const surefoot::Pose2 moved = robot.cycle(order);
+    if (robot.fallen()) break;
+    result.orders.push_back(order);
+    result.moved.push_back(moved);
+  }
+  result.fell = robot.fallen();
+  result.simulated = robot.twin().time();
+  return result;
+}
+
+std::vector<surefoot::Pose2> poses(const TwinSequence& sequence) {
+  std::vector<surefoot::Pose2> result;
+  surefoot::Pose2 pose;
+  for (const surefoot::Pose2& moved : sequence.moved) {
+    pose = pose * moved;
+    result.push_back(pose);
+  }
+  return result;
+}
+
+surefoot::WalkSequence walk_sequence(const TwinSequence& sequence) {
+  const auto cycles = static_cast<Eigen::Index>(sequence.moved.size());
+  if (cycles == 0) throw TwinError("sequence " + std::to_string(sequence.number) + " of the twin has no cycle");
+  surefoot::WalkSequence result{.name = std::to_string(sequence.number)};
+  result.orders.resize(3, cycles);
+  result.poses.resize(3, cycles);
+  const std::vector<surefoot::Pose2> after = poses(sequence);
+  for (Eigen::Index i = 0; i < cycles; ++i) {
+    result.orders.col(i) = steps_per_cycle * sequence.orders[static_cast<std::size_t>(i)];
+    result.poses.col(i) = after[static_cast<std::size_t>(i)].vec();
+  }
+  return result;
+}
+
+std::string sequences_csv(std::span<const TwinSequence> sequences) {
+  std::string text =
+      "seq,cycle,order_dx_m,order_dy_m,order_dtheta_rad,moved_x_m,moved_y_m,moved_theta_rad,x_m,y_m,theta_rad\n";
+  for (const TwinSequence& sequence : sequences) {
+    if (sequence.fell) continue;
+    const std::vector<surefoot::Pose2> after = poses(sequence);
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      const surefoot::Vec<3>& order = sequence.orders[i];
+      const surefoot::Pose2 &moved = sequence.moved[i], &pose = after[i];
+      text += std::to_string(sequence.number) + ',' + std::to_string(i);
+      for (const double value :
+           {order[0], order[1], order[2], moved.x, moved.y, moved.angle, pose.x, pose.y, pose.angle}) {
+        std::array<char, 40> cell{};
+        std::snprintf(cell.data(), cell.size(), ",%.6f", value);
+        text += cell.data();
+      }
+      text += '\n';
+    }
+  }
+  return text;
+}
+
+Eigen::Matrix<double, 3, 4> walk_gains(std::span<const TwinSequence> sequences) {
+  Eigen::Index cycles = 0;
+  for (const TwinSequence& sequence : sequences) cycles += static_cast<Eigen::Index>(sequence.moved.size());
+  if (cycles < 4) throw TwinError("the gains of a walk need four cycles or more, walk more sequences");
+  Eigen::MatrixX4d ordered(cycles, 4);
+  Eigen::MatrixX3d moved(cycles, 3);
+  Eigen::Index row = 0;
+  for (const TwinSequence& sequence : sequences) {
+    for (std::size_t i = 0; i < sequence.moved.size(); ++i, ++row) {
+      ordered.row(row) << 1, steps_per_cycle * sequence.orders[i].transpose();
+      moved.row(row) = sequence.moved[i].vec();
+    }
+  }
+  return ordered.colPivHouseholderQr().solve(moved).transpose();
+}
+
+}  // namespace sigmaban

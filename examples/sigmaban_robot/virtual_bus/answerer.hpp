@@ -1,0 +1,300 @@
+// Servos as seen from the line: bytes in, bytes out, each with the moment it is due. Knows nothing of ports or threads.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "../bus/protocols.hpp"
+#include "../bus/transport.hpp"
+#include "answerer_options.hpp"
+#include "surefoot/core/rng.hpp"
+#include "virtual_servo.hpp"
+
+namespace dynamixel {
+
+/// The line is half-duplex and takes ten bits per byte: answers begin when the instruction is over and the servo's
+/// return delay has passed, one after the other, and each is handed out when its last byte is due. What is sent while
+/// servos still answer is heard by them, and counted: on a real line both would be lost. Calls allocate nothing.
+template <class Protocol>
+class Answerer {
+ public:
+  explicit Answerer(std::vector<VirtualServo> servos, AnswererOptions options = {})
+      : servos_(std::move(servos)), options_(options), rng_(options.seed), by_id_(servos_.size()) {
+    outgoing_.reserve(256);
+  }
+
+  std::uint32_t bits_per_s() const { return options_.bits_per_s; }
+  Faults& faults() { return options_.faults; }
+  const FaultCounts& counts() const { return counts_; }
+  const FaultCounts& counts(std::uint8_t id) const { return by_id_[place(id)].counts; }
+  std::uint64_t instructions() const { return instructions_; }
+  std::uint64_t collisions() const { return collisions_; }
+  std::uint64_t sent_bytes() const { return sent_bytes_; }
+
+  VirtualServo& servo(std::uint8_t id) { return servos_[place(id)]; }
+  const std::vector<VirtualServo>& servos() const { return servos_; }
+
+  /// A silent servo hears and moves, but does not answer.
+  void set_silent(std::uint8_t id, bool silent) { by_id_[place(id)].silent = silent; }
+  void set_voltage(double volts) {
+    for (VirtualServo& each : servos_) each.voltage_v = volts;
+  }
+
+  /// Did that servo give that answer to an instruction numbered `first` or later? The last eight are remembered.
+  bool gave(std::uint8_t id, Bytes data, std::uint64_t first) const {
+    for (const GivenAnswer& answer : by_id_[place(id)].answers) {
+      if (answer.instruction >= first && answer.size >= data.size() &&
+          std::equal(data.begin(), data.end(), answer.data.begin())) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// The host sends.
+  void receive(Bytes bytes, Time now) {
+    if (now < answers_end_ && !bytes.empty()) ++collisions_;
+    for (const std::uint8_t byte : bytes) {
+      line_free_ = std::max(line_free_, now) + line_time(1, options_.bits_per_s);
+      decoder_.push(byte);
+      while (const auto packet = decoder_.next()) obey(*packet);
+    }
+  }
+
+  /// When the next answer is due.
+  std::optional<Time> next_due() const {
+    if (outgoing_.empty()) return std::nullopt;
+    return outgoing_[next_outgoing()].due;
+  }
+
+  /// The next answer that is due by `now`, if `out` has room for it; its size, or 0.
+  std::size_t take(Time now, Buffer out) {
+    if (outgoing_.empty()) return 0;
+    const std::size_t next = next_outgoing();
+    const Outgoing& packet = outgoing_[next];
+    if (packet.due > now || packet.size > out.size()) return 0;
+    const std::size_t size = packet.size;
+    std::copy_n(packet.bytes.begin(), size, out.begin());
+    outgoing_.erase(outgoing_.begin() + static_cast<std::ptrdiff_t>(next));
+    sent_bytes_ += size;
+    return size;
+  }
+
+ private:
+  struct Outgoing {
+    Time due{};
+    std::size_t size = 0;
+    std::array<std::uint8_t, 256> bytes{};
+  };
+
+  struct PerServo {
+    bool silent = false;
+    FaultCounts counts;
+    std::array<GivenAnswer, 8> answers{};
+    std::size_t next_answer = 0;
+  };
+
+  std::size_t place(std::uint8_t id) const {
+    const auto at = find(id);
+    if (!at) throw BusError("virtual bus: there is no servo with id " + std::to_string(id) + "; give one it has");
+    return *at;
+  }
+  std::optional<std::size_t> find(std::uint8_t id) const {
+    for (std::size_t i = 0; i < servos_.size(); ++i) {
+      if (servos_[i].id() == id) return i;
+    }
+    return std::nullopt;
+  }
+
+  /// The first of those due first.
+  std::size_t next_outgoing() const {
+    const auto first = std::min_element(outgoing_.begin(), outgoing_.end(),
+                                        [](const Outgoing& a, const Outgoing& b) { return a.due < b.due; });
+    return static_cast<std::size_t>(first - outgoing_.begin());
+  }
+
+  /// An address, a count: one or two bytes, taken from the front. Too few count as none.
+  static std::optional<std::size_t> take_number(Bytes& parameters) {
+    if (parameters.size() < Protocol::number_size) return std::nullopt;
+    std::size_t number = 0;
+    for (std::size_t i = Protocol::number_size; i-- > 0;) number = 256 * number + parameters[i];
+    parameters = parameters.subspan(Protocol::number_size);
+    return number;
+  }
+
+  void obey(const Packet& packet) {
+    ++instructions_;
+    for (VirtualServo& each : servos_) each.advance(line_free_);
+    Bytes rest = packet.parameters;
+    switch (static_cast<Instruction>(packet.code)) {
+      case Instruction::sync_write:
+        return obey_sync_write(rest);
+      case Instruction::sync_read:
+        if constexpr (Protocol::version == 2) obey_sync_read(rest);
+        return;
+      case Instruction::bulk_read:
+        return obey_bulk_read(rest);
+      case Instruction::action:
+        for (VirtualServo& each : servos_) {
+          if (packet.id == broadcast_id || packet.id == each.id()) each.act();
+        }
+        if (packet.id != broadcast_id) acknowledge(packet.id, Refusal::none);
+        return;
+      default:
+        for (const VirtualServo& each : servos_) {
+          const bool one = packet.id == each.id();
+          if (one || packet.id == broadcast_id) obey_single(each.id(), packet, one);
+        }
+    }
+  }
+
+  void obey_single(std::uint8_t id, const Packet& packet, bool answers) {
+    VirtualServo& servo = servos_[place(id)];
+    Bytes rest = packet.parameters;
+    const auto code = static_cast<Instruction>(packet.code);
+    if (code == Instruction::ping) {
+      if constexpr (Protocol::version == 2) {
+        std::array<std::uint8_t, 7> head;
+        static_cast<void>(servo.read(0, head));
+        const std::array<std::uint8_t, 3> data{head[0], head[1], head[6]};  // model number, firmware
+        if (answers) answer(servo, {id, servo.error_bits(Refusal::none), false, data});
+      } else if (answers) {
+        acknowledge(id, Refusal::none);
+      }
+      return;
+    }
+    const auto address = take_number(rest);
+    if (!address) return;
+    if (code == Instruction::read) {
+      const auto count = take_number(rest);
+      if (answers && count) answer_read(id, *address, *count);
+    } else if (code == Instruction::write || code == Instruction::reg_write) {
+      const Refusal refusal = code == Instruction::write ? servo.write(*address, rest) : servo.store(*address, rest);
+      if (answers) acknowledge(servo.id(), refusal);
+    }
+  }
+
+  void obey_sync_write(Bytes rest) {
+    const auto address = take_number(rest), count = take_number(rest);
+    if (!address || !count || *count == 0) return;
+    for (; rest.size() > *count; rest = rest.subspan(1 + *count)) {
+      if (const auto at = find(rest[0])) static_cast<void>(servos_[*at].write(*address, rest.subspan(1, *count)));
+    }
+  }
+
+  void obey_sync_read(Bytes rest) {
+    const auto address = take_number(rest), count = take_number(rest);
+    if (!address || !count) return;
+    bool goes_on = true;
+    for (const std::uint8_t id : rest) goes_on = answer_in_chain(id, *address, *count, goes_on);
+  }
+
+  void obey_bulk_read(Bytes rest) {
+    if constexpr (Protocol::version == 1) {
+      if (!rest.empty()) rest = rest.subspan(1);
+    }
+    constexpr std::size_t item_size = 1 + 2 * Protocol::number_size;
+    bool goes_on = true;
+    for (; rest.size() >= item_size; rest = rest.subspan(item_size)) {
+      Bytes item = rest;
+      if constexpr (Protocol::version == 1) {
+        goes_on = answer_in_chain(item[1], item[2], item[0], goes_on);
+      } else {
+        const std::uint8_t id = item[0];
+        item = item.subspan(1);
+        const auto address = take_number(item), count = take_number(item);
+        if (address && count) goes_on = answer_in_chain(id, *address, *count, goes_on);
+      }
+    }
+  }
+
+  /// False where the chain has ended, after which `goes_on` is false.
+  bool answer_in_chain(std::uint8_t id, std::size_t address, std::size_t length, bool goes_on) {
+    const auto at = find(id);
+    if (!goes_on) {
+      if (at) count(by_id_[*at], &FaultCounts::withheld);
+      return false;
+    }
+    if (at && answer_read(id, address, length)) return true;
+    if (options_.chain == Chain::stops) return false;
+    line_free_ += from_seconds(options_.chain_patience_s);
+    return true;
+  }
+
+  void acknowledge(std::uint8_t id, Refusal refusal) {
+    if (const auto at = find(id)) answer(servos_[*at], {id, servos_[*at].error_bits(refusal), false, {}});
+  }
+
+  bool answer_read(std::uint8_t id, std::size_t address, std::size_t count) {
+    VirtualServo& servo = servos_[place(id)];
+    std::array<std::uint8_t, 160> data;
+    Refusal refusal = count <= data.size() ? Refusal::none : Refusal::range;
+    if (refusal == Refusal::none) refusal = servo.read(address, Buffer(data).first(count));
+    const Bytes read = Bytes(data).first(refusal == Refusal::none ? count : 0);
+    return answer(servo, {id, servo.error_bits(refusal), false, read});
+  }
+
+  /// Puts a status packet on the line, with what happens to it. False where the servo sends nothing in its turn.
+  bool answer(VirtualServo& servo, Status status) {
+    PerServo& its = by_id_[place(servo.id())];
+    if (its.silent) return count(its, &FaultCounts::silent), false;
+    const Fault fault = draw_fault(options_.faults, rng_);
+    if (fault == Fault::lost) return count(its, &FaultCounts::lost), false;
+    if (fault == Fault::wrong_id && servos_.size() > 1) {
+      const auto other =
+          (place(servo.id()) + 1 + rng_.below(static_cast<std::uint32_t>(servos_.size()) - 1)) % servos_.size();
+      status.id = servos_[other].id();
+      count(its, &FaultCounts::wrong_id);
+    } else {
+      GivenAnswer& given = its.answers[its.next_answer++ % its.answers.size()];
+      given.instruction = instructions_;
+      given.size = status.data.size();
+      std::copy(status.data.begin(), status.data.end(), given.data.begin());
+    }
+    Outgoing packet;
+    packet.size = Protocol::status(packet.bytes, status).size();
+    if (fault == Fault::late) {
+      packet.due = line_free_ + from_seconds(options_.faults.late_s);
+      outgoing_.push_back(packet);
+      return count(its, &FaultCounts::late), false;
+    }
+    line_free_ += from_seconds(servo.return_delay()) + line_time(packet.size, options_.bits_per_s);
+    packet.due = line_free_;
+    if (fault == Fault::corrupted) {
+      corrupt(Buffer(packet.bytes).first(packet.size), options_.faults.corrupted_bytes, rng_);
+      count(its, &FaultCounts::corrupted);
+    } else if (fault == Fault::duplicated) {
+      count(its, &FaultCounts::duplicated);
+      outgoing_.push_back(packet);
+      line_free_ += line_time(packet.size, options_.bits_per_s);
+      packet.due = line_free_;
+    }
+    outgoing_.push_back(packet);
+    answers_end_ = line_free_;
+    return true;
+  }
+
+  void count(PerServo& its, std::uint64_t FaultCounts::* which) {
+    ++(counts_.*which);
+    ++(its.counts.*which);
+  }
+
+  std::vector<VirtualServo> servos_;
+  AnswererOptions options_;
+  surefoot::Rng rng_;
+  std::vector<PerServo> by_id_;  // in the order of servos_
+  FaultCounts counts_;
+  typename Protocol::template Decoder<1024> decoder_;
+  std::vector<Outgoing> outgoing_;
+  Time line_free_{};    // when the last byte put on the line is over
+  Time answers_end_{};  // when the last byte of the servos is
+  std::uint64_t instructions_ = 0;
+  std::uint64_t collisions_ = 0;
+  std::uint64_t sent_bytes_ = 0;
+};
+
+}  // namespace dynamixel

@@ -1,0 +1,28 @@
+// How virtual servos answer, and what is kept of their answers for those who check.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "../bus/round.hpp"
+#include "faults.hpp"
+
+namespace dynamixel {
+
+struct AnswererOptions {
+  std::uint32_t bits_per_s = 3'000'000;
+  Chain chain = Chain::stops;
+  double chain_patience_s = 300e-6;  // after which a chain that goes on does so [s]
+  Faults faults{};
+  std::uint64_t seed = 1;
+};
+
+/// One answer that a servo gave, before any fault.
+struct GivenAnswer {
+  std::uint64_t instruction = 0;  // number of the instruction it answers, from 1
+  std::size_t size = 0;
+  std::array<std::uint8_t, 160> data{};
+};
+
+}  // namespace dynamixel

@@ -1,0 +1,202 @@
+// One servo: its registers, its motor, and how the two act on each other.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "../bus/protocols.hpp"
+#include "../bus/transport.hpp"
+#include "../dynamixel/control_tables.hpp"
+#include "servo_motor.hpp"
+
+namespace dynamixel {
+
+/// Why a servo refuses.
+enum class Refusal : std::uint8_t { none, range, limit, access };
+
+/// Registers hold what the e-Manual gives for a new servo where that matters here, but answers come without delay.
+/// Overheating switches the torque off until it is switched on again cooler.
+class VirtualServo {
+ public:
+  /// `angle_rad` is where it is at first, from a straight joint.
+  VirtualServo(const ServoModel& model, std::uint8_t id, double angle_rad = 0, const MotorParameters& motor = {})
+      : model_(&model), motor_(motor) {
+    state_.position_rad = angle_rad;
+    set("model_number", model.model_number);
+    set("firmware_version", model.protocol == 1 ? 41 : 43);
+    set("id", id);
+    set("return_delay_time", 0);
+    set("status_return_level", 2);
+    set("temperature_limit", 80);
+    set("min_voltage_limit", 95);
+    set("max_voltage_limit", 160);
+    set("max_torque", 1023);
+    set("torque_limit", 1023);
+    set("pwm_limit", 885);
+    set("p_gain", 32);
+    set("position_p_gain", 850);
+    set("ccw_angle_limit", max_ticks);
+    set("max_position_limit", max_ticks);
+    set("goal_position", ticks());
+    show();
+  }
+
+  std::uint8_t id() const { return static_cast<std::uint8_t>(value("id")); }
+  const MotorState& state() const { return state_; }
+
+  double voltage_v = 12.0;
+  double temperature_celsius = 35.0;
+  double load_nm = 0;       // torque on the shaft [N m]
+  double load_inertia = 0;  // of what hangs on it [kg m^2]
+
+  /// Moves the motor to `now`, in steps of 1 ms, and shows it in the registers. More than a second is skipped.
+  void advance(Time now) {
+    constexpr Time step_time = std::chrono::milliseconds(1);
+    if (now - moved_to_ > std::chrono::seconds(1)) moved_to_ = now - step_time;
+    if (now - moved_to_ < step_time) return;
+    if (overheated()) set("torque_enable", 0);
+    const MotorInputs inputs{
+        value("torque_enable") != 0,
+        goal_rad(),
+        p_gain(),
+        voltage_v,
+        load_nm,
+        load_inertia,
+        value(model_->protocol == 1 ? "torque_limit" : "pwm_limit") / (model_->protocol == 1 ? 1023.0 : 885.0)};
+    for (; now - moved_to_ >= step_time; moved_to_ += step_time) state_ = step(motor_, state_, inputs, 1e-3);
+    show();
+  }
+
+  Refusal read(std::size_t address, Buffer out) const {
+    if (address + out.size() > bytes_.size()) return Refusal::range;
+    std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(address), out.size(), out.begin());
+    return Refusal::none;
+  }
+
+  /// All or nothing.
+  Refusal write(std::size_t address, Bytes data) {
+    if (data.empty() || address + data.size() > bytes_.size()) return Refusal::range;
+    const bool locked = value("torque_enable") != 0 && address < model_->first_ram_address;
+    if (locked) return Refusal::access;
+    auto changed = bytes_;
+    std::copy(data.begin(), data.end(), changed.begin() + static_cast<std::ptrdiff_t>(address));
+    for (const Register& r : model_->registers) {
+      const bool touched = r.address < address + data.size() && address < r.end();
+      if (touched && r.access == Access::read_only) return Refusal::access;
+      if (touched && r.name == "goal_position" && beyond_limits(bits_in(changed, r))) return Refusal::limit;
+    }
+    bytes_ = changed;
+    return Refusal::none;
+  }
+
+  /// Keeps a write until the action. One at a time; longer ones than 16 bytes are refused.
+  Refusal store(std::size_t address, Bytes data) {
+    if (data.empty() || data.size() > stored_.size()) return Refusal::range;
+    std::copy(data.begin(), data.end(), stored_.begin());
+    stored_address_ = address;
+    stored_size_ = data.size();
+    set(model_->protocol == 1 ? "registered" : "registered_instruction", 1);
+    return Refusal::none;
+  }
+  void act() {
+    if (stored_size_ == 0) return;
+    static_cast<void>(write(stored_address_, Bytes(stored_).first(stored_size_)));
+    stored_size_ = 0;
+    set(model_->protocol == 1 ? "registered" : "registered_instruction", 0);
+  }
+
+  bool overheated() const { return temperature_celsius > value("temperature_limit"); }
+  bool voltage_is_wrong() const {
+    const double counts = voltage_v / 0.1;
+    return counts < value("min_voltage_limit") || counts > value("max_voltage_limit");
+  }
+
+  /// As in a status packet of the model's protocol.
+  std::uint8_t error_bits(Refusal refusal) const {
+    unsigned bits = 0;
+    if (model_->protocol == 1) {
+      if (voltage_is_wrong()) bits |= protocol1::input_voltage_error;
+      if (overheated()) bits |= protocol1::overheating_error;
+      if (refusal == Refusal::limit) bits |= protocol1::angle_limit_error;
+      if (refusal == Refusal::range || refusal == Refusal::access) bits |= protocol1::range_error;
+    } else {
+      if (voltage_is_wrong() || overheated()) bits |= protocol2::alert_bit;
+      constexpr protocol2::Error errors[] = {protocol2::Error::none, protocol2::Error::data_length,
+                                             protocol2::Error::data_range, protocol2::Error::access};
+      bits |= static_cast<unsigned>(errors[static_cast<std::size_t>(refusal)]);
+    }
+    return static_cast<std::uint8_t>(bits);
+  }
+
+  double return_delay() const { return value("return_delay_time") * return_delay_s; }  // [s]
+  /// Without effect where the model has no such register.
+  void set(std::string_view name, std::int64_t bits) {
+    if (const Register* r = model_->find(name)) {
+      for (std::size_t i = 0; i < r->size; ++i) {
+        bytes_[r->address + i] = static_cast<std::uint8_t>(static_cast<std::uint64_t>(bits) >> (8 * i));
+      }
+    }
+  }
+
+ private:
+  using Table = std::array<std::uint8_t, 768>;
+
+  static std::uint32_t bits_in(const Table& bytes, const Register& r) {
+    std::uint32_t bits = 0;
+    for (std::size_t i = r.size; i-- > 0;) bits = (bits << 8) | bytes[r.address + i];
+    return bits;
+  }
+
+  /// 0 where the model has no such register.
+  double value(std::string_view name) const {
+    const Register* r = model_->find(name);
+    return r != nullptr ? bits_in(bytes_, *r) : 0;
+  }
+
+  bool beyond_limits(std::uint32_t goal) const {
+    const double low = value(model_->protocol == 1 ? "cw_angle_limit" : "min_position_limit");
+    const double high = value(model_->protocol == 1 ? "ccw_angle_limit" : "max_position_limit");
+    const double ticks = static_cast<std::int32_t>(goal);
+    return ticks < low || ticks > high;
+  }
+
+  std::int64_t ticks() const { return std::lround(state_.position_rad / position_rad) + center_ticks; }
+  double goal_rad() const { return radians_from_ticks(static_cast<std::int32_t>(value("goal_position"))); }
+  /// In counts of Protocol 1.0, whose law has a factor of 1/8 where 2.0 has 1/128 on other units: 850 is like 32.
+  double p_gain() const { return model_->protocol == 1 ? value("p_gain") : value("position_p_gain") * 32.0 / 850.0; }
+
+  void show() {
+    const auto counts = [](double share) { return std::lround(share); };
+    const double speed = state_.velocity_rad_per_s;
+    set("present_position", ticks());
+    set("present_velocity", counts(speed / velocity2_rad_per_s));
+    const long speed1 = std::min(1023L, counts(std::abs(speed) / speed1_rad_per_s));
+    set("present_speed", speed < 0 ? 0x400 | speed1 : speed1);
+    set("position_trajectory", static_cast<std::int64_t>(value("goal_position")));
+    if (model_->name == "MX-64(2.0)") set("present_current", counts(state_.current_a / current2_a));
+    set("current", 2048 + counts(state_.current_a / current1_a));
+    set("present_voltage", counts(voltage_v / 0.1));
+    set("present_input_voltage", counts(voltage_v / 0.1));
+    set("present_temperature", counts(temperature_celsius));
+    unsigned hardware = 0;
+    if (voltage_is_wrong()) hardware |= protocol2::input_voltage_error;
+    if (overheated()) hardware |= protocol2::overheating_error;
+    set("hardware_error_status", hardware);
+    set("realtime_tick", (moved_to_.count() / 1'000'000) % 32768);
+  }
+
+  const ServoModel* model_;
+  MotorParameters motor_;
+  MotorState state_;
+  Table bytes_{};
+  Time moved_to_{Time::min() / 2};
+  std::array<std::uint8_t, 16> stored_{};
+  std::size_t stored_address_ = 0;
+  std::size_t stored_size_ = 0;
+};
+
+}  // namespace dynamixel
