@@ -5,22 +5,15 @@
 
 #include <cmath>
 
-#include "surefoot/diagnose/split.hpp"
-#include "tests/support/walking_robot.hpp"
+#include "tests/support/fitted_walk.hpp"
 
 namespace surefoot {
 namespace {
 
 template <class Change>
 Comparison slip_of(Change&& change, std::uint64_t seed, const Parallel& parallel = serially()) {
-  Rig rig = make_rig(toys::WalkingRobot{}, toys::walk_recordings(change, false, 40, seed));
-  rig.integration.restart = 1;
-  const RecordingSplit split = split_recordings(rig.recordings, {}, 0.2, 4, seed);
-  FitProblem problem;
-  problem.recordings = split.training;
-  problem.integration = rig.integration;
-  const Fit fitted = calibrate(rig, nominal_hypothesis(rig), problem, 8, seed, parallel);
-  return slip_by_place(rig, fitted.hypothesis, problem, split.folds, parallel, seed);
+  const toys::FittedWalk walk = toys::fitted_walk(change, seed, parallel);
+  return slip_by_place(walk.rig, walk.hypothesis, walk.problem, walk.split.folds, parallel, seed);
 }
 
 const auto patch = [](Pose2 moved, Pose2 at) {

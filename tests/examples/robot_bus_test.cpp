@@ -211,6 +211,18 @@ TEST_CASE("a servo that is silent for long costs the others nothing") {
   CHECK(line.bus.statistics(7).consecutive_misses == 0);
 }
 
+TEST_CASE("where time does not suffice for all, nobody goes without an answer for long") {
+  TestLine<Protocol2> line(20, {.faults = {.lost = 0.05}, .seed = 4});
+  std::uint64_t longest = 0, incomplete = 0;
+  for (int i = 0; i < 2000; ++i) {
+    incomplete += line.read_all(line.bus.port().now() + from_seconds(0.003)) < 20 ? 1 : 0;
+    for (const std::uint8_t id : line.ids) longest = std::max(longest, line.bus.statistics(id).consecutive_misses);
+    line.bus.port().wait(from_seconds(0.005));
+  }
+  CHECK(incomplete > 200);
+  CHECK(longest <= 3);
+}
+
 TEST_CASE("a deadline is kept even where nobody answers") {
   TestLine<Protocol2> line(20);
   for (const std::uint8_t id : line.ids) line.answerer.set_silent(id, true);

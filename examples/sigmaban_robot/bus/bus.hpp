@@ -13,7 +13,8 @@
 //
 // When to go on. A round of answers is over when all have answered or the line has been silent for longer than a servo
 // may take. Those not heard are asked again at once, within the caller's deadline and number of retries: first those
-// whose turn never came, because a servo before them was silent. Servos that were silent lately are asked last.
+// whose turn never came, because a servo before them was silent. Servos that were silent in the last calls are asked
+// last, those that had no answer for another reason first.
 #pragma once
 
 #include <algorithm>
@@ -137,7 +138,7 @@ class Bus {
     check(items.size() <= max_servos, "asks too many servos at once, the most are 64");
     check(outcomes.size() == items.size(), "has not as many outcomes as servos to ask");
     std::size_t offset = 0, count = 0, kinds = marks;
-    for (const int rank : {0, 1, 2}) {  // those that did not answer lately last
+    for (const int rank : {0, 1, 2, 3}) {
       offset = 0;
       for (std::size_t i = 0; i < items.size(); ++i) {
         const BulkItem& item = items[i];
@@ -159,13 +160,17 @@ class Bus {
     return answered;
   }
 
+  /// First those without an answer in the last call, last those that were silent in more than one.
   static int rank_of(const ServoStatistics& servo) {
-    return servo.consecutive_misses == 0 ? 0 : servo.consecutive_misses < 4 ? 1 : 2;
+    if (servo.consecutive_losses > 1) return servo.consecutive_losses < 4 ? 2 : 3;
+    return servo.consecutive_misses > 0 ? 0 : 1;
   }
 
   void note_call(std::uint8_t id, Outcome outcome) {
     ServoStatistics& servo = listener_.statistics(id);
     servo.consecutive_misses = outcome == Outcome::answered ? 0 : servo.consecutive_misses + 1;
+    if (outcome == Outcome::answered) servo.consecutive_losses = 0;
+    if (outcome != Outcome::answered && outcome != Outcome::skipped) ++servo.consecutive_losses;
   }
 
   /// Rounds until the first `count` of questions_ are settled.
@@ -227,7 +232,7 @@ class Bus {
       if (outcome == Outcome::answered || outcome == Outcome::refused) continue;
       if (outcome == Outcome::skipped) {
         questions_[stays++] = q;
-      } else if (q.attempts++ < options_.retries && listener_.statistics(q.item.id).consecutive_misses < 2) {
+      } else if (q.attempts++ < options_.retries && listener_.statistics(q.item.id).consecutive_losses < 2) {
         again[repeated++] = q;
       }
     }

@@ -26,6 +26,7 @@ struct ServoStatistics {
   std::uint8_t error_bits = 0;           // all that ever came, as the protocol has them
   std::uint8_t last_error_bits = 0;      // of the last answer
   std::uint64_t consecutive_misses = 0;  // calls without an answer, retries included
+  std::uint64_t consecutive_losses = 0;  // of them, those in which its turn came
   Time last_answer = Time::min();
 
   double lowest_v = std::numeric_limits<double>::infinity();  // as far as anyone noted them [V]
@@ -67,6 +68,7 @@ inline ServoStatistics& operator+=(ServoStatistics& sum, const ServoStatistics& 
   sum.error_bits = static_cast<std::uint8_t>(sum.error_bits | more.error_bits);
   sum.last_answer = std::max(sum.last_answer, more.last_answer);
   sum.consecutive_misses = std::max(sum.consecutive_misses, more.consecutive_misses);
+  sum.consecutive_losses = std::max(sum.consecutive_losses, more.consecutive_losses);
   sum.lowest_v = std::min(sum.lowest_v, more.lowest_v);
   sum.highest_v = std::max(sum.highest_v, more.highest_v);
   sum.lowest_celsius = std::min(sum.lowest_celsius, more.lowest_celsius);

@@ -1,4 +1,4 @@
-// Whether a servo is there: silent after so many cycles or so much time without an answer, back with the first one.
+// Whether a servo is there: silent after so many questions or so much time without an answer, back with the first one.
 #pragma once
 
 #include "../bus/transport.hpp"
@@ -6,8 +6,8 @@
 namespace dynamixel {
 
 struct PresenceOptions {
-  int silent_cycles = 4;    // missed in a row
-  double silent_s = 0.040;  // or since the last answer [s]
+  int silent_cycles = 3;  // in a row, in which its turn came and it did not answer
+  double silent_s = 0.2;  // or since the last answer, whether its turn came or not [s]
 };
 
 enum class PresenceChange { none, silent, back };
@@ -17,7 +17,8 @@ class Presence {
   /// Counts as heard at `now`.
   explicit Presence(Time now = {}) : last_heard_(now) {}
 
-  PresenceChange update(bool answered, Time now, const PresenceOptions& options) {
+  /// `asked`: its turn came in this cycle.
+  PresenceChange update(bool asked, bool answered, Time now, const PresenceOptions& options) {
     if (answered) {
       last_heard_ = now;
       missed_ = 0;
@@ -25,7 +26,7 @@ class Presence {
       silent_ = false;
       return PresenceChange::back;
     }
-    ++missed_;
+    missed_ += asked ? 1 : 0;
     if (silent_ || (missed_ < options.silent_cycles && now - last_heard_ < from_seconds(options.silent_s))) {
       return PresenceChange::none;
     }

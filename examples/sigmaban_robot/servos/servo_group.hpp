@@ -225,7 +225,8 @@ class ServoGroup {
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       states_[i].fresh = outcomes_[i] == Outcome::answered;
       if (states_[i].fresh) take(i, now);
-      const PresenceChange change = presences_[i].update(states_[i].fresh, now, options_.presence);
+      const PresenceChange change =
+          presences_[i].update(outcomes_[i] != Outcome::skipped, states_[i].fresh, now, options_.presence);
       states_[i].silent = presences_[i].silent();
       if (change == PresenceChange::silent) events_.push_back({ServoEventKind::silent, i});
       if (change != PresenceChange::back) continue;
