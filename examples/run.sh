@@ -13,7 +13,7 @@ build=${SUREFOOT_BUILD_DIR:-build/release}
 results=${SUREFOOT_RESULTS_DIR:-results}
 cmake --preset release -B "$build" -D SUREFOOT_TESTS=OFF -D SUREFOOT_EXAMPLES=ON -D SUREFOOT_BENCHMARKS=ON
 cmake --build "$build" --target sigmaban_approach minimal surefoot-diagnose surefoot-calibrate diagnose_own \
-  concealed_plants
+  concealed_plants walk_engine_check bus_check servo_check virtual_servos surefoot-walk surefoot-twin
 
 echo
 if [[ -d ${SUREFOOT_RECORDINGS:-} ]]; then
