@@ -124,10 +124,10 @@ TEST_CASE("joints files: the defaults come back, mistakes are named") {
   CHECK(joints[3].sign == -1);
   CHECK(joints[3].zero_rad == 0.1);
   CHECK_THROWS_WITH_AS(read("[]"), doctest::Contains("no JSON object"), example::UsageError);
-  CHECK_THROWS_WITH_AS(read(R"({"tail": {}})"), doctest::Contains("no joint 'tail'"), example::UsageError);
+  CHECK_THROWS_WITH_AS(read(R"({"tail": {}})"), doctest::Contains("no joint \"tail\""), example::UsageError);
   CHECK_THROWS_WITH_AS(read(R"({"left_knee": {"id": 300}})"), doctest::Contains("left_knee.id"), example::UsageError);
   CHECK_THROWS_WITH_AS(read(R"({"left_knee": {"sign": 0}})"), doctest::Contains("left_knee.sign"), example::UsageError);
-  CHECK_THROWS_WITH_AS(read(R"({"left_knee": {"max": 2}})"), doctest::Contains("left_knee.max is not known"),
+  CHECK_THROWS_WITH_AS(read(R"({"left_knee": {"max": 2}})"), doctest::Contains("left_knee: \"max\" is not known"),
                        example::UsageError);
 }
 

@@ -3,8 +3,8 @@
 // Whom to believe. Whatever was received before an instruction is sent belongs to an older one and is thrown away. An
 // answer counts only with a right check sum, the id whose turn it is and the length asked for. (One under another's id
 // passes only where a second fault in the same round makes room for it.) An older answer may yet come while a newer one
-// is waited for, and nothing in it says so; therefore reads ask for up to five bytes more in turn, and a length that is
-// still out is not asked for again before its time has passed.
+// is waited for, and nothing in it says so; therefore reads ask for up to nine bytes more, no two in a row as many, and
+// a length that is still out is not asked for again before its time has passed.
 //
 // What a check sum is worth. The CRC-16 of Protocol 2.0 finds all damage to two bytes in a row (16 bits in its order,
 // which is not that of the line: nine bits in a row on the line are safe), to any two bits and to any odd number of
@@ -21,6 +21,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -107,7 +108,7 @@ class Bus {
   const BusOptions& options() const { return options_; }
 
  private:
-  static constexpr std::size_t marks = 6;  // lengths that reads take turns with
+  static constexpr std::size_t marks = 10;  // lengths that reads take turns with
 
   struct Question {
     BulkItem item;
@@ -160,9 +161,9 @@ class Bus {
     return answered;
   }
 
-  /// First those without an answer in the last call, last those that were silent in more than one.
+  /// First those without an answer in the last call, last those that were silent in more than two.
   static int rank_of(const ServoStatistics& servo) {
-    if (servo.consecutive_losses > 1) return servo.consecutive_losses < 4 ? 2 : 3;
+    if (servo.consecutive_losses > 2) return servo.consecutive_losses < 5 ? 2 : 3;
     return servo.consecutive_misses > 0 ? 0 : 1;
   }
 
@@ -227,7 +228,7 @@ class Bus {
         continue;
       }
       const Outcome outcome = listener_.round().outcome(turn);
-      outcomes[q.index] = outcome;
+      if (outcome != Outcome::skipped || q.attempts == 0) outcomes[q.index] = outcome;  // else what it was before
       listener_.count(turn++, q.item.id, now, until);
       if (outcome == Outcome::answered || outcome == Outcome::refused) continue;
       if (outcome == Outcome::skipped) {
@@ -240,15 +241,20 @@ class Bus {
     return stays + repeated;
   }
 
-  /// Bytes to ask for beyond those wanted: the first of the next lengths in turn that is out with no servo asked, else
-  /// that which is out with the fewest.
+  /// Bytes to ask for beyond those wanted: the least that is out with no servo asked and was not asked for last, so
+  /// that an answer that comes twice is known; else that which is out with the fewest, those who have waited counting
+  /// more.
   std::size_t next_mark(std::size_t count, std::size_t kinds, Time now) const {
-    std::size_t best = 0, fewest = max_servos + 1;
-    for (std::size_t i = 1; i <= kinds; ++i) {
-      const std::size_t mark = (mark_ + i) % kinds;
-      std::size_t out = 0;
+    std::size_t best = mark_ % kinds;
+    std::uint64_t fewest = std::numeric_limits<std::uint64_t>::max();
+    for (std::size_t mark = 0; mark < kinds; ++mark) {
+      if (mark == mark_ && kinds > 1) continue;
+      std::uint64_t out = 0;
       for (std::size_t j = 0; j < count; ++j) {
-        out += listener_.may_come(questions_[j].item.id, questions_[j].item.count + mark, now) ? 1 : 0;
+        const BulkItem& item = questions_[j].item;
+        if (listener_.may_come(item.id, item.count + mark, now)) {
+          out += 1 + listener_.statistics(item.id).consecutive_misses;
+        }
       }
       if (out < fewest) best = mark, fewest = out;
     }

@@ -160,6 +160,8 @@ class Listener {
   bool is_old(const Status& status) {
     ServoStatistics& servo = servos_[status.id];
     if (MissingAnswer* missing = unanswered_.find(status.id, status.data.size())) {
+      note_late_garbage(round_.disown_garbage());  // answers come in the order of the instructions
+      older_ = missing->instruction;
       came_late(*missing, servo.late);
       return true;
     }
@@ -200,15 +202,19 @@ class Listener {
     }
   }
 
-  /// Late bytes that make no packet are the answer of whoever was held for silent last.
+  /// Late bytes that make no packet are the answer of one that is held for silent: of the older instructions, in the
+  /// order in which they come, the first with an answer of that size; else of the newest with any.
   void note_late_garbage(std::size_t bytes) {
     constexpr std::uint64_t instructions = 4;  // that far back
     if (bytes < Protocol::status_overhead / 2) return;
-    for (std::uint64_t back = 0; back < instructions && back < line_.instructions; ++back) {
-      MissingAnswer* silent = unanswered_.find(line_.instructions - back, Outcome::lost, 0);
+    const std::uint64_t last = line_.instructions, first = std::max(older_, last - std::min(last, instructions) + 1);
+    MissingAnswer* its = nullptr;
+    for (std::uint64_t each = last; each >= first && each > 0; --each) {
+      MissingAnswer* silent = unanswered_.find(each, Outcome::lost, 0);
       if (silent == nullptr || silent->until < now_) continue;
-      return came_late(*silent, servos_[silent->id].corrupted);
+      if (its == nullptr || silent->length + Protocol::status_overhead == bytes) its = silent;
     }
+    if (its != nullptr) came_late(*its, servos_[its->id].corrupted);
   }
 
   Chain chain_;
@@ -221,7 +227,8 @@ class Listener {
   LineStatistics line_;
   Bytes sent_;  // the last instruction
   Time now_{};
-  Time older_until_{};  // answers to older instructions may come
+  Time older_until_{};       // answers to older instructions may come
+  std::uint64_t older_ = 0;  // the instruction of the last of them that came
 };
 
 }  // namespace dynamixel

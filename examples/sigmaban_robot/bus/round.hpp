@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "../dynamixel/crc16.hpp"
 #include "outcome.hpp"
@@ -54,6 +55,8 @@ class Round {
 
   /// Bytes that make no packet came before what comes next.
   void note_garbage(std::size_t bytes) { garbage_bytes_ += bytes; }
+  /// What came before the first answer was not of this round after all. Returns how many bytes it was.
+  std::size_t disown_garbage() { return next_ == 0 ? std::exchange(garbage_bytes_, 0) : 0; }
   /// An answer came under an id whose turn it is not.
   void note_wrong_id() { ++wrong_ids_; }
 

@@ -11,6 +11,7 @@
 #include <span>
 #include <string_view>
 
+#include "packet.hpp"
 #include "units.hpp"
 
 namespace dynamixel {
@@ -65,6 +66,13 @@ struct ServoModel {
     return nullptr;
   }
 };
+
+/// Of a register in bytes that begin at address `begin` and hold all of it.
+constexpr std::uint32_t bits_in(Bytes bytes, std::size_t begin, const Register& r) {
+  std::uint32_t bits = 0;
+  for (std::size_t i = r.size; i-- > 0;) bits = (bits << 8) | bytes[r.address - begin + i];
+  return bits;
+}
 
 /// The value of bits read; bits above the register's size do not matter.
 constexpr double value_from_bits(const Register& r, std::uint32_t bits) {

@@ -33,6 +33,7 @@ struct Options {
   int servos = 20;
   double rate_hz = 100;
   double latency_s = 1.5e-3;
+  double memory_s = 60e-3;
   double silent_for_s = 2;
   std::uint32_t bits_per_s = 3'000'000;
   std::uint64_t seed = 1;
@@ -143,7 +144,7 @@ int check(const Options& options) {
   VirtualBus<Protocol2> line{
       Answerer<Protocol2>(servos, {.bits_per_s = options.bits_per_s, .faults = options.faults, .seed = options.seed})};
   ServoBus bus(BackgroundPort(SerialPort(line.path(), options.bits_per_s)),
-               {.return_delay_s = 0, .latency_s = options.latency_s});
+               {.return_delay_s = 0, .latency_s = options.latency_s, .memory_s = options.memory_s});
   std::cout << options.servos << " virtual servos at " << options.bits_per_s << " bit/s behind " << line.path() << ", "
             << options.rate_hz << " Hz for " << options.seconds << " s, "
             << (realtime ? "real-time priority" : "no real-time priority") << '\n'
@@ -205,6 +206,12 @@ int main(int argc, char** argv) {
   program.add_option("--baud", options.bits_per_s, "[bit/s]")->capture_default_str();
   program.add_option("--latency", options.latency_s, "of the operating system, allowed for [s]")
       ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  program
+      .add_option(
+          "--memory", options.memory_s,
+          "how late answers are still recognised [s]; a busy kernel hands over the bytes of a pseudo-terminal late")
+      ->check(CLI::Range(1e-3, 1.0))
       ->capture_default_str();
   program.add_option("--silent-for", options.silent_for_s, "[s]")->capture_default_str();
   program.add_option("--lost", options.faults.lost, "share of answers")->capture_default_str();

@@ -63,10 +63,7 @@ class Feedback {
   }
 
   double value(Bytes bytes, const Register* r) const {
-    if (r == nullptr) return 0;
-    std::uint32_t bits = 0;
-    for (std::size_t i = r->size; i-- > 0;) bits = (bits << 8) | bytes[r->address - address_ + i];
-    return value_from_bits(*r, bits);
+    return r == nullptr ? 0 : value_from_bits(*r, bits_in(bytes, address_, *r));
   }
 
   const Register* position_;

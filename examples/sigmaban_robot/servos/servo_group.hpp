@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -46,6 +47,18 @@ struct JointState {
 };
 
 enum class ServoEventKind : std::uint8_t { silent, back, hot, cool, voltage_wrong, voltage_right, watchdog };
+
+/// What happened, to be said of the joint (or of the watchdog).
+constexpr std::string_view in_words(ServoEventKind kind) {
+  constexpr std::string_view words[] = {"is silent",
+                                        "is back",
+                                        "is hot",
+                                        "is cool again",
+                                        "has a wrong voltage",
+                                        "has its voltage back",
+                                        "switched the torque off"};
+  return words[static_cast<std::size_t>(kind)];
+}
 
 struct ServoEvent {
   ServoEventKind kind = ServoEventKind::silent;

@@ -18,6 +18,13 @@ void add_twin_options(CLI::App& command, TwinOptions& options) {
       ->capture_default_str();
 }
 
+void add_sequence_options(CLI::App& command, int& sequences, int& cycles) {
+  command.add_option("--sequences", sequences, "of random orders within the paper's bounds")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  command.add_option("--cycles", cycles, "of each sequence")->check(CLI::Range(1, 10'000))->capture_default_str();
+}
+
 WalkingTwinOptions walking_twin_options(const TwinOptions& options) {
   WalkingTwinOptions result;
   for (const std::string& text : options.switches) set_switch(result.switches, text);

@@ -28,6 +28,9 @@ struct TwinOptions {
 /// --switch, --noise, --seed, --threads.
 void add_twin_options(CLI::App& command, TwinOptions& options);
 
+/// --sequences, --cycles.
+void add_sequence_options(CLI::App& command, int& sequences, int& cycles);
+
 /// Throws TwinError for switches that there are not.
 WalkingTwinOptions walking_twin_options(const TwinOptions& options);
 

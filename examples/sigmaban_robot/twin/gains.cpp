@@ -72,12 +72,7 @@ void run(const Options& options) {
 void add_gains(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("gains", "Measure falls, gains of the walk, and speed of the simulation");
-  command->add_option("--sequences", options->sequences, "of random orders within the paper's bounds")
-      ->check(CLI::Range(1, 100'000))
-      ->capture_default_str();
-  command->add_option("--cycles", options->cycles, "of each sequence")
-      ->check(CLI::Range(1, 10'000))
-      ->capture_default_str();
+  add_sequence_options(*command, options->sequences, options->cycles);
   add_twin_options(*command, options->twin);
   command->callback([options] { run(*options); });
 }

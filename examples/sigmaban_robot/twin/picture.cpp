@@ -10,10 +10,11 @@
 
 #include "../../common/gnuplot.hpp"
 #include "../../sigmaban_approach/commands.hpp"
+#include "../../sigmaban_approach/plot.hpp"
 #include "../../walk_calibration/stoppable.hpp"
+#include "../policy_option.hpp"
 #include "commands.hpp"
 #include "play_approach.hpp"
-#include "policy_option.hpp"
 #include "robot_strip.hpp"
 #include "surefoot/core/rollout.hpp"
 
@@ -72,26 +73,6 @@ void write_twin(Paths& out, const PlayedApproach& played, int colour) {
 
 std::string block(const Paths& paths) { return paths.path.str() + "\n\n" + paths.cycles.str() + "\n\n"; }
 
-constexpr const char* head = R"(set multiplot layout 1,2 margins 0.06,0.99,0.09,0.90 spacing 0.07
-set size ratio -1
-set xrange [-1.15:1.15]
-set yrange [-1.15:1.15]
-set xtics 0.5
-set ytics 0.5
-set grid lc rgb '#e6e6e6' lt 1
-set key off
-set xlabel 'towards the kick target [m]' offset 0,0.4
-set ylabel 'left of it [m]' offset 1,0
-set linetype 1 lc rgb '#0072b2'
-set linetype 2 lc rgb '#d55e00'
-set linetype 3 lc rgb '#009e73'
-set linetype 4 lc rgb '#56b4e9'
-set linetype 5 lc rgb '#e69f00'
-set linetype 6 lc rgb '#cc79a7'
-set object 1 circle at 0,0 size 0.07 fs solid fc rgb '#444444' front
-set object 2 rectangle from -0.30,-0.06 to -0.15,0.06 fs solid 0.5 noborder fc rgb '#bbbbbb' behind
-)";
-
 std::string panel(const std::string& title, int index) {
   std::ostringstream out;
   out << "set title '" << title << "'\nplot data index " << index
@@ -127,7 +108,8 @@ void run_problem(const Problem& problem, const Options& options) {
     }
   });
   example::draw(options.out,
-                head + panel("as the model expects, one arrow per walk cycle", 0) +
+                "set multiplot layout 1,2 margins 0.06,0.99,0.09,0.90 spacing 0.07\n" + std::string(approach_frame) +
+                    panel("as the model expects, one arrow per walk cycle", 0) +
                     panel("as the robot walks in MuJoCo", 2) + "unset multiplot\n",
                 block(model) + block(walked), 1200, 640);
   if (options.robot) draw_robot_strip(options.out.string() + "_robot", twin, {0.03, 0, 0.1});

@@ -15,9 +15,9 @@
 #include "../../sigmaban_approach/commands.hpp"
 #include "../../sigmaban_approach/motion.hpp"
 #include "../../walk_calibration/stoppable.hpp"
+#include "../policy_option.hpp"
 #include "commands.hpp"
 #include "play_approach.hpp"
-#include "policy_option.hpp"
 #include "progress_line.hpp"
 #include "share.hpp"
 
@@ -154,7 +154,7 @@ void add_play(CLI::App& program) {
       "falls. Ctrl-C ends early and keeps what is done.");
   add_problem_option(*command, options->problem);
   add_motion_option(*command, options->motion);
-  command->add_option("--policy", options->policies, policy_help)->required();
+  command->add_option("--policy", options->policies, std::string(policy_help) + "; several times")->required();
   command->add_option("--episodes", options->episodes, "approaches of each policy")
       ->check(CLI::Range(2, 1'000'000))
       ->capture_default_str();

@@ -62,12 +62,7 @@ void add_record(CLI::App& program) {
   command->footer(
       "Orders in the file are per step, a cycle has two: tell surefoot-calibrate --steps-per-cycle 2.\n"
       "Ctrl-C ends early and keeps the sequences that are done.");
-  command->add_option("--sequences", options->sequences, "of random orders within the paper's bounds")
-      ->check(CLI::Range(1, 100'000))
-      ->capture_default_str();
-  command->add_option("--cycles", options->cycles, "of each sequence")
-      ->check(CLI::Range(1, 10'000))
-      ->capture_default_str();
+  add_sequence_options(*command, options->sequences, options->cycles);
   command
       ->add_option("--orders", options->orders,
                    "CSV file of orders in place of random ones, as written by surefoot-calibrate plan or by record")

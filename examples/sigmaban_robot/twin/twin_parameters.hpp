@@ -6,6 +6,7 @@
 
 #include <array>
 
+#include "../virtual_bus/servo_motor.hpp"
 #include "../walk_engine/walk_parameters.hpp"
 
 namespace sigmaban {
@@ -20,12 +21,12 @@ struct TwinLink {
 /// An MX-64 under voltage-driven proportional control:
 /// torque = limit to +-torque_limit (stiffness (target - position)) - damping velocity - dry friction.
 struct TwinServo {
-  double stiffness = 24.0;     // at the nominal voltage [N m/rad]
-  double torque_limit = 4.74;  // at the nominal voltage [N m]
-  double damping = 0.676;      // mostly back-EMF [N m s/rad]
-  double dry_friction = 0.09;  // [N m]
-  double armature = 0.012;     // inertia of motor and gears, seen at the joint [kg m^2]
-  double voltage = 12.0;       // nominal [V]
+  double stiffness = dynamixel::MotorParameters().stiffness;        // at the nominal voltage [N m/rad]
+  double torque_limit = 4.74;                                       // at the nominal voltage [N m]
+  double damping = dynamixel::MotorParameters().damping;            // mostly back-EMF [N m s/rad]
+  double dry_friction = dynamixel::MotorParameters().dry_friction;  // [N m]
+  double armature = dynamixel::MotorParameters().inertia;           // of motor and gears, at the joint [kg m^2]
+  double voltage = dynamixel::MotorParameters().stiffness_voltage;  // nominal [V]
 };
 
 /// Four spherical cleats under each foot.

@@ -23,14 +23,14 @@ template <class Protocol>
 class Answerer {
  public:
   explicit Answerer(std::vector<VirtualServo> servos, AnswererOptions options = {})
-      : servos_(std::move(servos)), options_(options), rng_(options.seed), by_id_(servos_.size()) {
+      : servos_(std::move(servos)), options_(options), rng_(options.seed), per_servo_(servos_.size()) {
     outgoing_.reserve(256);
   }
 
   std::uint32_t bits_per_s() const { return options_.bits_per_s; }
   Faults& faults() { return options_.faults; }
   const FaultCounts& counts() const { return counts_; }
-  const FaultCounts& counts(std::uint8_t id) const { return by_id_[place(id)].counts; }
+  const FaultCounts& counts(std::uint8_t id) const { return per_servo_[place(id)].counts; }
   std::uint64_t instructions() const { return instructions_; }
   std::uint64_t collisions() const { return collisions_; }
   std::uint64_t sent_bytes() const { return sent_bytes_; }
@@ -39,14 +39,14 @@ class Answerer {
   const std::vector<VirtualServo>& servos() const { return servos_; }
 
   /// A silent servo hears and moves, but does not answer.
-  void set_silent(std::uint8_t id, bool silent) { by_id_[place(id)].silent = silent; }
+  void set_silent(std::uint8_t id, bool silent) { per_servo_[place(id)].silent = silent; }
   void set_voltage(double volts) {
     for (VirtualServo& each : servos_) each.voltage_v = volts;
   }
 
   /// Did that servo give that answer to an instruction numbered `first` or later? The last eight are remembered.
   bool gave(std::uint8_t id, Bytes data, std::uint64_t first) const {
-    for (const GivenAnswer& answer : by_id_[place(id)].answers) {
+    for (const GivenAnswer& answer : per_servo_[place(id)].answers) {
       if (answer.instruction >= first && answer.size >= data.size() &&
           std::equal(data.begin(), data.end(), answer.data.begin())) {
         return true;
@@ -216,7 +216,7 @@ class Answerer {
   bool answer_in_chain(std::uint8_t id, std::size_t address, std::size_t length, bool goes_on) {
     const auto at = find(id);
     if (!goes_on) {
-      if (at) count(by_id_[*at], &FaultCounts::withheld);
+      if (at) count(per_servo_[*at], &FaultCounts::withheld);
       return false;
     }
     if (at && answer_read(id, address, length)) return true;
@@ -240,7 +240,7 @@ class Answerer {
 
   /// Puts a status packet on the line, with what happens to it. False where the servo sends nothing in its turn.
   bool answer(VirtualServo& servo, Status status) {
-    PerServo& its = by_id_[place(servo.id())];
+    PerServo& its = per_servo_[place(servo.id())];
     if (its.silent) return count(its, &FaultCounts::silent), false;
     const Fault fault = draw_fault(options_.faults, rng_);
     if (fault == Fault::lost) return count(its, &FaultCounts::lost), false;
@@ -286,7 +286,7 @@ class Answerer {
   std::vector<VirtualServo> servos_;
   AnswererOptions options_;
   surefoot::Rng rng_;
-  std::vector<PerServo> by_id_;  // in the order of servos_
+  std::vector<PerServo> per_servo_;  // in the order of servos_
   FaultCounts counts_;
   typename Protocol::template Decoder<1024> decoder_;
   std::vector<Outgoing> outgoing_;

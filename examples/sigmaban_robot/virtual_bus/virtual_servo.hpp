@@ -87,7 +87,7 @@ class VirtualServo {
     for (const Register& r : model_->registers) {
       const bool touched = r.address < address + data.size() && address < r.end();
       if (touched && r.access == Access::read_only) return Refusal::access;
-      if (touched && r.name == "goal_position" && beyond_limits(bits_in(changed, r))) return Refusal::limit;
+      if (touched && r.name == "goal_position" && beyond_limits(bits_in(changed, 0, r))) return Refusal::limit;
     }
     bytes_ = changed;
     return Refusal::none;
@@ -145,16 +145,10 @@ class VirtualServo {
  private:
   using Table = std::array<std::uint8_t, 768>;
 
-  static std::uint32_t bits_in(const Table& bytes, const Register& r) {
-    std::uint32_t bits = 0;
-    for (std::size_t i = r.size; i-- > 0;) bits = (bits << 8) | bytes[r.address + i];
-    return bits;
-  }
-
   /// 0 where the model has no such register.
   double value(std::string_view name) const {
     const Register* r = model_->find(name);
-    return r != nullptr ? bits_in(bytes_, *r) : 0;
+    return r != nullptr ? bits_in(bytes_, 0, *r) : 0;
   }
 
   bool beyond_limits(std::uint32_t goal) const {

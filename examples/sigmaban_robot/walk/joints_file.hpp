@@ -37,15 +37,19 @@ inline std::string joints_to_json(const std::vector<dynamixel::Joint>& joints) {
 /// In the order of joint_names. Members left out are the defaults. Throws UsageError, naming the file and the joint.
 inline std::vector<dynamixel::Joint> read_joints(const std::filesystem::path& file) {
   const auto fail = [&](const std::string& what) { throw example::UsageError(file.string() + ": " + what); };
+  const auto shown = [](const std::string& key) {  // on one line
+    const std::string start = key.substr(0, 40);
+    return nlohmann::json(start).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  };
   const auto json = nlohmann::json::parse(example::read_text(file), nullptr, false);
   if (!json.is_object()) fail("is no JSON object; surefoot-walk joints prints one to begin with");
   std::vector<dynamixel::Joint> joints = default_joints();
   for (const auto& [name, given] : json.items()) {
     const auto found = std::ranges::find(joints, name, &dynamixel::Joint::name);
-    if (found == joints.end()) fail("there is no joint '" + name + "'; the first one is " + joints.front().name);
+    if (found == joints.end()) fail("there is no joint " + shown(name) + "; the first one is " + joints.front().name);
     if (!given.is_object()) fail(name + " must be an object with id, zero_rad, sign, min_rad, max_rad");
     for (const auto& [key, value] : given.items()) {
-      if (!value.is_number()) fail(name + "." + key + " must be a number");
+      if (!value.is_number()) fail(name + ": " + shown(key) + " must be a number");
       const double number = value.get<double>();
       if (key == "id") {
         if (!value.is_number_integer() || number < 0 || number > 252) fail(name + ".id must be 0 to 252");
@@ -60,7 +64,7 @@ inline std::vector<dynamixel::Joint> read_joints(const std::filesystem::path& fi
       } else if (key == "max_rad") {
         found->max_rad = number;
       } else {
-        fail(name + "." + key + " is not known; there are id, zero_rad, sign, min_rad, max_rad");
+        fail(name + ": " + shown(key) + " is not known; there are id, zero_rad, sign, min_rad, max_rad");
       }
     }
   }

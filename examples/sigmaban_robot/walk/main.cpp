@@ -12,12 +12,12 @@
 
 #include "../../common/interrupt.hpp"
 #include "../../common/run_program.hpp"
-#include "../../sigmaban_approach/any_policy.hpp"
 #include "../../sigmaban_approach/commands.hpp"
 #include "../../sigmaban_approach/motion.hpp"
 #include "../bus/background_port.hpp"
 #include "../bus/realtime.hpp"
 #include "../bus/serial_port.hpp"
+#include "../policy_option.hpp"
 #include "../virtual_bus/virtual_bus.hpp"
 #include "../walk_engine/spline_walk.hpp"
 #include "joints_file.hpp"
@@ -65,15 +65,10 @@ void print(const WalkReport& report, Bus& bus, const std::vector<dynamixel::Join
   std::printf("servos asked %llu times: %llu answered, %llu lost, %llu corrupted\n",
               static_cast<unsigned long long>(sum.asked), static_cast<unsigned long long>(sum.answered),
               static_cast<unsigned long long>(sum.lost), static_cast<unsigned long long>(sum.corrupted));
-  static constexpr const char* words[] = {
-      "is silent", "is back", "is hot", "is cool again", "has a wrong voltage", "has its voltage back"};
   for (const WalkEvent& event : report.events) {
-    if (event.what.kind == dynamixel::ServoEventKind::watchdog) {
-      std::printf("%8.2f s  the watchdog switched the torque off\n", event.time);
-    } else {
-      std::printf("%8.2f s  %s %s\n", event.time, joints[event.what.joint].name.c_str(),
-                  words[static_cast<std::size_t>(event.what.kind)]);
-    }
+    const bool of_all = event.what.kind == dynamixel::ServoEventKind::watchdog;
+    std::printf("%8.2f s  %s %s\n", event.time, of_all ? "the watchdog" : joints[event.what.joint].name.c_str(),
+                std::string(in_words(event.what.kind)).c_str());
   }
   if (log.lost() > 0) std::printf("%llu rows of the log were lost\n", static_cast<unsigned long long>(log.lost()));
   if (log.failed()) std::printf("the log could not be written to its end: is the disk full?\n");
@@ -95,7 +90,7 @@ void walk(const Problem& problem, const Policy& policy, Ball& ball, const Option
   using Line = Bus<Protocol, BackgroundPort<SerialPort>>;
   Line bus(BackgroundPort(SerialPort(line ? line->path() : options.port, options.bits_per_s)),
            {.return_delay_s = line ? 0 : 500e-6, .latency_s = 1.5e-3});
-  WalkLoopOptions loop{.rate_hz = options.rate_hz, .most_s = options.seconds, .gait = {}};
+  WalkLoopOptions loop{.rate_hz = options.rate_hz, .longest_walk_s = options.seconds, .gait = {}};
   loop.gait.slowing = problem.constants.max_acceleration;
   ServoGroup<Line> group(bus, model, joints,
                          {.soft_start_s = loop.gait.rise_s - 0.5, .listen_s = 0.7 / options.rate_hz});
@@ -121,11 +116,7 @@ void run_problem(const Problem& problem, const Options& options) {
   std::vector<dynamixel::Joint> joints =
       options.joints_file.empty() ? default_joints() : read_joints(options.joints_file);
   dynamixel::check_joints(joints, joints.size());
-  const AnyPolicyOf<Problem> policy = [&]() -> AnyPolicyOf<Problem> {
-    if (options.policy == "expert") return Winner2016(Winner2016Parameters::winner2016());
-    check_motion(options.policy, options.motion);
-    return load_any_policy(problem, options.policy);
-  }();
+  const AnyPolicyOf<Problem> policy = load_policy_option(problem, options.policy, options.motion);
   const example::Interrupt interrupt;
   WalkLog log(options.log);
   const auto go = [&](auto& ball) {
@@ -158,10 +149,7 @@ void add_run(CLI::App& program) {
   CLI::App* command = program.add_subcommand("run", "Stand up, walk to the ball, stop");
   add_problem_option(*command, options->problem);
   add_motion_option(*command, options->motion);
-  command
-      ->add_option("--policy", options->policy,
-                   "expert (hand-tuned, RoboCup 2016), tuned, or a file written by sigmaban_approach train or tune")
-      ->capture_default_str();
+  command->add_option("--policy", options->policy, policy_help)->capture_default_str();
   command->add_option("--port", options->port, "such as /dev/ttyUSB0; virtual: simulated servos in this program")
       ->capture_default_str();
   command->add_option("--baud", options->bits_per_s, "[bit/s]")->capture_default_str();

@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-#include "../../common/usage_error.hpp"
+#include "../../common/files.hpp"
 #include "../walk_engine/joint_targets.hpp"
 
 namespace sigmaban {
@@ -39,8 +39,7 @@ class WalkLog {
   /// Nothing is written if `path` is empty. Throws UsageError if it cannot be.
   explicit WalkLog(const std::filesystem::path& path) : rows_(path.empty() ? 0 : capacity) {
     if (path.empty()) return;
-    std::error_code failed;
-    if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failed);
+    example::prepare_output(path);
     file_ = std::fopen(path.c_str(), "w");
     if (file_ == nullptr) {
       throw example::UsageError(path.string() + ": cannot be written (" + std::strerror(errno) + ")");

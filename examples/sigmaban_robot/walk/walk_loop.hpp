@@ -26,7 +26,7 @@ namespace sigmaban {
 
 struct WalkLoopOptions {
   double rate_hz = 100;
-  double most_s = std::numeric_limits<double>::infinity();  // of walking, after which it stops [s]
+  double longest_walk_s = std::numeric_limits<double>::infinity();  // after which it stops [s]
   GaitOptions gait;
 };
 
@@ -123,7 +123,7 @@ void run_walk(const Problem& problem, const Policy& policy, Ball& ball, Engine e
     if (targets) goals = targets->array();
     if (!targets) ++report.unreachable;
     cycle_begins = engine.phase() < phase || !stepping;
-    if (gait.walking() && (walked += dt) >= options.most_s) end(WalkEnd::time);
+    if (gait.walking() && (walked += dt) >= options.longest_walk_s) end(WalkEnd::time);
     const Clock::time_point thought = Clock::now();
 
     group.set_goals(goals);

@@ -51,14 +51,23 @@ inline std::vector<std::string> cells_of(std::string_view line) {
   return cells;
 }
 
+/// The beginning of a cell or name, on one line.
+inline std::string shown(std::string_view text) {
+  std::string result(text.substr(0, 40));
+  for (char& c : result) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+  }
+  return "'" + result + "'";
+}
+
 inline double finite_number(const std::string& cell, std::size_t line, const std::string& column) {
   double value = 0;
   const char* begin = cell.data() + (cell.starts_with('+') ? 1 : 0);
   const char* end = cell.data() + cell.size();
   const auto [stop, error] = std::from_chars(begin, end, value);
   if (error != std::errc() || stop != end || begin == end || !std::isfinite(value)) {
-    throw ReferenceError("line " + std::to_string(line) + ", column " + column + ": '" + cell +
-                         "' is not a finite number");
+    throw ReferenceError("line " + std::to_string(line) + ", column " + column + ": " + shown(cell) +
+                         " is not a finite number");
   }
   return value;
 }
@@ -87,9 +96,9 @@ inline void check_columns(const std::vector<std::string>& columns) {
   for (const std::string& column : columns) {
     if (column == "case") continue;
     const double* number = find_number(row, reachable, column);
-    if (number == nullptr) throw ReferenceError("line 1: there is no column called '" + column + "'");
+    if (number == nullptr) throw ReferenceError("line 1: there is no column called " + shown(column));
     for (const double* other : seen) {
-      if (other == number) throw ReferenceError("line 1: column '" + column + "' is there twice");
+      if (other == number) throw ReferenceError("line 1: column " + shown(column) + " is there twice");
     }
     seen.push_back(number);
   }

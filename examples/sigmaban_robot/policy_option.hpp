@@ -3,14 +3,14 @@
 
 #include <string>
 
-#include "../../sigmaban_approach/any_policy.hpp"
-#include "../../sigmaban_approach/motion.hpp"
+#include "../sigmaban_approach/any_policy.hpp"
+#include "../sigmaban_approach/motion.hpp"
 
 namespace sigmaban {
 
 inline constexpr const char* policy_help =
     "expert (hand-tuned, RoboCup 2016), tuned (the same by CMA-ES, published), or a file written by "
-    "sigmaban_approach train or tune; several times";
+    "sigmaban_approach train or tune";
 
 /// Throws surefoot::Error if there is no such policy, or if it was trained for another walk.
 template <class Problem>
