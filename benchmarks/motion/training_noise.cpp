@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <span>
-#include <vector>
 
 #include "examples/sigmaban_approach/approach.hpp"
 #include "examples/sigmaban_approach/seed_states.hpp"
@@ -17,9 +16,8 @@
 #include "surefoot/motion/calibrate.hpp"
 #include "surefoot/motion/choose_noise.hpp"
 #include "surefoot/motion/linear_correction.hpp"
-#include "surefoot/motion/order_plan.hpp"
-#include "surefoot/motion/simulate_walk.hpp"
 #include "surefoot/solve/rfpi.hpp"
+#include "tests/support/walks.hpp"
 
 namespace {
 
@@ -33,16 +31,6 @@ Problem robot() {
   problem.walk = sigmaban::sigmaban_walk();
   problem.noise = {.per_speed = 2 * sigmaban::sigmaban_noise().as_motion_noise().constant};
   return problem;
-}
-
-std::vector<surefoot::WalkSequence> recorded(const Problem& robot, std::uint64_t seed) {
-  std::vector<surefoot::WalkSequence> sequences;
-  for (const Eigen::Matrix3Xd& orders : surefoot::plan_orders({}, 60, 25, seed)) {
-    surefoot::Rng rng(seed, sequences.size(), 1);
-    sequences.push_back(
-        surefoot::simulate_walk(robot.walk, robot.noise, accuracy, surefoot::planned_sequence(orders, true), rng));
-  }
-  return sequences;
 }
 
 void play(const char* name, const Problem& believed, double budget, std::uint64_t seed) {
@@ -62,7 +50,7 @@ void play(const char* name, const Problem& believed, double budget, std::uint64_
 int main(int argc, char** argv) {
   const std::uint64_t seed = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1;
   const double budget = argc > 2 ? std::strtod(argv[2], nullptr) : 60;
-  const auto walks = recorded(robot(), seed);
+  const auto walks = toys::walks(robot().walk, robot().noise, 60, seed, 25, accuracy);
   const std::span<const surefoot::WalkSequence> all(walks);
   surefoot::CalibrationOptions options;
   options.model.accuracy = accuracy;

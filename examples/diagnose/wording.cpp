@@ -20,7 +20,8 @@ std::string rounded(double value, int digits) {
 
 std::string percent(double share) {
   if (!std::isfinite(share)) return "unknown";
-  return rounded(100 * share, std::abs(share) < 0.1 ? 1 : std::abs(share) < 1 ? 2 : 3) + " %";
+  const double size = 100 * std::abs(share);
+  return rounded(100 * share, size < 9.5 ? 1 : size < 99.5 ? 2 : 3) + " %";  // else %g would print 1e+01 and 1e+02
 }
 
 std::string with_interval(const surefoot::FittedValue& fit) {

@@ -31,6 +31,7 @@ TEST_CASE("wrap_angle keeps the direction and lands in [-pi, pi)") {
   CHECK(wrap_angle(pi) == -pi);
   CHECK(wrap_angle(-pi) == -pi);
   CHECK(wrap_angle(7 * pi) == doctest::Approx(-pi));
+  CHECK(std::isnan(wrap_angle(std::nan(""))));
   surefoot::Rng rng(1);
   for (int i = 0; i < 1000; ++i) {
     const double angle = rng.uniform(-100, 100);

@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <numbers>
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
@@ -28,8 +27,7 @@ inline Model bent(int parameter, double factor) {
 }
 
 inline surefoot::MotionNoise noise(double factor = 1) {
-  constexpr double degree = std::numbers::pi / 180;
-  return surefoot::UniformNoise{factor * surefoot::Vec<3>{0.02, 0.02, 5 * degree}}.as_motion_noise();
+  return surefoot::UniformNoise{factor * toys::paper_noise().half_width}.as_motion_noise();
 }
 
 /// Every order walked once.

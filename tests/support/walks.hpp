@@ -20,15 +20,17 @@ inline surefoot::FullLinearCorrection paper_walk() {
 
 inline surefoot::UniformNoise paper_noise() { return {{0.02, 0.02, 0.0873}}; }
 
-/// `count` sequences of `cycles` cycles; every pose is known exactly.
+/// Poses that are known exactly.
+inline constexpr surefoot::PoseAccuracy exact{.position = 0, .heading = 0};
+
+/// `count` sequences of `cycles` cycles with a pose after each.
 template <surefoot::MotionModel M, surefoot::NoiseModel N>
 std::vector<surefoot::WalkSequence> walks(const M& model, const N& noise, int count, std::uint64_t seed,
-                                          int cycles = 25) {
-  const surefoot::PoseAccuracy exact{.position = 0, .heading = 0};
+                                          int cycles = 25, const surefoot::PoseAccuracy& accuracy = exact) {
   std::vector<surefoot::WalkSequence> result;
   for (const Eigen::Matrix3Xd& orders : surefoot::plan_orders({}, count, cycles, seed)) {
     surefoot::Rng rng(seed, result.size(), 1);
-    result.push_back(surefoot::simulate_walk(model, noise, exact, surefoot::planned_sequence(orders, true), rng));
+    result.push_back(surefoot::simulate_walk(model, noise, accuracy, surefoot::planned_sequence(orders, true), rng));
   }
   return result;
 }

@@ -97,9 +97,9 @@ inline void conclude(Investigation& investigation, const std::vector<AttachedEff
   if (investigation.noise == NoiseKind::final_pose) {
     open = sequence_structure(rig, chosen, problem, folds, parallel).p_value < 0.005;
   } else if (investigation.noise == NoiseKind::process) {
-    const Comparison pattern = residual_predictability(rig, chosen, problem, folds, parallel, seed);
-    const Comparison slip = slip_by_place(rig, chosen, problem, folds, parallel, seed);
-    open = open || (pattern.gain > 0.03 && pattern.p_value < 0.005) || (slip.gain > 0.03 && slip.p_value < 0.005);
+    const auto predicts = [](const Comparison& found) { return found.gain > 0.03 && found.p_value < 0.005; };
+    open = open || predicts(residual_predictability(rig, chosen, problem, folds, parallel, seed)) ||
+           predicts(slip_by_place(rig, chosen, problem, folds, parallel, seed));
   }
   if (open) {
     diagnosis.verdict = Verdict::unexplained;

@@ -23,7 +23,7 @@ inline Mismatch measure_mismatch(const Rig& rig, const std::vector<std::size_t>&
                                  NoiseKind noise, std::vector<Structure>* by_output = nullptr) {
   Mismatch result;
   for (Eigen::Index k = 0; k < sigma.size(); ++k) {
-    const Eigen::Index memory = noise == NoiseKind::process ? 3 : 8;  // rows over which noise may be correlated
+    const Eigen::Index memory = memory_of(noise);
     const Structure structure = residual_structure(rig, recordings, trajectories, k, memory, 10 * memory);
     if (by_output != nullptr) by_output->push_back(structure);
     result.energy += structure.share * structure.rms * structure.rms / (sigma[k] * sigma[k]);

@@ -21,6 +21,9 @@ enum class NoiseKind : unsigned char {
   final_pose,   // accumulates until the only measurement, in the last row
 };
 
+/// Rows over which such noise may be correlated.
+inline Eigen::Index memory_of(NoiseKind noise) { return noise == NoiseKind::process ? 3 : 8; }
+
 /// Correlations between errors of predictions from one measured row to the next that are one, two and three rows apart,
 /// about their mean (columns), by output (rows): -1/2, 0, 0 for measurement noise, 0 for noise of the process.
 inline Eigen::MatrixX3d step_correlations(const Rig& rig, const Hypothesis& hypothesis,

@@ -17,6 +17,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/calibrate.hpp"
 #include "surefoot/diagnose/score.hpp"
+#include "surefoot/motion/pose2.hpp"
 
 namespace surefoot {
 
@@ -85,9 +86,10 @@ inline Eigen::MatrixXd lever_of_step(const Rig& rig, const SimulatedRun& run, co
 
 /// Simulated displacement of a step, in the body's frame.
 inline Eigen::Vector3d moved_in_step(const PlanarInfo& planar, const SimulatedRun& run, Eigen::Index step) {
-  const auto moved = (run.states.col(step + 1) - run.states.col(step)).eval();
-  const double heading = run.states(planar.heading, step), c = std::cos(heading), s = std::sin(heading);
-  return {c * moved[planar.x] + s * moved[planar.y], c * moved[planar.y] - s * moved[planar.x], moved[planar.heading]};
+  const auto pose = [&](Eigen::Index row) {
+    return Pose2{run.states(planar.x, row), run.states(planar.y, row), run.states(planar.heading, row)};
+  };
+  return (pose(step).inverse() * pose(step + 1)).vec();
 }
 
 /// Covariance of whitened final residuals, if every step changes by 5 % of its usual size as the kernel of this feature

@@ -17,6 +17,8 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/predictability.hpp"
+#include "surefoot/diagnose/process_noise.hpp"
+#include "surefoot/motion/pose2.hpp"
 
 namespace surefoot {
 
@@ -47,19 +49,16 @@ inline std::optional<MeasuredSteps> measured_steps(const Rig& rig, const std::ve
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     const Eigen::MatrixXd& measured = rig.recordings[recordings[i]].outputs;
     const auto pose = [&](const Eigen::MatrixXd& outputs, Eigen::Index row) {
-      return Eigen::Vector3d(outputs(x, row), outputs(y, row), outputs(heading, row));
+      return Pose2{outputs(x, row), outputs(y, row), outputs(heading, row)};
     };
     for (Eigen::Index row = 1; row < measured.cols(); ++row) {
-      const Eigen::Vector3d before = pose(measured, row - 1), after = pose(measured, row);
-      const Eigen::Vector3d expected = pose(runs[i].outputs, row);
-      if (!before.allFinite() || !after.allFinite() || !expected.allFinite()) continue;
-      const double c = std::cos(before[2]), s = std::sin(before[2]);
-      const auto in_body = [&](const Eigen::Vector3d& d) {
-        return Eigen::Vector3d(c * d[0] + s * d[1], c * d[1] - s * d[0], wrap_angle(d[2]));
-      };
-      steps.place.col(at) = before.head<2>();
-      steps.simulated.col(at) = in_body(expected - before);
-      steps.residual.col(at) = in_body(expected - after);
+      const Pose2 before = pose(measured, row - 1), after = pose(measured, row), expected = pose(runs[i].outputs, row);
+      if (!(before.vec() + after.vec() + expected.vec()).allFinite()) continue;
+      const Pose2 back = before.inverse();
+      steps.place.col(at) = before.position();
+      steps.simulated.col(at) = (back * expected).vec();
+      steps.residual.col(at) = steps.simulated.col(at) - (back * after).vec();
+      steps.residual(2, at) = wrap_angle(steps.residual(2, at));
       ++at;
     }
   }
@@ -68,9 +67,6 @@ inline std::optional<MeasuredSteps> measured_steps(const Rig& rig, const std::ve
   steps.residual.conservativeResize(3, at);
   return steps;
 }
-
-/// Steps over which noise may be correlated.
-inline constexpr Eigen::Index stretch = 3;
 
 /// One-sided: how often a sum is as large if each of its terms may as well have the other sign.
 inline double sign_flip_p_value(const std::vector<double>& terms) {
@@ -144,6 +140,7 @@ inline Comparison slip_by_place(const Rig& rig, const Hypothesis& hypothesis, co
     }
   });
   Comparison best;
+  const Eigen::Index stretch = memory_of(NoiseKind::process);
   for (Eigen::Index k = 0; k < 3; ++k) {
     double before = 0, after = 0;
     std::vector<double> agreement;  // of what was predicted with what was left, by stretches of steps
@@ -151,8 +148,8 @@ inline Comparison slip_by_place(const Rig& rig, const Hypothesis& hypothesis, co
       before += by_fold[f].residual.row(k).squaredNorm();
       after += left[f].row(k).squaredNorm();
       const auto agreed = by_fold[f].residual.row(k).cwiseProduct(by_fold[f].residual.row(k) - left[f].row(k)).eval();
-      for (Eigen::Index from = 0; from < agreed.size(); from += detail::stretch) {
-        agreement.push_back(agreed.segment(from, std::min(detail::stretch, agreed.size() - from)).sum());
+      for (Eigen::Index from = 0; from < agreed.size(); from += stretch) {
+        agreement.push_back(agreed.segment(from, std::min(stretch, agreed.size() - from)).sum());
       }
     }
     const double gain = before > 0 ? 1 - std::sqrt(after / before) : 0;

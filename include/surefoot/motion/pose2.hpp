@@ -17,7 +17,7 @@ inline double wrap_angle(double angle) {
   constexpr double pi = std::numbers::pi;
   if (angle >= -pi && angle < pi) return angle;
   const double wrapped = angle - 2 * pi * std::floor((angle + pi) / (2 * pi));
-  return wrapped >= -pi && wrapped < pi ? wrapped : -pi;  // rounding may land on pi itself
+  return wrapped < -pi || wrapped >= pi ? -pi : wrapped;  // rounding may land on pi itself; not a number stays so
 }
 
 /// A pose or displacement in the plane. The angle is kept as given: compose and inverse wrap theirs to [-pi, pi).
