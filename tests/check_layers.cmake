@@ -1,16 +1,20 @@
 # Who may include whom: cmake -D include=<the include folder> -P check_layers.cmake
 # Fails when a header includes another area than listed here, anything but Eigen and the standard library outside,
-# the umbrella, or (through others) itself; and when the umbrella misses a header. Remarks on headers over 300 lines.
+# the umbrella, or (through others) itself; and when the umbrella misses a header of an area that needs nothing more.
+# Remarks on headers over 300 lines.
 cmake_minimum_required(VERSION 3.25)
 
-set(areas core forest optimize motion solve diagnose)
+set(areas core forest optimize motion solve diagnose mpi)
+set(optional_areas mpi)  # not in the umbrella
 set(core_may core)
 set(forest_may core forest)
 set(optimize_may core optimize)
 set(motion_may core optimize motion)
 set(solve_may core forest optimize solve)
 set(diagnose_may core forest optimize motion diagnose)
+set(mpi_may core mpi)
 set(system_headers immintrin.h)  # intrinsics, behind the compiler's own macros
+set(mpi_system_headers mpi.h pthread.h unistd.h)
 
 set(complaints)
 macro(complain text)
@@ -19,7 +23,7 @@ endmacro()
 
 file(GLOB_RECURSE headers RELATIVE ${include} ${include}/surefoot/*.hpp)
 set(umbrella surefoot/surefoot.hpp)
-list(REMOVE_ITEM headers ${umbrella})
+list(REMOVE_ITEM headers ${umbrella} surefoot/version.hpp)
 
 foreach(header IN LISTS headers)
   file(STRINGS ${include}/${header} lines REGEX "^[ \t]*#[ \t]*include")
@@ -38,7 +42,8 @@ foreach(header IN LISTS headers)
     set(style "${CMAKE_MATCH_1}")
     set(target "${CMAKE_MATCH_2}")
     if(style STREQUAL "<")
-      if(NOT target MATCHES "^[a-z_]+$" AND NOT target MATCHES "^Eigen/" AND NOT target IN_LIST system_headers)
+      if(NOT target MATCHES "^[a-z_]+$" AND NOT target MATCHES "^Eigen/" AND NOT target IN_LIST system_headers
+         AND NOT target IN_LIST ${area}_system_headers)
         complain("${header}: <${target}> is neither Eigen nor the standard library")
       endif()
     elseif(NOT target IN_LIST headers)
@@ -83,7 +88,12 @@ endif()
 
 file(STRINGS ${include}/${umbrella} lines REGEX "^#include")
 foreach(header IN LISTS headers)
-  if(NOT "#include \"${header}\"" IN_LIST lines)
+  string(REGEX MATCH "^surefoot/([^/]+)/" _ ${header})
+  if(CMAKE_MATCH_1 IN_LIST optional_areas)
+    if("#include \"${header}\"" IN_LIST lines)
+      complain("${umbrella} may not include ${header}")
+    endif()
+  elseif(NOT "#include \"${header}\"" IN_LIST lines)
     complain("${umbrella} does not include ${header}")
   endif()
 endforeach()

@@ -1,5 +1,7 @@
 #include "model_file.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <sstream>
 
 #include "model_entries.hpp"
@@ -106,6 +108,14 @@ ModelFile read_model(const TomlTable& root) {
 }  // namespace
 
 ModelFile parse_model_file(std::string_view text, const std::string& file) {
+  // The parser calls itself for every bracket inside another and every part of a dotted key: this many fit its stack.
+  constexpr std::ptrdiff_t most_brackets = 1000, most_points = 5000;
+  if (std::ranges::count(text, '[') + std::ranges::count(text, '{') > most_brackets ||
+      std::ranges::count(text, '.') > most_points) {
+    throw surefoot::DiagnoseError(file + ": the file has more than " + std::to_string(most_brackets) +
+                                  " opening brackets or " + std::to_string(most_points) +
+                                  " points; no model needs as many, simplify it");
+  }
   toml::value root;
   try {
     std::istringstream stream{std::string(text)};

@@ -1,6 +1,7 @@
 // The option --motion: the ball approach of a robot that was calibrated by surefoot-calibrate.
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -35,6 +36,15 @@ inline CalibratedApproach calibrated_approach(const std::string& problem_name, c
   return problem;
 }
 
+/// The parameters of the walk that a policy was trained for, as its record says; none: the published walk.
+inline std::vector<double> walk_in_record(const nlohmann::json& record) {
+  std::vector<double> walk;
+  const auto found = record.find("walk");
+  if (found == record.end() || !found->is_array()) return walk;
+  for (const auto& number : *found) walk.push_back(number.is_number() ? number.get<double>() : std::nan(""));
+  return walk;
+}
+
 /// A policy knows the walk of its robot: throws UsageError if the record beside a policy file says that it was trained
 /// with another motion file, or with one while none is given now.
 inline void check_motion(const std::filesystem::path& policy, const std::string& motion_file) {
@@ -46,10 +56,11 @@ inline void check_motion(const std::filesystem::path& policy, const std::string&
     const surefoot::Vec<21> parameters = calibrate_program::read_motion_file(file).model.parameters();
     return std::vector<double>(parameters.begin(), parameters.end());
   };
-  if (record.value("walk", std::vector<double>()) == walk_in(motion_file)) return;
+  if (walk_in_record(record) == walk_in(motion_file)) return;
   throw UsageError(policy.string() + ": was trained for another walk" +
-                   (record.contains("motion") ? "; say --motion " + record["motion"].get<std::string>()
-                                              : ", the published one; leave --motion out"));
+                   (record.contains("motion") && record["motion"].is_string()
+                        ? "; say --motion " + record["motion"].get<std::string>()
+                        : ", the published one; leave --motion out"));
 }
 
 /// Calls run(problem) with the published problem of that name, or with the calibrated one if there is a file.

@@ -22,8 +22,8 @@ Winner2016Parameters read_parameters(const std::filesystem::path& path) {
   const auto fail = [&](const std::string& why) { return UsageError(path.string() + ": " + why); };
   const auto json = nlohmann::json::parse(read_text(path), nullptr, false);
   if (!json.is_object()) throw fail("is not a JSON object, give a file that `sigmaban_approach tune` wrote");
-  const auto values = json.find("parameters");
-  if (json.value("policy", nlohmann::json()) != "winner2016" || values == json.end() || !values->is_object()) {
+  const auto policy = json.find("policy"), values = json.find("parameters");
+  if (policy == json.end() || *policy != "winner2016" || values == json.end() || !values->is_object()) {
     throw fail("needs \"policy\": \"winner2016\" and an object \"parameters\" with the " +
                std::to_string(Winner2016Parameters::count) + " parameters by name");
   }

@@ -52,6 +52,13 @@ namespace detail {
 
 using Json = nlohmann::ordered_json;
 
+/// Null if the object has no such member. No copy: the copy of a value that is nested deeply overflows the stack.
+inline const Json& member(const Json& object, const char* name) {
+  static const Json nothing;
+  const auto found = object.find(name);
+  return found == object.end() ? nothing : *found;
+}
+
 inline Json to_json(const surefoot::Vec<3>& v) { return Json{v[0], v[1], v[2]}; }
 
 inline Json to_json(const std::vector<JudgedModel>& models) {
@@ -166,11 +173,11 @@ void parameters_from_json(const Fields& root, MotionFile& file) {
     const surefoot::ModelParameter info = M::parameter_info()[at];
     const std::string field = "parameters[" + std::to_string(i) + "]";
     const Json& entry = list[at];
-    if (!entry.is_object() || entry.value("name", Json()) != info.name || entry.value("unit", Json()) != info.unit) {
+    if (!entry.is_object() || member(entry, "name") != info.name || member(entry, "unit") != info.unit) {
       root.fail(field, "the coefficient \"" + std::string(info.name) + "\" in \"" + std::string(info.unit) +
                            "\" is expected here");
     }
-    file.parameters[i] = root.number_of(entry.value("value", Json()), field + ".value", info.low, info.high);
+    file.parameters[i] = root.number_of(member(entry, "value"), field + ".value", info.low, info.high);
   }
   file.model = embedded(M::from_parameters(surefoot::Vec<n>(file.parameters)));
   file.covariance.resize(n, n);
@@ -196,14 +203,14 @@ inline std::vector<JudgedModel> judged_from_json(const Fields& root, const std::
     const auto number = [&](const char* key, double missing) {
       return json.contains(key) ? root.number_of(json[key], field + "." + key, 0, 1e9) : missing;
     };
-    const Json name = json.value("model", Json());
+    const Json& name = member(json, "model");
     if (!name.is_string()) root.fail(field + ".model", "text is expected");
     models.push_back({.model = name.get<std::string>(),
                       .parameters = static_cast<int>(number("parameters", 0)),
                       .position = number("position_m", 0),
                       .position_error = number("position_standard_error_m", NAN),
                       .heading = number("heading_rad", NAN),
-                      .chosen = json.value("chosen", Json(false)) == Json(true)});
+                      .chosen = member(json, "chosen") == Json(true)});
   }
   return models;
 }
@@ -260,7 +267,9 @@ inline std::string motion_file_text(const MotionFile& file) {
 
 /// Throws surefoot::MotionError that names `name` and the field.
 inline MotionFile parse_motion_file(std::string_view text, const std::string& name) {
-  const detail::Json json = detail::Json::parse(text, nullptr, false);
+  // What is nested deeper than anything known is left out: the parser copies values, and deep ones overflow the stack.
+  const auto known = [](int depth, detail::Json::parse_event_t, const detail::Json&) { return depth <= 16; };
+  const detail::Json json = detail::Json::parse(text, known, false);
   if (json.is_discarded()) {
     throw surefoot::MotionError(name + ": this is not JSON; a file that surefoot-calibrate wrote is expected");
   }

@@ -6,6 +6,7 @@
 #include "surefoot/core/error.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/policy.hpp"
+#include "surefoot/core/portable.hpp"
 #include "surefoot/core/problem.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/rollout.hpp"
@@ -180,3 +181,4 @@
 #include "surefoot/solve/rfpi_rollouts.hpp"
 #include "surefoot/solve/rfpi_state.hpp"
 #include "surefoot/solve/visited_states.hpp"
+#include "surefoot/version.hpp"

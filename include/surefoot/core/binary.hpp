@@ -194,8 +194,9 @@ class ByteReader {
  private:
   void need(std::uint64_t count, std::size_t size) const {
     if (count > remaining() / size) {
-      fail("ends too early: " + std::to_string(count) + " items of " + std::to_string(size) + " bytes expected at byte " +
-           std::to_string(position_) + ", but only " + std::to_string(remaining()) + " bytes follow");
+      fail("ends too early: " + std::to_string(count) + " items of " + std::to_string(size) +
+           " bytes expected at byte " + std::to_string(position_) + ", but only " + std::to_string(remaining()) +
+           " bytes follow");
     }
   }
 
@@ -217,11 +218,17 @@ class ByteReader {
   std::size_t position_ = 0;
 };
 
-/// Writes the file aside (path + ".part") and renames it, so that `path` holds the old bytes or the new ones, never half.
+/// Writes the file aside (path + ".part") and renames it, so that `path` holds the old bytes or the new ones, never
+/// half.
 inline void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   std::filesystem::path aside = path;
   aside += ".part";
   std::error_code error;
+  const auto old = std::filesystem::status(path, error);
+  if (std::filesystem::exists(old) && !std::filesystem::is_regular_file(old)) {  // the rename would take its place
+    throw CoreError("file " + path.string() + " is a folder or a device: give the name of a plain file");
+  }
+  error.clear();
   {
     std::ofstream file(aside, std::ios::binary | std::ios::trunc);
     file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
@@ -231,7 +238,8 @@ inline void write_file_atomically(const std::filesystem::path& path, std::span<c
   }
   std::error_code ignored;
   std::filesystem::remove(aside, ignored);
-  throw CoreError("file " + path.string() + " cannot be written: check that its folder exists, is writable and has space" +
+  throw CoreError("file " + path.string() +
+                  " cannot be written: check that its folder exists, is writable and has space" +
                   (error ? " (" + error.message() + ")" : ""));
 }
 

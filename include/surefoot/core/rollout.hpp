@@ -132,7 +132,8 @@ std::vector<double> returns(const P& problem, const F& policy, const RolloutOpti
           run_return(problem, policy, problem.initial_state(start), options.horizon, options.discount, rng.stream(1));
     }
   };
-  if (!executor.run((runs + runs_per_job - 1) / runs_per_job, job, std::move(stop))) {
+  const Results<double> returns{result, runs_per_job};
+  if (!fill(executor, (runs + runs_per_job - 1) / runs_per_job, job, std::move(stop), returns)) {
     throw CoreError("stopped before all runs were done");
   }
   return result;

@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string>
+#include <utility>
 
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rng.hpp"
@@ -19,6 +19,7 @@
 #include "surefoot/forest/extra_trees_options.hpp"
 #include "surefoot/forest/forest.hpp"
 #include "surefoot/forest/leaf.hpp"
+#include "surefoot/forest/trees.hpp"
 #include "surefoot/forest/unexplained.hpp"
 
 namespace surefoot {
@@ -97,9 +98,11 @@ Distilled<Inputs, Outputs, Leaf> distill(const Forest<Inputs, Outputs, Teacher>&
                                  .clamp = options.leaf.clamp};
   const auto grown = map(executor, static_cast<std::size_t>(options.trees), [&](std::size_t tree) {
     const auto points = ask(forest, inputs, options.points, options.mixing, Rng(seed, tree, 0));
-    return train_extra_trees<Leaf>(points, growth, Serial{}, Rng(seed, tree, 1).bits());
+    return detail::grow_forest<Leaf>(points, growth, Serial{}, Rng(seed, tree, 1).bits(), {}).trees;
   });
-  Distilled<Inputs, Outputs, Leaf> result{merge(std::span<const Forest<Inputs, Outputs, Leaf>>(grown)), 0};
+  Trees trees = grown.front();
+  for (std::size_t tree = 1; tree < grown.size(); ++tree) trees.append(grown[tree]);
+  Distilled<Inputs, Outputs, Leaf> result{Forest<Inputs, Outputs, Leaf>(std::move(trees)), 0};
   const auto fresh = ask(forest, inputs, std::max(1000, options.points / 4), options.mixing, Rng(seed, 0, 2));
   result.loss = unexplained(result.forest, fresh);
   return result;

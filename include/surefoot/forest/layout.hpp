@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "surefoot/forest/trees.hpp"
@@ -19,6 +20,8 @@ struct GrownNode {
   std::uint32_t left = 0;     // index of the left child, the right one follows it; 0: this is a leaf
   std::uint32_t count = 0;    // training samples that came here
   std::uint32_t payload = 0;  // of a leaf
+  static constexpr auto fields =
+      std::tuple(&GrownNode::threshold, &GrownNode::input, &GrownNode::left, &GrownNode::count, &GrownNode::payload);
 
   bool is_leaf() const { return left == 0; }
 };

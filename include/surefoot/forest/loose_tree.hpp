@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,7 @@ namespace surefoot::detail {
 struct LooseTree {
   std::vector<GrownNode> nodes;  // payloads do not count here
   std::vector<float> numbers;    // leaf_parameters per node, of inner nodes too
+  static constexpr auto fields = std::tuple(&LooseTree::nodes, &LooseTree::numbers);
 };
 
 /// Tree number `tree` of a forest; inner nodes get zeros as their numbers, and as their count the leaves below them.

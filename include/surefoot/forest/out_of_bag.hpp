@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <stop_token>
+#include <tuple>
 #include <vector>
 
 #include "surefoot/core/executor.hpp"
@@ -54,6 +55,8 @@ struct ErrorSums {
   Eigen::ArrayXd output, output_squared, error_squared;  // outputs about those of the first sample
   double weight = 0;
   Eigen::Index covered = 0;
+  static constexpr auto fields = std::tuple(&ErrorSums::output, &ErrorSums::output_squared, &ErrorSums::error_squared,
+                                            &ErrorSums::weight, &ErrorSums::covered);
 
   explicit ErrorSums(Eigen::Index outputs = 0)
       : output(Eigen::ArrayXd::Zero(outputs)), output_squared(output), error_squared(output) {}

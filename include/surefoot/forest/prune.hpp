@@ -10,6 +10,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -86,6 +87,7 @@ struct Collapse {
   double cost = 0;  // added squared error per leaf saved; never less than that of the step before
   std::uint32_t node = 0;
   std::size_t leaves = 0;  // saved
+  static constexpr auto fields = std::tuple(&Collapse::cost, &Collapse::node, &Collapse::leaves);
 };
 
 /// Works out in what order the inner nodes of one tree become leaves, and with which numbers.

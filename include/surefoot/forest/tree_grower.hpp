@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -49,6 +50,7 @@ using GrowthBuffers = std::array<Records, 2>;
 struct GrownTrees {
   Trees trees;
   std::vector<double> gain;  // by which the splits of each input lowered the outputs' squared errors, in their scale
+  static constexpr auto fields = std::tuple(&GrownTrees::trees, &GrownTrees::gain);
 };
 
 /// The samples that a tree learns from if it draws them with replacement: `use(i)` for each of `count` draws.

@@ -18,6 +18,7 @@
 #include <new>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -125,6 +126,8 @@ struct Trees : TreesShape {
   NodeArray nodes;
   std::vector<std::uint32_t> roots;  // index of each tree's root in `nodes`
   std::vector<float> parameters;     // leaf_parameters per leaf
+  static constexpr auto fields = std::tuple(&TreesShape::inputs, &TreesShape::outputs, &TreesShape::leaf_parameters,
+                                            &TreesShape::leaves, &Trees::nodes, &Trees::roots, &Trees::parameters);
 
   /// Adds the trees of another forest of the same shape behind these.
   void append(const Trees& other) {

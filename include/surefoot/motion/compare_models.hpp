@@ -9,6 +9,7 @@
 #include <numeric>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "surefoot/core/executor.hpp"
@@ -47,6 +48,7 @@ namespace detail {
 /// Squared errors of final positions [m^2] and headings [rad^2] by sequence, each left out when its model was fitted.
 struct HeldoutErrors {
   Eigen::ArrayXd position, heading;
+  static constexpr auto fields = std::tuple(&HeldoutErrors::position, &HeldoutErrors::heading);
 };
 
 template <MotionModel M>
@@ -63,17 +65,23 @@ HeldoutErrors heldout_errors(std::span<const WalkSequence> sequences, const Comp
   const std::vector<std::size_t> order = shuffled_indices(sequences.size(), rng);
   const std::size_t folds = std::min(options.folds, sequences.size());
   const MotionNoise noise = calibrate<M>(sequences, options.predictor.calibration).noise;
-  const auto models = map(executor, folds, [&](std::size_t fold) {
-    std::vector<WalkSequence> fit;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      if (i % folds != fold) fit.push_back(sequences[order[i]]);
+  const auto parts = map(executor, folds, [&](std::size_t fold) {
+    std::vector<WalkSequence> fit, judged;
+    for (std::size_t i = 0; i < order.size(); ++i) (i % folds != fold ? fit : judged).push_back(sequences[order[i]]);
+    const M model = fit_predictor<M>(fit, noise, options.predictor, seed + fold);
+    const auto count = static_cast<Eigen::Index>(judged.size());
+    HeldoutErrors errors{Eigen::ArrayXd(count), Eigen::ArrayXd(count)};
+    for (std::size_t i = 0; i < judged.size(); ++i) {
+      judge_final_pose(model, judged[i], static_cast<Eigen::Index>(i), errors);
     }
-    return fit_predictor<M>(fit, noise, options.predictor, seed + fold);
+    return errors;
   });
   const auto count = static_cast<Eigen::Index>(sequences.size());
   HeldoutErrors errors{Eigen::ArrayXd(count), Eigen::ArrayXd(count)};
   for (std::size_t i = 0; i < order.size(); ++i) {
-    judge_final_pose(models[i % folds], sequences[order[i]], static_cast<Eigen::Index>(order[i]), errors);
+    const auto to = static_cast<Eigen::Index>(order[i]), from = static_cast<Eigen::Index>(i / folds);
+    errors.position[to] = parts[i % folds].position[from];
+    errors.heading[to] = parts[i % folds].heading[from];
   }
   return errors;
 }

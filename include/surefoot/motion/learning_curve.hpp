@@ -13,6 +13,7 @@
 #include <span>
 #include <stop_token>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "surefoot/core/executor.hpp"
@@ -27,7 +28,8 @@ struct LearningCurveOptions {
   std::size_t validation = 5;       // sequences that judge each fit
   std::size_t repetitions = 200;    // random splits
   std::optional<MotionNoise> noise = {};  // that weighs the likelihood; none: calibrated from all sequences
-  std::function<void(std::size_t done)> on_progress = {};  // after each repetition, from any thread, one at a time
+  // After each repetition of this process, from any thread, one at a time.
+  std::function<void(std::size_t done)> on_progress = {};
 };
 
 struct LearningCurve {
@@ -44,6 +46,7 @@ namespace detail {
 struct SplitResult {
   double position = 0;
   Eigen::VectorXd parameters;
+  static constexpr auto fields = std::tuple(&SplitResult::position, &SplitResult::parameters);
 };
 
 }  // namespace detail

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numbers>
 #include <string_view>
+#include <tuple>
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
@@ -51,6 +52,8 @@ struct MotionNoise {
   Vec<3> per_speed = Vec<3>::Zero();         // [m, m, rad]
   Vec<3> per_acceleration = Vec<3>::Zero();  // [m, m, rad]
   Vec<3> scale{0.08, 0.04, 0.4};             // full orders of a cycle [m, m, rad]
+  static constexpr auto fields = std::tuple(&MotionNoise::shape, &MotionNoise::constant, &MotionNoise::per_speed,
+                                            &MotionNoise::per_acceleration, &MotionNoise::scale);
 
   double speed(const Vec<3>& orders) const { return orders.cwiseQuotient(scale).norm(); }
   double acceleration(const Vec<3>& orders, const Vec<3>& previous) const { return speed(orders - previous); }

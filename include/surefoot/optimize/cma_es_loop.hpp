@@ -47,14 +47,15 @@ class CmaEsLoop {
     }
     while (true) {
       if (best_value() <= options_.target) return result(StopReason::target_reached);
-      if (stop_.stop_requested()) return result(StopReason::stop_requested);
+      if (in_any_process(executor_, stop_.stop_requested())) return result(StopReason::stop_requested);
       if (const auto reason = descent_ended()) {
         if (!restart(*reason)) return result(*reason);
       }
       if (search_.evaluations + generation_cost() > options_.max_evaluations) {
         return result(StopReason::max_evaluations);
       }
-      if (search_.evaluations > 0 && seconds() >= options_.max_seconds) return result(StopReason::time_budget);
+      const bool late = search_.evaluations > 0 && seconds() >= options_.max_seconds;
+      if (in_any_process(executor_, late)) return result(StopReason::time_budget);
       if (evaluate()) learn();
     }
   }
@@ -112,10 +113,12 @@ class CmaEsLoop {
     second_half_.resize(count);
     const std::uint64_t repetitions = this->repetitions();
     const Rng rng = Rng(search_.seed, core_.state().descent).stream(noise_stream, core_.state().generation);
-    return executor_.run(
-        count,
+    for (std::size_t i = 0; i < count; ++i) {
+      space_.to_user(candidates.col(static_cast<Eigen::Index>(i)), points_[i]);
+    }
+    return fill(
+        executor_, count,
         [&](std::size_t i) {
-          space_.to_user(candidates.col(static_cast<Eigen::Index>(i)), points_[i]);
           if constexpr (ExactObjective<F>) {
             values_[i] = objective_(points_[i]);
           } else {
@@ -129,7 +132,7 @@ class CmaEsLoop {
             values_[i] = (sums[0] + sums[1]) / static_cast<double>(repetitions);
           }
         },
-        stop_);
+        stop_, Results<double>{values_}, Results<double>{first_half_}, Results<double>{second_half_});
   }
 
   void learn() {
@@ -153,7 +156,7 @@ class CmaEsLoop {
     }
     if (options_.observer) {
       search_.state = core_.state();
-      options_.observer(search_);
+      once(executor_, [&] { options_.observer(search_); });
     }
   }
 

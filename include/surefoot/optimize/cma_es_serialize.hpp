@@ -116,7 +116,7 @@ class FieldReader {
   void operator()(Eigen::MatrixXd& values) {
     const std::uint64_t rows = in_.u64();
     const std::vector<double> list = in_.list<double>();
-    if (rows == 0 || list.size() % rows != 0) in_.fail("holds a matrix that is not rectangular");
+    if (rows == 0 || rows > list.size() || list.size() % rows != 0) in_.fail("holds a matrix that is not rectangular");
     values = Eigen::Map<const Eigen::MatrixXd>(list.data(), static_cast<Eigen::Index>(rows),
                                                static_cast<Eigen::Index>(list.size() / rows));
   }
@@ -147,6 +147,7 @@ inline bool is_sound(const CmaEsSearch& search) {
   const Eigen::Index n = state.dimension(), users = search.start.size();
   const auto square = [n](const Eigen::MatrixXd& m) { return m.rows() == n && m.cols() == n; };
   const auto column = [n](const Eigen::VectorXd& v) { return v.size() == n && v.allFinite(); };
+  const auto population = [](Eigen::Index count) { return count >= 4 && count <= max_population; };
   const auto point = [users](const CmaEsDescent& d) {
     return (d.best.size() == users || d.best.size() == 0) && (d.mean.size() == users || d.mean.size() == 0);
   };
@@ -155,12 +156,12 @@ inline bool is_sound(const CmaEsSearch& search) {
     if (search.box->size() != users) return false;
     free = (search.box->width().array() > 0).count();
   }
-  return n > 0 && n == free && search.start.allFinite() && search.sigma > 0 && state.population >= 4 &&
-         state.population <= max_population && state.descent == search.finished.size() &&
-         search.plan.population == state.population && search.descent.population == state.population &&
-         search.schedule.first_population >= 4 && search.schedule.large_population >= 4 && column(state.mean) &&
-         state.sigma > 0 && state.start_sigma > 0 && square(state.covariance) && square(state.factor) &&
-         column(state.path_sigma) && column(state.path) && state.best_values.size() == state.median_values.size() &&
+  return n > 0 && n == free && search.start.allFinite() && search.sigma > 0 && population(state.population) &&
+         state.descent == search.finished.size() && search.plan.population == state.population &&
+         search.descent.population == state.population && population(search.schedule.first_population) &&
+         population(search.schedule.large_population) && column(state.mean) && state.sigma > 0 &&
+         state.start_sigma > 0 && square(state.covariance) && square(state.factor) && column(state.path_sigma) &&
+         column(state.path) && state.best_values.size() == state.median_values.size() &&
          search.noise_evaluations >= 1 && search.noise_evaluations <= 1e9 && point(search.descent) &&
          std::ranges::all_of(search.finished, point);
 }

@@ -142,7 +142,7 @@ PolicySearchResult<N> policy_search(const P& problem, const MakePolicy& make_pol
   CmaEsOptions refine{.box_sigma = options.refine_sigma};
   refine.max_seconds = std::max(0.0, options.max_seconds - seconds());
   refine.noise = {.evaluations = 2, .max_evaluations = options.max_runs / runs_per_call};
-  if (!stop.stop_requested()) search(refine, options.total_runs - result.runs, 2);
+  if (!in_any_process(executor, stop.stop_requested())) search(refine, options.total_runs - result.runs, 2);
   judge(options.final_runs, stage_seed(3));
   result.value =
       evaluate(problem, make_policy(result.parameters), rollouts(options.final_runs), executor, stage_seed(4));

@@ -23,6 +23,7 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/core/binary.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/problem.hpp"
 #include "surefoot/core/rollout.hpp"
@@ -157,8 +158,13 @@ RfpiResult<P> rfpi(const P& problem, const RfpiOptions& options, const E& execut
   const std::uint64_t fingerprint = detail::rfpi_fingerprint(problem, options, seed, seed_states);
 
   RfpiState<P> state;
-  if (options.resume && std::filesystem::exists(options.checkpoint)) {
-    state = load_checkpoint<P>(options.checkpoint, fingerprint);
+  if (options.resume) {
+    const std::vector<Bytes> found = map(executor, 1, [&](std::size_t) {  // one process reads
+      std::vector<Bytes> file;
+      if (std::filesystem::exists(options.checkpoint)) file.push_back(read_file(options.checkpoint));
+      return file;
+    })[0];
+    if (!found.empty()) state = load_checkpoint<P>(found[0], options.checkpoint, fingerprint);
   }
   for (RfpiProgress& past : state.history) past.share = past.counted_seconds / options.budget.seconds;
   const RfpiProgress resumed = state.history.empty() ? RfpiProgress{} : state.history.back();
@@ -173,9 +179,10 @@ RfpiResult<P> rfpi(const P& problem, const RfpiOptions& options, const E& execut
     return cost;
   };
 
+  const auto stopped = [&] { return in_any_process(executor, limit.token().stop_requested()); };
   RfpiStop reason = RfpiStop::budget;
-  std::optional<Clock::time_point> last_write;
-  double last_work = 0;  // of the last iteration [nominal s]
+  std::optional<Clock::time_point> last_write;  // by the process that writes
+  double last_work = 0;                         // of the last iteration [nominal s]
   bool unsaved = false;
   while (true) {
     if (options.max_iterations > 0 && state.iteration >= options.max_iterations) {
@@ -202,10 +209,10 @@ RfpiResult<P> rfpi(const P& problem, const RfpiOptions& options, const E& execut
         next = detail::improve_by_rollouts(problem, options, state, seed_states, executor, rng, limit.token());
       }
     } catch (const Error&) {  // work that a stop left incomplete
-      if (!limit.token().stop_requested()) throw;
+      if (!stopped()) throw;
     }
-    if (limit.token().stop_requested()) {
-      reason = limit.struck() ? RfpiStop::wall_clock : RfpiStop::requested;
+    if (stopped()) {
+      reason = in_any_process(executor, limit.struck()) ? RfpiStop::wall_clock : RfpiStop::requested;
       break;
     }
     next.history = std::move(state.history);
@@ -228,16 +235,20 @@ RfpiResult<P> rfpi(const P& problem, const RfpiOptions& options, const E& execut
     next.history.push_back(progress);
     state = std::move(next);
     unsaved = true;
-    if (options.on_progress) options.on_progress(progress);
-    const bool due =
-        !last_write || std::chrono::duration<double>(Clock::now() - *last_write).count() >= options.checkpoint_seconds;
-    if (keep_checkpoint && due) {
-      save_checkpoint(options.checkpoint, fingerprint, state);
-      last_write = Clock::now();
-      unsaved = false;
-    }
+    once(executor, [&] {
+      if (options.on_progress) options.on_progress(progress);
+      const bool due = !last_write ||
+                       std::chrono::duration<double>(Clock::now() - *last_write).count() >= options.checkpoint_seconds;
+      if (keep_checkpoint && due) {
+        save_checkpoint(options.checkpoint, fingerprint, state);
+        last_write = Clock::now();
+        unsaved = false;
+      }
+    });
   }
-  if (keep_checkpoint && unsaved) save_checkpoint(options.checkpoint, fingerprint, state);
+  once(executor, [&] {
+    if (keep_checkpoint && unsaved) save_checkpoint(options.checkpoint, fingerprint, state);
+  });
   if (state.best_policy.empty()) throw SolveError("rfpi: stopped before there was a first policy: give it more time");
 
   // The last policy learnt most and the best one was lucky: new runs decide between the two, others tell the cost.

@@ -177,8 +177,8 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& options, con
   constexpr std::size_t states_per_job = 16;
   const std::size_t jobs = (samples.size() + states_per_job - 1) / states_per_job;
   std::vector<RfpiWork> done(jobs);
-  const bool complete = executor.run(
-      jobs,
+  const bool complete = fill(
+      executor, jobs,
       [&](std::size_t job) {
         const std::size_t begin = job * states_per_job;
         const std::size_t size = std::min(samples.size(), begin + states_per_job) - begin;
@@ -201,7 +201,8 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& options, con
                         values, noise.stream(size), done[job]);
         }
       },
-      stop);
+      stop, Results<typename P::Action>{samples.actions, states_per_job},
+      Results<double>{samples.values, states_per_job}, Results<RfpiWork>{done});
   if (!complete) return after;
   for (const RfpiWork& part : done) {
     after.work.steps += part.steps;

@@ -90,7 +90,9 @@ RfpiState<P> improve_by_rollouts(const P& problem, const RfpiOptions& options, c
                                       options.horizon, options.discount, rng.stream(3, i), done[i]);
     done[i].lookups = done[i].steps * (before.policy.empty() ? 0 : before.policy.trees());
   };
-  if (!executor.run(samples.size(), value_of, stop)) return after;
+  const bool valued =
+      fill(executor, samples.size(), value_of, stop, Results<double>{samples.values}, Results<RfpiWork>{done});
+  if (!valued) return after;
   collect_work();
   const auto value =
       fit_value<ConstantLeaf>(problem, samples, {}, options.value_forest, executor, rng.stream(4), after.work, stop);
@@ -101,7 +103,9 @@ RfpiState<P> improve_by_rollouts(const P& problem, const RfpiOptions& options, c
     done[i].steps = look.transitions();
     done[i].lookups = done[i].steps * value.trees();
   };
-  if (!executor.run(samples.size(), action_of, stop)) return after;
+  const bool complete =
+      fill(executor, samples.size(), action_of, stop, Results<Action>{samples.actions}, Results<RfpiWork>{done});
+  if (!complete) return after;
   collect_work();
   after.policy = fit_policy(problem, samples, {}, options.policy_forest, executor, rng.stream(6), after.work, stop);
   after.iteration = before.iteration + 1;

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -37,6 +38,7 @@ struct RfpiWork {
   std::uint64_t steps = 0;    // simulated transitions
   std::uint64_t lookups = 0;  // trees descended
   std::uint64_t fits = 0;     // samples * trees * inputs fitted, levels of the trees included
+  static constexpr auto fields = std::tuple(&RfpiWork::steps, &RfpiWork::lookups, &RfpiWork::fits);
 
   /// Nominal seconds of one core.
   double seconds(const Budget& budget) const {
@@ -149,10 +151,11 @@ void save_checkpoint(const std::filesystem::path& path, std::uint64_t fingerprin
   write_file_atomically(path, out.bytes());
 }
 
-/// Throws SolveError if the checkpoint belongs to another run, CoreError or ForestError if it is damaged.
+/// From the bytes of the checkpoint file `path`. Throws SolveError if it belongs to another run, CoreError or
+/// ForestError if it is damaged.
 template <Problem P>
-RfpiState<P> load_checkpoint(const std::filesystem::path& path, std::uint64_t fingerprint) {
-  const Bytes bytes = read_file(path);
+RfpiState<P> load_checkpoint(std::span<const std::byte> bytes, const std::filesystem::path& path,
+                             std::uint64_t fingerprint) {
   ByteReader in(bytes, "checkpoint " + path.string());
   const auto magic = in.raw(detail::checkpoint_magic.size());
   if (!std::ranges::equal(magic, std::as_bytes(std::span(detail::checkpoint_magic))))
@@ -164,7 +167,9 @@ RfpiState<P> load_checkpoint(const std::filesystem::path& path, std::uint64_t fi
                      "resume with the same ones, or remove it to start anew");
   }
   RfpiState<P> state;
-  state.iteration = static_cast<int>(in.u32());
+  const std::uint32_t iteration = in.u32();
+  if (iteration > 1'000'000'000U) in.fail("is damaged: no run has " + std::to_string(iteration) + " iterations");
+  state.iteration = static_cast<int>(iteration);
   state.work.steps = in.u64();
   state.work.lookups = in.u64();
   state.work.fits = in.u64();
@@ -187,6 +192,11 @@ RfpiState<P> load_checkpoint(const std::filesystem::path& path, std::uint64_t fi
   in.expect_checksum();
   in.expect_end();
   return state;
+}
+
+template <Problem P>
+RfpiState<P> load_checkpoint(const std::filesystem::path& path, std::uint64_t fingerprint) {
+  return load_checkpoint<P>(read_file(path), path, fingerprint);
 }
 
 }  // namespace surefoot

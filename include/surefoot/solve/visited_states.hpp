@@ -30,8 +30,8 @@ std::vector<typename P::State> visited_states(const P& problem, Acting act, std:
   const std::size_t jobs = (runs + runs_per_job - 1) / runs_per_job;
   std::vector<std::vector<State>> visited(jobs);
   const Box<P::action_dim> box = problem.action_box();
-  executor.run(
-      jobs,
+  fill(
+      executor, jobs,
       [&](std::size_t job) {
         struct Run {
           std::size_t index;
@@ -72,7 +72,7 @@ std::vector<typename P::State> visited_states(const P& problem, Acting act, std:
         }
         for (const auto& path : paths) visited[job].insert(visited[job].end(), path.begin(), path.end());
       },
-      std::move(stop));
+      std::move(stop), Results<std::vector<State>>{visited});
   std::vector<State> all;
   for (const auto& part : visited) all.insert(all.end(), part.begin(), part.end());
   return all;
