@@ -1,8 +1,16 @@
-# The README quotes examples/minimal/main.cpp word for word: cmake -D source=REPOSITORY -P check_readme.cmake
+# The README quotes examples word for word, from their first #include on, or what stands between their [readme] markers:
+# cmake -D source=REPOSITORY -P check_readme.cmake
 file(READ ${source}/README.md readme)
-file(READ ${source}/examples/minimal/main.cpp example)
-string(REGEX REPLACE ".*// \\[readme\\]\n(.*)// \\[readme\\].*" "\\1" quoted "${example}")
-string(FIND "${readme}" "${quoted}" position)
-if(quoted STREQUAL example OR position EQUAL -1)
-  message(FATAL_ERROR "README.md must hold the lines of examples/minimal/main.cpp between its [readme] markers")
-endif()
+foreach(name minimal diagnose_own)
+  file(READ ${source}/examples/${name}/main.cpp quoted)
+  if(quoted MATCHES "// \\[readme\\]\n(.*)// \\[readme\\]")
+    set(quoted "${CMAKE_MATCH_1}")
+  else()
+    string(FIND "${quoted}" "#include" first)
+    string(SUBSTRING "${quoted}" ${first} -1 quoted)
+  endif()
+  string(FIND "${readme}" "${quoted}" position)
+  if(position EQUAL -1)
+    message(FATAL_ERROR "README.md must hold the lines of examples/${name}/main.cpp as they are")
+  endif()
+endforeach()

@@ -1,0 +1,27 @@
+# Everything that states the version of surefoot states the same: cmake -D source=REPOSITORY -P check_version.cmake
+cmake_minimum_required(VERSION 3.25)
+
+# The first match of `pattern` in `file` must be `wanted` (several groups are joined by dots).
+function(expect file pattern)
+  file(READ ${source}/${file} text)
+  if(NOT text MATCHES "${pattern}")
+    message(FATAL_ERROR "version: ${file} states none where expected: ${pattern}")
+  endif()
+  set(found ${CMAKE_MATCH_1})
+  if(CMAKE_MATCH_COUNT EQUAL 3)
+    set(found ${CMAKE_MATCH_1}.${CMAKE_MATCH_2}.${CMAKE_MATCH_3})
+  endif()
+  if(NOT DEFINED wanted)
+    set(wanted ${found} PARENT_SCOPE)
+  elseif(NOT found STREQUAL wanted)
+    message(FATAL_ERROR "version: ${file} states ${found}, but CMakeLists.txt ${wanted}")
+  endif()
+endfunction()
+
+set(digits "([0-9]+)")
+expect(CMakeLists.txt "project\\(surefoot VERSION ([0-9.]+) ")
+expect(include/surefoot/version.hpp "_MAJOR ${digits}\n#define SUREFOOT_VERSION_MINOR ${digits}\n#define SUREFOOT_VERSION_PATCH ${digits}\n")
+expect(CHANGELOG.md "\n## ([0-9.]+)")
+expect(packaging/vcpkg/surefoot/vcpkg.json "\"version\": \"([0-9.]+)\"")
+expect(packaging/conan/conanfile.py "\n    version = \"([0-9.]+)\"")
+message(STATUS "version ${wanted} everywhere")
