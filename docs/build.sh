@@ -12,6 +12,7 @@ site=${SUREFOOT_SITE_DIR:-build/site}
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
+python3 docs/tools/quotes.py --check
 mkdocs build --quiet --site-dir "$scratch/site"
 version=$(sed -n 's/^project(surefoot VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 {

@@ -1,11 +1,11 @@
 # Who may include whom: cmake -D include=<the include folder> -P check_layers.cmake
 # Fails when a header includes another area than listed here, anything but Eigen and the standard library outside,
-# the umbrella, or (through others) itself; and when the umbrella misses a header of an area that needs nothing more.
+# the header of an area, or (through others) itself; and when the header of an area misses one of its headers.
 # Remarks on headers over 300 lines.
 cmake_minimum_required(VERSION 3.25)
 
 set(areas core forest optimize motion solve diagnose mpi)
-set(optional_areas mpi)  # not in the umbrella
+set(optional_areas mpi)  # has no header of the area, and is not in surefoot.hpp
 set(core_may core)
 set(forest_may core forest)
 set(optimize_may core optimize)
@@ -22,8 +22,10 @@ macro(complain text)
 endmacro()
 
 file(GLOB_RECURSE headers RELATIVE ${include} ${include}/surefoot/*.hpp)
-set(umbrella surefoot/surefoot.hpp)
-list(REMOVE_ITEM headers ${umbrella} surefoot/version.hpp)
+list(REMOVE_ITEM headers surefoot/surefoot.hpp surefoot/version.hpp)
+foreach(area IN LISTS areas)
+  list(REMOVE_ITEM headers surefoot/${area}.hpp)
+endforeach()
 
 foreach(header IN LISTS headers)
   file(STRINGS ${include}/${header} lines REGEX "^[ \t]*#[ \t]*include")
@@ -86,17 +88,36 @@ if(left)
   complain("headers that include one another in a circle, or need one that does: ${text}")
 endif()
 
-file(STRINGS ${include}/${umbrella} lines REGEX "^#include")
-foreach(header IN LISTS headers)
-  string(REGEX MATCH "^surefoot/([^/]+)/" _ ${header})
-  if(CMAKE_MATCH_1 IN_LIST optional_areas)
-    if("#include \"${header}\"" IN_LIST lines)
-      complain("${umbrella} may not include ${header}")
+# surefoot/AREA.hpp: the headers of that area and of those it may use; surefoot/surefoot.hpp: those of all areas.
+function(expect_includes header)
+  file(STRINGS ${include}/${header} lines REGEX "^#include")
+  set(wanted ${ARGN})
+  list(TRANSFORM wanted PREPEND "#include \"")
+  list(TRANSFORM wanted APPEND "\"")
+  foreach(line IN LISTS wanted lines)
+    if(NOT line IN_LIST lines)
+      set(complaints ${complaints} "${header} has no ${line}")
+    elseif(NOT line IN_LIST wanted)
+      set(complaints ${complaints} "${header} may not have ${line}")
     endif()
-  elseif(NOT "#include \"${header}\"" IN_LIST lines)
-    complain("${umbrella} does not include ${header}")
-  endif()
+  endforeach()
+  set(complaints ${complaints} PARENT_SCOPE)
+endfunction()
+
+set(all surefoot/version.hpp)
+list(REMOVE_ITEM areas ${optional_areas})
+foreach(area IN LISTS areas)
+  set(wanted ${headers})
+  list(FILTER wanted INCLUDE REGEX "^surefoot/${area}/")
+  foreach(used IN LISTS ${area}_may)
+    if(NOT used STREQUAL area)
+      list(APPEND wanted surefoot/${used}.hpp)
+    endif()
+  endforeach()
+  expect_includes(surefoot/${area}.hpp ${wanted})
+  list(APPEND all surefoot/${area}.hpp)
 endforeach()
+expect_includes(surefoot/surefoot.hpp ${all})
 
 if(complaints)
   list(JOIN complaints "\n  " text)

@@ -1,7 +1,7 @@
 // The cost of standing still, and of heading for the middle, on a line where every metre away costs one per step.
 #include <cstdio>
 
-#include "surefoot/surefoot.hpp"
+#include "surefoot/core.hpp"
 
 struct Line {
   static constexpr int state_dim = 1, action_dim = 1;

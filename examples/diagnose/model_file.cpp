@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <sstream>
 
+#include "../common/utf8.hpp"
 #include "model_entries.hpp"
 #include "surefoot/core/binary.hpp"
 #include "toml_table.hpp"
@@ -115,6 +116,11 @@ ModelFile parse_model_file(std::string_view text, const std::string& file) {
     throw surefoot::DiagnoseError(file + ": the file has more than " + std::to_string(most_brackets) +
                                   " opening brackets or " + std::to_string(most_points) +
                                   " points; no model needs as many, simplify it");
+  }
+  if (const std::size_t at = example::first_not_utf8(text);
+      at < text.size()) {  // the parser reads past the end of such strings
+    throw surefoot::DiagnoseError(file + ", line " + std::to_string(example::line_of(text, at)) +
+                                  ": a byte that is no UTF-8 text; save the file with the encoding UTF-8");
   }
   toml::value root;
   try {

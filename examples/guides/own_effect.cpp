@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/surefoot.hpp"
+#include "surefoot/diagnose.hpp"
 
 using namespace surefoot;
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/surefoot.hpp"
+#include "surefoot/forest.hpp"
 
 using namespace surefoot;
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/surefoot.hpp"
+#include "surefoot/solve.hpp"
 
 using namespace surefoot;
 
@@ -56,8 +56,13 @@ int main() {
   // [evaluate]
 
   // [solve]
+  const auto tell = [](const RfpiProgress& progress) {
+    std::printf("iteration %2d, cost %6.2f, best %6.2f\n", progress.iteration, progress.cost, progress.best_cost);
+    std::fflush(stdout);
+  };
   const RfpiOptions options{.budget = {.seconds = 4},  // counted work of one core: the same result on any machine
-                            .horizon = 100};
+                            .horizon = 100,            // transitions of a simulated run, here 5 s
+                            .on_progress = tell};      // left out: silence
   const auto result = rfpi(cart, options, threads, /*seed*/ 1);
   const Estimate learnt = evaluate(cart, result.policy, trials, threads, /*seed*/ 1);
   std::printf("cost: %.1f without control, %.2f by hand, %.2f learnt (+- %.2f)\n", -without.mean, -tuned.mean,
@@ -71,7 +76,7 @@ int main() {
 
   // [keep]
   save_policy("cart.policy", result.policy);  // for load_policy(cart, "cart.policy")
-  const std::string c_code = export_c(result.policy.forest(), {.function = "cart_force"});
+  const std::string c_code = export_c(result.policy, {.function = "cart_force"});
   std::ofstream("cart_force.c") << c_code;  // void cart_force(const double in[2], double out[1])
   // [keep]
   return complaints.empty() && learnt.mean > without.mean && gain.low() > 0 ? 0 : 1;

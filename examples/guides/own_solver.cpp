@@ -11,7 +11,7 @@
 #include <stop_token>
 #include <utility>
 
-#include "surefoot/surefoot.hpp"
+#include "surefoot/solve.hpp"
 
 using namespace surefoot;
 

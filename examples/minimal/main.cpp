@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "surefoot/surefoot.hpp"
+#include "surefoot/solve.hpp"
 
 struct Pendulum {
   static constexpr int state_dim = 2, action_dim = 1, feature_dim = 3;

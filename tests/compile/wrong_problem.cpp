@@ -38,6 +38,12 @@ struct Mine {
 #else
   State initial_state() const { return State::Zero(); }
 #endif
+#if defined(FEATURES)
+  static constexpr int feature_dim = FEATURES;
+#endif
+#if defined(FEATURES) || defined(WRONG_features)
+  surefoot::Vec<3> features(const State& state) const { return {state[0], state[1], 1}; }
+#endif
 #if defined(WRONG_step) && WRONG_step == 1  // without Rng
   surefoot::Step<State> step(const State& state, const Action&) const { return {state, 0, false}; }
 #elif defined(WRONG_step) && WRONG_step == 2  // not const

@@ -276,15 +276,17 @@ struct FeaturesChanging : Good {
   mutable std::atomic<int> calls = 0;
   Vec<1> features(const State&) const { return Vec<1>(static_cast<double>(++calls)); }
 };
-struct FeaturesOfOtherSize : Good {
-  static constexpr int feature_dim = 2;
-  Vec<3> features(const State&) const { return Vec<3>::Zero(); }
+struct FeaturesWithoutSize : Good {
+  template <class S>
+  Vec<3> features(const S&) const {
+    return Vec<3>::Zero();
+  }
 };
 
 TEST_CASE("features that are not finite, not repeatable or ignored are found") {
   complains_only(FeaturesNotFinite{}, "features() gave a number that is not finite");
   complains_only(FeaturesChanging{}, "features() gave two values for one state");
-  complains_only(FeaturesOfOtherSize{}, "features() is ignored");
+  complains_only(FeaturesWithoutSize{}, "features() is ignored");
 }
 
 TEST_CASE("impossible options are refused") {

@@ -111,6 +111,11 @@ TEST_CASE("text that is no TOML is refused with its line") {
   check_refused(" ", "the key 'schema' is missing");
 }
 
+TEST_CASE("text that is no UTF-8 is refused with its line") {
+  CHECK_THROWS_WITH_AS(parse_model_file("# in degrees\nname = '20 \260C'\n", "model.toml"),
+                       doctest::Contains("model.toml, line 2: a byte that is no UTF-8 text"), surefoot::DiagnoseError);
+}
+
 TEST_CASE("an unknown key is refused, and the nearest known one proposed") {
   check_refused("speling = 1\n" + servo_model, "line 1: unknown key 'speling'");
   check_refused(with(servo_model, "noise = 0.001", "nose = 0.001"), "unknown key 'nose'; did you mean 'noise'?");

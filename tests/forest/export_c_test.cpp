@@ -9,6 +9,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/binary.hpp"
@@ -212,6 +213,29 @@ TEST_CASE("a wrapper can prepare the inputs and finish the outputs") {
   REQUIRE(out.size() == 2);
   CHECK(out[0] == forest.predict(x)[0]);
   CHECK(out[1] == std::min(1.0, forest.predict(x)[0]));
+}
+
+TEST_CASE("outputs are kept in bounds") {
+  if (!have_c_compiler()) return;
+  const auto forest = train_extra_trees(toy::sample(toy::Cliff{}, 500, 1), {}, Serial{}, 1);
+  Vec<5> x;
+  x << 0.5, 0.25, -0.25, 0.5, 0;
+  const double value = forest.predict(x)[0];
+  const std::vector<double> in(x.begin(), x.end());
+  const auto bounded = [&](double low, double high, ExportCOptions options) {
+    options.low = {low};
+    options.high = {high};
+    return run_c(export_c(forest, options), "surefoot_forest", in, 5, 1)[0];
+  };
+  for (const CDescent descent : {CDescent::tables, CDescent::branches}) {
+    CHECK(bounded(value - 1, value + 1, {.descent = descent}) == value);
+    CHECK(bounded(value + 0.1, value + 1, {.descent = descent}) == value + 0.1);
+    CHECK(bounded(value - 1, value - 0.1, {.descent = descent}) == value - 0.1);
+  }
+  for (const auto& [low, high] : std::vector<std::pair<std::vector<double>, std::vector<double>>>{
+           {{0}, {}}, {{}, {0}}, {{0, 0}, {1, 1}}, {{1}, {0}}, {{0}, {INFINITY}}, {{NAN}, {0}}}) {
+    CHECK_THROWS_WITH_AS(export_c(forest, {.low = low, .high = high}), doctest::Contains("low and high"), ForestError);
+  }
 }
 
 TEST_CASE("the C file is compact, as text even more") {

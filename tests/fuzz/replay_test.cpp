@@ -159,6 +159,12 @@ TEST_CASE("values nested as deeply as a file can hold are refused before the sta
   CHECK_NOTHROW(fuzz::model(input_of(keys.substr(0, 10'001) + " = 1\n")));
 }
 
+TEST_CASE("strings of a model file that are no UTF-8") {
+  CHECK_NOTHROW(fuzz::model(input_of("sx ='\373,?\377x ='\373,?\377\0\354")));
+  CHECK_NOTHROW(fuzz::model(input_of("a = '20 \260C'\n")));
+  CHECK_NOTHROW(fuzz::model(input_of("a = '''\n\260'''\nb = \"\260\"\nc = \"\"\"\260\"\"\"\n")));
+}
+
 TEST_CASE("pieces of a file stand in a message cut short and on one line") {
   CHECK_NOTHROW(fuzz::joints(input_of("{\"no\\njoint " + std::string(2000, 'x') + "\": {}}")));
   CHECK_NOTHROW(fuzz::reference(input_of("phase," + std::string(2000, 'x') + "\n")));

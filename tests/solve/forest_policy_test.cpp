@@ -19,6 +19,7 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/policy.hpp"
 #include "surefoot/forest/extra_trees.hpp"
+#include "surefoot/solve/export_policy.hpp"
 #include "tests/solve/temporary_file.hpp"
 #include "tests/support/cart_pole.hpp"
 #include "tests/support/double_integrator.hpp"
@@ -91,6 +92,16 @@ TEST_CASE("actions are the forest's, clamped to the action box") {
   }
   CHECK(inside > 50);
   CHECK(inside < 950);
+}
+
+TEST_CASE("a policy in C keeps its action inside the action box") {
+  const auto policy = wild_policy(Pendulum{});
+  const ExportCOptions named{.function = "torque"};
+  ExportCOptions bounded = named;
+  bounded.low = {-2};
+  bounded.high = {2};
+  CHECK(export_c(policy, named) == export_c(policy.forest(), bounded));
+  CHECK(export_c(policy, named) != export_c(policy.forest(), named));
 }
 
 TEST_CASE("an action costs no allocation") {

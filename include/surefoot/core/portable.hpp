@@ -30,7 +30,8 @@ concept PlainValue = std::is_arithmetic_v<T> || std::is_enum_v<T> || (std::is_cl
 
 // An Eigen matrix or array that owns its numbers.
 template <class T>
-concept DenseMatrix = std::same_as<T, typename T::PlainObject> && std::is_arithmetic_v<typename T::Scalar>;
+concept DenseMatrix = std::derived_from<T, typename T::PlainObject> && sizeof(T) == sizeof(typename T::PlainObject) &&
+                      std::is_arithmetic_v<typename T::Scalar>;
 
 // std::vector, std::string. Not std::vector<bool>, which has no data().
 template <class T>

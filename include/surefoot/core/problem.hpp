@@ -20,6 +20,28 @@ struct Step {
   bool terminal = false;  // true: the run ends here and nothing follows
 };
 
+/// A problem that offers a second description of its states for regression: angles as points on the circle, a ball in
+/// Cartesian coordinates. `static constexpr int feature_dim; Vec<feature_dim> features(const State&) const`.
+template <class P>
+concept HasFeatures = requires(const P& problem, const typename P::State& state) {
+  requires P::feature_dim > 0;
+  { problem.features(state) } -> std::same_as<Vec<P::feature_dim>>;
+};
+
+/// False for a type whose `feature_dim` and `features` do not fit together, or of which one is missing.
+template <class P>
+concept FeaturesFit = HasFeatures<P> || !(requires { P::feature_dim; } || requires { &P::features; });
+
+/// A vector of N numbers: Vec<N> itself, or a type of one's own that derives from it to give the numbers names, without
+/// data of its own:
+///
+///   struct Boat : surefoot::Vec<2> {
+///     using surefoot::Vec<2>::Vec;  // its constructors
+///     double distance() const { return (*this)[0]; }  // [m]
+///   };
+template <class T, int N>
+concept VecLike = std::derived_from<T, Vec<N>> && sizeof(T) == sizeof(Vec<N>) && std::convertible_to<Vec<N>, T>;
+
 /// A CSA-MDP as a black box. The smallest conforming struct:
 ///
 ///   struct Integrator {
@@ -42,12 +64,13 @@ concept Problem =
     requires(const P& problem, const typename P::State& state, const typename P::Action& action, Rng& rng) {
       requires P::state_dim > 0;
       requires P::action_dim > 0;
-      requires std::same_as<typename P::State, Vec<P::state_dim>>;
-      requires std::same_as<typename P::Action, Vec<P::action_dim>>;
+      requires VecLike<typename P::State, P::state_dim>;
+      requires VecLike<typename P::Action, P::action_dim>;
       { problem.state_box() } -> std::same_as<Box<P::state_dim>>;
       { problem.action_box() } -> std::same_as<Box<P::action_dim>>;
       { problem.initial_state(rng) } -> std::same_as<typename P::State>;
       { problem.step(state, action, rng) } -> std::same_as<Step<typename P::State>>;
+      requires FeaturesFit<P>;
     };
 
 /// Deliberately empty: naming a member of it is how explain_problem() and explain_policy() speak through the compiler.
@@ -68,10 +91,10 @@ auto explain_problem() {
     return Incomplete<P>::state_dim;  // static constexpr int state_dim: above 0
   } else if constexpr (!requires { requires P::action_dim > 0; }) {
     return Incomplete<P>::action_dim;  // static constexpr int action_dim: above 0
-  } else if constexpr (!requires { requires std::same_as<typename P::State, Vec<P::state_dim>>; }) {
-    return Incomplete<P>::State;  // using State = surefoot::Vec<state_dim>
-  } else if constexpr (!requires { requires std::same_as<typename P::Action, Vec<P::action_dim>>; }) {
-    return Incomplete<P>::Action;  // using Action = surefoot::Vec<action_dim>
+  } else if constexpr (!requires { requires VecLike<typename P::State, P::state_dim>; }) {
+    return Incomplete<P>::State;  // using State = surefoot::Vec<state_dim>, or a type that derives from it
+  } else if constexpr (!requires { requires VecLike<typename P::Action, P::action_dim>; }) {
+    return Incomplete<P>::Action;  // using Action = surefoot::Vec<action_dim>, or a type that derives from it
   } else if constexpr (!requires(const P& p) {
                          { p.state_box() } -> std::same_as<Box<P::state_dim>>;
                        }) {
@@ -84,18 +107,12 @@ auto explain_problem() {
                          { p.initial_state(r) } -> std::same_as<typename P::State>;
                        }) {
     return Incomplete<P>::initial_state;  // State initial_state(surefoot::Rng&) const
+  } else if constexpr (!FeaturesFit<P>) {
+    return Incomplete<P>::features;  // feature_dim and Vec<feature_dim> features(const State&) const, or neither
   } else {
     return Incomplete<P>::step;  // surefoot::Step<State> step(const State&, const Action&, surefoot::Rng&) const
   }
 }
-
-/// A problem that offers a second description of its states for regression: angles as points on the circle, a ball in
-/// Cartesian coordinates. `static constexpr int feature_dim; Vec<feature_dim> features(const State&) const`.
-template <class P>
-concept HasFeatures = requires(const P& problem, const typename P::State& state) {
-  requires P::feature_dim > 0;
-  { problem.features(state) } -> std::same_as<Vec<P::feature_dim>>;
-};
 
 /// Number of inputs of a regression over this problem's states.
 template <class P>

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 #include <cctype>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -35,7 +36,7 @@ enum class CDescent {
 struct ExportCOptions {
   std::string function = "surefoot_forest";  // void FUNCTION(const double in[inputs], double out[outputs])
   CTable table = CTable::integers;
-  std::string wrapper = {};  // C code put behind the function, to call it: features before, clamping after; the
+  std::string wrapper = {};  // C code put behind the function, to call it: features before, units after; the
                              // function is then static
   CDescent descent = CDescent::tables;
   // int32, int16: void FUNCTION(const intN_t in[inputs], double out[outputs]), and intN_t FUNCTION_input(int input,
@@ -43,6 +44,7 @@ struct ExportCOptions {
   CThreshold thresholds = CThreshold::float32;
   std::vector<double> largest_inputs = {};  // whole numbers: sizes up to which inputs are told apart; empty: up to the
                                             // thresholds' (linear leaves may need more)
+  std::vector<double> low = {}, high = {};  // bounds that each output is kept in; empty: outputs as the forest has them
 };
 
 /// A leaf model that knows how to write itself in C.
@@ -68,6 +70,18 @@ inline void check_c_name(const std::string& name) {
   if (name.empty() || !std::all_of(name.begin(), name.end(), letter) ||
       std::isdigit(static_cast<unsigned char>(name[0])) != 0) {
     throw ForestError("ExportCOptions: function must be a name in C, got \"" + name + "\"");
+  }
+}
+
+/// Throws unless there are no bounds, or a lower and an upper one for each output.
+inline void check_c_bounds(const ExportCOptions& options, std::size_t outputs) {
+  bool right = options.low.size() == options.high.size() && (options.low.empty() || options.low.size() == outputs);
+  for (std::size_t i = 0; right && i < options.low.size(); ++i) {
+    right = std::isfinite(options.low[i]) && std::isfinite(options.high[i]) && options.low[i] <= options.high[i];
+  }
+  if (!right) {
+    throw ForestError("ExportCOptions: low and high must be empty or hold " + std::to_string(outputs) +
+                      " finite numbers each, one per output, low not above high");
   }
 }
 
@@ -181,9 +195,22 @@ class CWriter {
     code += "  for (o = 0; o < " + outputs_ + "; ++o) out[o] = 0;\n" + "  for (tree = 0; tree < " + trees_ +
             "; ++tree) {\n" + (options_.descent == CDescent::tables ? table_descent() : branch_descent()) +
             indented(leaf_code_, "    ") + "\n" + "  }\n" + "  for (o = 0; o < " + outputs_ +
-            "; ++o) out[o] *= " + digits(1.0 / static_cast<double>(tables_.trees.size())) + ";\n" + "#undef number\n" +
-            "}\n";
+            "; ++o) out[o] *= " + digits(1.0 / static_cast<double>(tables_.trees.size())) + ";\n" + bounds() +
+            "#undef number\n" + "}\n";
     return code;
+  }
+
+  std::string bounds() const {
+    if (options_.low.empty()) return {};
+    const auto list = [](const std::vector<double>& values) {
+      std::string text;
+      for (const double value : values) text += (text.empty() ? "{" : ", ") + digits(value);
+      return text + "}";
+    };
+    return "  for (o = 0; o < " + outputs_ + "; ++o) {\n" + "    static const double low[" + outputs_ +
+           "] = " + list(options_.low) + ";\n" + "    static const double high[" + outputs_ +
+           "] = " + list(options_.high) + ";\n" + "    if (out[o] < low[o]) out[o] = low[o];\n" +
+           "    if (out[o] > high[o]) out[o] = high[o];\n" + "  }\n";
   }
 
   std::string table_descent() const {
@@ -221,6 +248,7 @@ template <int Inputs, int Outputs, CLeafModel Leaf>
 std::string export_c(const Forest<Inputs, Outputs, Leaf>& forest, const ExportCOptions& options = {}) {
   detail::check_c_name(options.function);
   if (forest.empty()) throw ForestError("export_c: the forest is empty, train or load it first");
+  detail::check_c_bounds(options, static_cast<std::size_t>(forest.outputs()));
   return detail::CWriter(forest.raw(), Leaf::tag, Leaf::c_code(forest.inputs(), forest.outputs()), options).code();
 }
 

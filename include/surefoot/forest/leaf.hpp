@@ -149,9 +149,9 @@ struct LinearLeaf {
         high = std::max(high, samples.output(i)[o]);
       }
       for (int k = 0; k < inputs; ++k) p[k] = static_cast<float>(slopes(k, o));
-      double offset = mean[inputs + o];
-      for (int k = 0; k < inputs; ++k) offset -= static_cast<double>(p[k]) * mean[k];
-      p[inputs] = static_cast<float>(offset);
+      double constant = mean[inputs + o];
+      for (int k = 0; k < inputs; ++k) constant -= static_cast<double>(p[k]) * mean[k];
+      p[inputs] = static_cast<float>(constant);
       const bool usable = std::all_of(p, p + inputs + 1, [](float v) { return std::isfinite(v); });
       if (!usable) {
         std::fill(p, p + inputs, 0.0F);

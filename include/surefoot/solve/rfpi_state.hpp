@@ -87,7 +87,7 @@ std::vector<Vector> read_vectors(ByteReader& in) {
   if (count > in.remaining() / 8 / dims) in.fail("ends too early");
   in.words(numbers, static_cast<std::size_t>(count * dims));
   std::vector<Vector> vectors(static_cast<std::size_t>(count));
-  for (std::size_t i = 0; i < vectors.size(); ++i) vectors[i] = Eigen::Map<const Vector>(numbers.data() + i * dims);
+  for (std::size_t i = 0; i < vectors.size(); ++i) std::copy_n(numbers.data() + i * dims, dims, vectors[i].data());
   return vectors;
 }
 

@@ -24,7 +24,7 @@ void go_on(const CmaEsSearch& search) {
 }  // namespace
 
 void fuzz::search(Input input) {
-  constexpr Eigen::Index too_many = 10'000;  // candidates of a generation, or numbers of them, to go on with
+  constexpr Eigen::Index too_many = 1000;  // candidates of a generation, or numbers of them, to go on with
   for (const Bytes& bytes : both_ways(input)) {
     CmaEsSearch search;
     if (!accepted<CoreError>([&] { search = load_cma_es_search(bytes, "bytes"); })) continue;

@@ -1,0 +1,78 @@
+"""Writes quotes of compiled files and tables of options into the pages, so that they read the same everywhere.
+
+    python3 docs/tools/quotes.py           brings docs/*.md up to date
+    python3 docs/tools/quotes.py --check   names the pages that are not, and exits with 1
+
+Between such a comment and the line <!-- end --> stands what it asks for:
+
+    <!-- [quote: name](../examples/guides/own_problem.cpp) -->   the lines between the two lines "// [name]" of that file
+    <!-- [quote](../examples/minimal/main.cpp) -->               the whole file
+    <!-- [options: RfpiOptions](../include/surefoot/...) -->     the fields of that struct: name, type, unit, default, meaning
+    <!-- [fields: Diagnosis](../include/surefoot/...) -->        the same without defaults
+"""
+
+import pathlib
+import re
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import options_table  # noqa: E402
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+QUOTE = re.compile(r"^(<!-- \[(quote|options|fields)(?:: ([^\]]+))?\]\((?:\.\./)+([^)#]+)\) -->\n)(.*?)^<!-- end -->$", re.M | re.S)
+LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".c": "c", ".toml": "toml", ".sh": "sh", ".json": "json", ".txt": "cmake"}
+
+
+class Fault(Exception):
+    pass
+
+
+def quoted(path, name):
+    lines = path.read_text(encoding="utf-8").splitlines()
+    if name:
+        mark = f"// [{name}]"
+        at = [i for i, line in enumerate(lines) if line.strip() == mark]
+        if len(at) != 2:
+            raise Fault(f"{path}: needs two lines '{mark}' around what is quoted, has {len(at)}")
+        lines = lines[at[0] + 1 : at[1]]
+    lines = [line for line in lines if not re.fullmatch(r"\s*// \[\w+\]", line)]
+    indent = min(len(line) - len(line.lstrip()) for line in lines if line.strip())
+    return "\n".join(line[indent:] for line in lines).strip("\n")
+
+
+def fresh(found):
+    comment, what, name, target, _ = found.groups()
+    path = ROOT / target
+    if not path.is_file():
+        raise Fault(f"there is no file {target}, wanted by '{comment.strip()}'")
+    if what == "quote":
+        text = f"```{LANGUAGES.get(path.suffix, 'text')}\n{quoted(path, name)}\n```"
+    else:
+        text = options_table.markdown(path, name, defaults=what == "options")
+    return f"{comment}\n{text}\n\n<!-- end -->"
+
+
+def main(check):
+    stale = 0
+    for page in sorted((ROOT / "docs").glob("*.md")):
+        text = page.read_text(encoding="utf-8")
+        begun = len(re.findall(r"^<!-- \[(?:quote|options|fields)", text, re.M))
+        if begun != len(QUOTE.findall(text)):
+            raise Fault(f"docs/{page.name}: a quote has no line <!-- end -->, or its comment is not [quote: name](../file)")
+        now = QUOTE.sub(fresh, text)
+        if now == text:
+            continue
+        stale += 1
+        if check:
+            print(f"docs/{page.name} does not quote what is there now: python3 docs/tools/quotes.py", file=sys.stderr)
+        else:
+            page.write_text(now, encoding="utf-8")
+            print(f"docs/{page.name}")
+    return 1 if check and stale else 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main(sys.argv[1:] == ["--check"]))
+    except (Fault, options_table.NoSuchStruct) as fault:
+        sys.exit(f"quotes.py: {fault}")

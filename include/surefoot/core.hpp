@@ -1,0 +1,15 @@
+// All of surefoot/core: problems, policies, executors, random numbers, rollouts.
+#pragma once
+
+#include "surefoot/core/binary.hpp"
+#include "surefoot/core/box.hpp"
+#include "surefoot/core/error.hpp"
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/policy.hpp"
+#include "surefoot/core/portable.hpp"
+#include "surefoot/core/problem.hpp"
+#include "surefoot/core/rng.hpp"
+#include "surefoot/core/rollout.hpp"
+#include "surefoot/core/transition.hpp"
+#include "surefoot/core/validate.hpp"
+#include "surefoot/core/vec.hpp"
