@@ -74,10 +74,22 @@ int main() {
   std::printf("better than by hand by %.2f +- %.2f\n", gain.mean, gain.half_width());
   // [compare]
 
+  // [look]
+  struct FromTheLeft : Cart {
+    State initial_state(Rng&) const { return {-0.8, 0}; }
+  };
+  const Estimate left = evaluate(FromTheLeft{}, result.policy, trials, threads, /*seed*/ 1);
+  const Trajectory<Cart> path = trajectory(cart, result.policy, Cart::State(-0.8, 0), 100, Rng(1));
+  std::printf("from the left: %.2f +- %.2f; one such run is at %.3f m after 2 s, at %.3f m after 5 s\n", -left.mean,
+              left.half_width(), path.states[40][0], path.states.back()[0]);
+  // [look]
+
   // [keep]
-  save_policy("cart.policy", result.policy);  // for load_policy(cart, "cart.policy")
+  save_policy("cart.policy", result.policy);
+  const auto loaded = load_policy(cart, "cart.policy");  // called like result.policy, and gives the same bits
   const std::string c_code = export_c(result.policy, {.function = "cart_force"});
   std::ofstream("cart_force.c") << c_code;  // void cart_force(const double in[2], double out[1])
   // [keep]
-  return complaints.empty() && learnt.mean > without.mean && gain.low() > 0 ? 0 : 1;
+  const bool same = loaded(Cart::State(0.3, 0.1)) == result.policy(Cart::State(0.3, 0.1));
+  return same && complaints.empty() && learnt.mean > without.mean && gain.low() > 0 ? 0 : 1;
 }

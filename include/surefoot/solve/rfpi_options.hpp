@@ -105,7 +105,7 @@ struct RfpiProgress {
   double counted_seconds = 0;  // work so far, as the budget counts it
   double share = 0;            // of the budget that is used, 0..1
   std::size_t states = 0;      // samples of this iteration
-  double cost = 0;             // minus the mean return of the newest policy over the evaluation runs
+  double cost = 0;             // minus the mean return, not discounted, of the newest policy over the evaluation runs
   double best_cost = 0;        // of the best policy so far
   std::size_t leaves = 0;      // of the newest policy
 };
