@@ -46,6 +46,8 @@ done
 
 source cmake/packages.sh
 require_packages "${build_packages[@]}" openmpi-bin
+# As root too, as in a container.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 cmake --preset release -B "$build" -D SUREFOOT_TESTS=OFF -D SUREFOOT_EXAMPLES=ON -D SUREFOOT_BENCHMARKS=ON
 cmake --build "$build" --target surefoot-diagnose concealed_programs
 
