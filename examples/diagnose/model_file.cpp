@@ -117,8 +117,8 @@ ModelFile parse_model_file(std::string_view text, const std::string& file) {
                                   " opening brackets or " + std::to_string(most_points) +
                                   " points; no model needs as many, simplify it");
   }
-  if (const std::size_t at = example::first_not_utf8(text);
-      at < text.size()) {  // the parser reads past the end of such strings
+  // The parser reads past the end of strings that are no UTF-8.
+  if (const std::size_t at = example::first_not_utf8(text); at < text.size()) {
     throw surefoot::DiagnoseError(file + ", line " + std::to_string(example::line_of(text, at)) +
                                   ": a byte that is no UTF-8 text; save the file with the encoding UTF-8");
   }
