@@ -14,6 +14,7 @@ set(solve_may core forest optimize solve)
 set(diagnose_may core forest optimize motion diagnose)
 set(mpi_may core mpi)
 set(system_headers immintrin.h)  # intrinsics, behind the compiler's own macros
+set(core_system_headers fcntl.h unistd.h)  # to flush files to the disk, behind the system's own macros
 set(mpi_system_headers mpi.h pthread.h unistd.h)
 
 set(complaints)

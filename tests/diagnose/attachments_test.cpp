@@ -40,6 +40,34 @@ std::vector<std::string> places(const Rig& rig, const Effect& effect) {
   return result;
 }
 
+// Two stores that empty into each other.
+struct TwoTanks {
+  using State = Vec<2>;
+  using Input = Vec<1>;
+  using Output = Vec<2>;
+
+  SimulatorInfo info() const {
+    return {.name = "two tanks",
+            .states = {{"upper", "m"}, {"lower", "m"}},
+            .inputs = {{"pump", "1"}},
+            .outputs = {{"upper_m", "m"}, {"lower_m", "m"}},
+            .parameters = {{"hole", "1/s", 1, 0.2, 5}}};
+  }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& p) const {
+    return {u[0] - p[0] * x[0], p[0] * (x[0] - x[1])};
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return x; }
+};
+
+TEST_CASE("what spills over spills into any other store") {
+  const Effect spilling = effects::overflow_spill();
+  REQUIRE(spilling.spills);
+  const Rig rig = make_rig(TwoTanks{}, {toys::blank_recording(TwoTanks{}.info(), 100, 0.1)});
+  const auto found = attachments(rig, {spilling}, {true});
+  REQUIRE(found.size() == 2);
+  for (const AttachedEffect& one : found) CHECK(one.other == 1 - one.at);
+}
+
 TEST_CASE("a store can leak and overflow, a place and an angle cannot") {
   const Rig tank = make_rig(toys::LeakyTank{}, {toys::blank_recording(toys::LeakyTank{}.info(), 100, 0.1)});
   const Rig car = make_rig(Car{}, {toys::blank_recording(Car{}.info(), 100, 0.1)});

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -187,6 +189,83 @@ TEST_CASE("an effect of the user's own is found among the others") {
   REQUIRE_FALSE(diagnosis.effects.empty());
   CHECK(diagnosis.effects.front().name == "magnet");
   CHECK(diagnosis.effects.front().parameters.front().value == doctest::Approx(0.4).epsilon(0.1));
+}
+
+TEST_CASE("one long recording is cut into parts, of which some judge") {
+  const auto recordings =
+      toys::servo_recordings(machine({{.name = "coulomb_friction", .attached_to = "omega", .values = {0.15}}}), 1, 15);
+  const Diagnosis diagnosis = diagnose(ServoPendulum{}, recordings, {}, surefoot::Threads{}, 15);
+  CHECK(diagnosis.fit.size() + diagnosis.test.size() == 5);
+  CHECK_FALSE(diagnosis.test.empty());
+  CHECK(diagnosis.verdict == Verdict::missing_physics);
+  REQUIRE_FALSE(diagnosis.effects.empty());
+  CHECK(diagnosis.effects.front().name == "coulomb_friction");
+  CHECK(diagnosis.test_after < 0.7 * diagnosis.test_before);
+}
+
+TEST_CASE("one short recording is refused") {
+  auto recordings = toys::servo_recordings(machine({}), 1, 16);
+  recordings.front() =
+      surefoot::part_of(recordings.front(), 0, 50, recordings.front().initial, recordings.front().initial_scale);
+  CHECK_THROWS_WITH_AS(
+      diagnose(ServoPendulum{}, recordings, {}, surefoot::Serial{}, 1),
+      "one short recording is not enough to tell what is missing: record at least two, or one of 60 rows",
+      surefoot::DiagnoseError);
+}
+
+TEST_CASE("only effects that the user asks for are looked for") {
+  const auto recordings =
+      toys::servo_recordings(machine({{.name = "coulomb_friction", .attached_to = "omega", .values = {0.15}}}), 6, 17);
+  DiagnoseOptions options;
+  options.effects = {"dead_zone", "input_delay"};
+  const Diagnosis diagnosis = diagnose(ServoPendulum{}, recordings, options, surefoot::Threads{}, 17);
+  for (const auto& effect : diagnosis.effects) {
+    CAPTURE(effect.name);
+    CHECK((effect.name == "dead_zone" || effect.name == "input_delay"));
+  }
+  options.effects = {"dead_zone", "coulomb_friction"};
+  const Diagnosis right = diagnose(ServoPendulum{}, recordings, options, surefoot::Threads{}, 17);
+  REQUIRE(right.effects.size() == 1);
+  CHECK(right.effects.front().name == "coulomb_friction");
+}
+
+TEST_CASE("effects that make it worse on the test recordings are dropped, and it is said") {
+  const auto rubbing = machine({{.name = "coulomb_friction", .attached_to = "omega", .values = {0.15}}});
+  auto recordings = toys::servo_recordings(rubbing, 7, 18);
+  const auto smooth = toys::servo_recordings(machine({}), 7, 18);
+  recordings[5] = smooth[5];
+  recordings[6] = smooth[6];
+  DiagnoseOptions options;
+  options.test = {"recording 5", "recording 6"};
+  const Diagnosis diagnosis = diagnose(ServoPendulum{}, recordings, options, surefoot::Threads{}, 18);
+  CHECK(diagnosis.effects.empty());
+  CHECK(diagnosis.test_after >= diagnosis.test_before);
+  CHECK(std::any_of(diagnosis.remarks.begin(), diagnosis.remarks.end(), [](const surefoot::Remark& remark) {
+    return remark.text.find("did not lower the error on the test recordings") != std::string::npos;
+  }));
+}
+
+TEST_CASE("a model that yields no numbers is refused") {
+  struct Hopeless : ServoPendulum {
+    State derivative(const State& /*x*/, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const {
+      return State::Constant(std::nan(""));
+    }
+  };
+  CHECK_THROWS_WITH_AS(diagnose(Hopeless{}, toys::servo_recordings(machine({}), 4, 19), {}, surefoot::Serial{}, 1),
+                       doctest::Contains("the model cannot be simulated over the recordings with any parameters"),
+                       surefoot::DiagnoseError);
+}
+
+TEST_CASE("a start that was read off a sensor is known as well as that sensor reads") {
+  auto recordings = toys::servo_recordings(machine({}), 3, 20);
+  for (const std::size_t r : {0U, 1U}) recordings[r].initial[0] = recordings[r].outputs(0, 0);
+  surefoot::Rig rig = surefoot::make_rig(ServoPendulum{}, recordings);
+  surefoot::detail::free_measured_starts(rig, {0, 1, 2});
+  for (const std::size_t r : {0U, 1U}) {
+    CHECK(rig.recordings[r].initial_scale[0] == doctest::Approx(0.001).epsilon(0.5));
+    CHECK(rig.recordings[r].initial_scale[1] == 0);
+  }
+  CHECK(rig.recordings[2].initial_scale[0] == 0);  // known from elsewhere
 }
 
 TEST_CASE("recordings that do not fit the simulator are refused by name") {

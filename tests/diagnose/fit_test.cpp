@@ -9,6 +9,7 @@
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/attachments.hpp"
+#include "surefoot/diagnose/calibrate.hpp"
 #include "surefoot/diagnose/effects.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 #include "tests/support/servo_pendulum.hpp"
@@ -129,6 +130,17 @@ TEST_CASE("bounds hold, and what is not free stays") {
   const Fit around = fit(rig, leaking, problem, serially());
   CHECK(around.hypothesis.values[0][0] == 0.01);
   CHECK(around.hypothesis.parameters != nominal.parameters);
+}
+
+TEST_CASE("the coarsest integration that is good enough is chosen, and a fine one where none is") {
+  const Rig rig = make_rig(LeakyTank{}, tanks(1, 100, 1, 1));
+  const Hypothesis nominal = nominal_hypothesis(rig);
+  const Integration rough = choose_integration(rig, nominal, Eigen::VectorXd::Constant(1, 0.1), {}, 0);
+  CHECK(rough.order == 2);
+  CHECK(rough.step == doctest::Approx(1.5 * 0.05));
+  const Integration fine = choose_integration(rig, nominal, Eigen::VectorXd::Zero(1), {}, 0);
+  CHECK(fine.order == 4);
+  CHECK(fine.step == doctest::Approx(0.05 / 8));
 }
 
 TEST_CASE("a few wild samples hardly move a fit") {

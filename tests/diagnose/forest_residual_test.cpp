@@ -100,6 +100,10 @@ TEST_CASE("a model corrects a recording by itself; what it asks for must be ther
   CHECK_THROWS_WITH_AS(corrected(make_rig(SlidingBlock{}, {alone}), 0, run, model),
                        "block 3: the residual model asks for 'load', which neither the simulator nor the recording has",
                        DiagnoseError);
+  ResidualModel of_one_output = model;
+  of_one_output.outputs.pop_back();
+  CHECK_THROWS_WITH_AS(corrected(b.rig, 3, b.runs[3], of_one_output),
+                       "the residual model has 1 outputs, the simulator has 2", DiagnoseError);
 }
 
 ForestResidual offered(std::vector<Recording> recordings, Verdict verdict) {

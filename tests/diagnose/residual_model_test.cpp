@@ -38,6 +38,15 @@ TEST_CASE("a residual model comes back from its file as it was") {
   CHECK(same.forest == model.forest);
 }
 
+TEST_CASE("a residual model whose forest has other inputs than it names is refused") {
+  const File file;
+  ResidualModel model = some_model();
+  model.features.pop_back();
+  save_residual_model(model, file.path);
+  CHECK_THROWS_WITH_AS(load_residual_model(file.path), doctest::Contains("a forest that does not go with its names"),
+                       Error);
+}
+
 TEST_CASE("a residual model with any byte changed or cut off is refused") {
   const File file;
   save_residual_model(some_model(), file.path);

@@ -76,6 +76,8 @@ TEST_CASE("recordings that do not fit are refused by name, channel and row") {
         "tank 1: no output was ever measured");
   CHECK(refusal([](Recording& r) { r.outputs.conservativeResize(2, 400); }).find("outputs must have") !=
         std::string::npos);
+  CHECK(refusal([](Recording& r) { r.inputs.conservativeResize(1, 399); }).find("inputs must have") !=
+        std::string::npos);
   CHECK(refusal([](Recording& r) { r.initial.setZero(3); }).find("initial state") != std::string::npos);
   CHECK(refusal([](Recording& r) { r.time.conservativeResize(1); }).find("at least two rows") != std::string::npos);
 }

@@ -52,6 +52,52 @@ TEST_CASE("two effects on one signal act in the order in which they are named") 
         doctest::Approx(0.2 * (1 - std::exp(-recording.time[99]))).epsilon(1e-5));
 }
 
+// A level of which each row loses a tenth, and gains the input.
+struct RowTank {
+  using State = Vec<1>;
+  using Input = Vec<1>;
+  using Output = Vec<1>;
+
+  SimulatorInfo info() const {
+    return {.name = "tank by rows",
+            .kind = SimulatorKind::map,
+            .states = {{"level", "m"}},
+            .inputs = {{"inflow", "m"}},
+            .outputs = {{"level_m", "m"}},
+            .parameters = {{"kept", "1", 0.9, 0.1, 1}}};
+  }
+  State next(const State& x, const Input& u, const Eigen::VectorXd& p) const { return p[0] * x + u; }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return x; }
+};
+static_assert(Simulator<RowTank>);
+
+TEST_CASE("on a map an effect on a state adds to the next value, and sees the change of this row") {
+  const Effect half_more{.name = "half_more", .place = Place::state, .force = [](const Moment& m, Values, Values) {
+                           return 0.5 * m.rate;
+                         }};
+  Recording recording = toys::blank_recording(RowTank{}.info(), 30, 1);
+  for (Eigen::Index row = 0; row < 30; ++row) recording.inputs(0, row) = row % 7 == 0 ? 1.0 : 0.1;
+  const SimulatedRun run =
+      simulate_augmented(RowTank{}, machine({}, {{"half_more", "level", {}, {}, {}}}), recording, {half_more});
+  double level = 0;
+  for (Eigen::Index row = 0; row < 30; ++row) {
+    CHECK(run.outputs(0, row) == doctest::Approx(level));
+    level += 1.5 * (recording.inputs(0, row) - 0.1 * level);
+  }
+}
+
+TEST_CASE("effects with more hidden states than there is room for are refused") {
+  const Effect forgetful{
+      .name = "forgetful", .place = Place::input, .memories = 9, .signal = [](const Moment& m, Values, Values) {
+        return m.value;
+      }};
+  const NamedEffect one{"forgetful", "valve", {}, {}, {}};
+  CHECK_NOTHROW(simulate_augmented(LeakyTank{}, machine({}, {one, one}), tank_recording(1, 10), {forgetful}));
+  CHECK_THROWS_WITH_AS(
+      simulate_augmented(LeakyTank{}, machine({}, {one, one, one}), tank_recording(1, 10), {forgetful}),
+      "at most 24 hidden states of effects can be simulated at once", DiagnoseError);
+}
+
 TEST_CASE("a planar effect changes each step as seen from the body") {
   const auto recordings = toys::walk_recordings([](Pose2 moved, Pose2) { return moved; }, false, 1, 5);
   const SimulatedRun run = simulate_augmented(

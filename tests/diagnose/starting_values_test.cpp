@@ -35,6 +35,22 @@ TEST_CASE("a level that readings never pass is where an overflow starts") {
   for (const Eigen::VectorXd& start : starts) CHECK(start[0] == doctest::Approx(2.0));
 }
 
+TEST_CASE("what starts at a share of the largest value does so where the velocity's position went") {
+  Recording recording = toys::blank_recording(toys::SlidingBlock{}.info(), 100, 0.1);
+  recording.inputs.setConstant(0.5);
+  Rig rig = make_rig(toys::SlidingBlock{}, {recording});
+  const Hypothesis nominal = nominal_hypothesis(rig);
+  const auto runs = simulate_all(rig, nominal, {0}, {}, serially());
+  rig.sizes = measure_sizes(rig, nominal, {0}, runs);
+  const Effect wall{.name = "wall",
+                    .place = Place::velocity,
+                    .parameters = {{.name = "where", .measure = {.position = 1}, .starts = {0.8}, .of_peak = true}},
+                    .force = [](const Moment& m, Values p, Values) { return m.position > p[0] ? -1.0 : 0.0; }};
+  const auto starts = detail::starts_of(rig, attached(rig, wall), observed(rig));
+  REQUIRE(starts.size() == 1);
+  CHECK(starts[0][0] == doctest::Approx(0.8 * runs[0].states.row(0).maxCoeff()));
+}
+
 TEST_CASE("times start as shares of 200 rows, fast or slow") {
   for (const double interval : {0.001, 2.0}) {
     const Rig rig = tank(interval);

@@ -4,6 +4,7 @@
 #include <sys/mount.h>
 #include <sys/stat.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -25,6 +26,19 @@ using surefoot::read_file;
 namespace {
 
 namespace fs = std::filesystem;
+
+/// What the disk answers when it is asked to flush a file: 0, or an error number.
+std::function<int()> at_flush = [] { return 0; };
+
+}  // namespace
+
+/// In place of the system's, in this program.
+extern "C" int fsync(int) {
+  errno = at_flush();
+  return errno == 0 ? 0 : -1;
+}
+
+namespace {
 
 struct Writer {
   std::string name;
@@ -155,6 +169,32 @@ TEST_CASE("a disk that is really full") {
     return;
   }
   CHECK(ending.exit_code == 0);
+}
+
+TEST_CASE("the new file is on the disk as a whole before it takes the place of the old one") {
+  for (const Writer& writer : writers()) {
+    CAPTURE(writer.name);
+    const Folder folder;
+    const fs::path path = folder / "file";
+    writer.write(path);
+    const Bytes new_file = read_file(path);
+    surefoot::write_file_atomically(path, std::span<const std::byte>(old_file));
+    int flushes = 0, answer = EIO;
+    at_flush = [&] {
+      ++flushes;
+      CHECK(read_file(path) == old_file);
+      CHECK(read_file(folder / "file.part") == new_file);
+      return answer;
+    };
+    CHECK(tries_in_vain(writer, path) == 0);  // a disk that fails only then
+    CHECK(read_file(path) == old_file);
+    CHECK(folder.files() == 1);
+    answer = EINVAL;  // nothing to flush to, like a pipe
+    writer.write(path);
+    CHECK(read_file(path) == new_file);
+    CHECK(flushes == 2);
+    at_flush = [] { return 0; };
+  }
 }
 
 TEST_CASE("a folder that is not there, is a file, or must not be written to") {

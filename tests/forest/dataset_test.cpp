@@ -21,6 +21,10 @@ TEST_CASE("a complete data set passes, with and without weights") {
 TEST_CASE("an empty data set is refused") {
   CHECK_THROWS_AS(check(Dataset<5, 1>{}), ForestError);
   CHECK_THROWS_AS(check(Dataset<Eigen::Dynamic, Eigen::Dynamic>{}), ForestError);
+  Dataset<Eigen::Dynamic, Eigen::Dynamic> nothing_to_learn;
+  nothing_to_learn.inputs.resize(2, 10);
+  nothing_to_learn.outputs.resize(0, 10);
+  CHECK_THROWS_WITH_AS(check(nothing_to_learn), doctest::Contains("one output row"), ForestError);
 }
 
 TEST_CASE("sizes that disagree are named") {

@@ -16,25 +16,32 @@
 namespace surefoot {
 namespace {
 
-constexpr std::size_t inputs = 5;
-using Query = std::array<float, inputs>;
+// Every input of many matters: with the slot behind them more keys than one register of AVX2 holds.
+struct Waves {
+  static constexpr int inputs = 15, outputs = 1;
+  Vec<1> operator()(const Vec<15>& x) const { return Vec<1>((3 * x.array() + x[0]).sin().sum()); }
+};
 
-std::vector<Query> hard_queries(const Trees& trees, std::size_t count) {
+template <std::size_t Inputs>
+using Query = std::array<float, Inputs>;
+
+template <std::size_t Inputs>
+std::vector<Query<Inputs>> hard_queries(const Trees& trees, std::size_t count) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   Rng rng(2);
-  std::vector<Query> queries(count);
-  for (Query& x : queries) {
+  std::vector<Query<Inputs>> queries(count);
+  for (Query<Inputs>& x : queries) {
     for (float& value : x) value = static_cast<float>(rng.uniform(-1.2, 1.2));
     switch (rng.below(8)) {  // half of them as they are
       case 0:
-        x[rng.below(inputs)] = nan;
+        x[rng.below(Inputs)] = nan;
         break;
       case 1:
-        x[rng.below(inputs)] = rng.below(2) == 0 ? infinity : -infinity;
+        x[rng.below(Inputs)] = rng.below(2) == 0 ? infinity : -infinity;
         break;
       case 2:
-        x[rng.below(inputs)] = rng.below(2) == 0 ? 0.0F : -0.0F;
+        x[rng.below(Inputs)] = rng.below(2) == 0 ? 0.0F : -0.0F;
         break;
       case 3: {  // on a threshold
         const Node node = trees.nodes[rng.below(static_cast<std::uint32_t>(trees.nodes.size()))];
@@ -53,7 +60,8 @@ std::vector<Query> hard_queries(const Trees& trees, std::size_t count) {
 }
 
 // One comparison of floats after the other.
-std::uint32_t payload_by_hand(const Trees& trees, std::size_t tree, const Query& x) {
+template <std::size_t Inputs>
+std::uint32_t payload_by_hand(const Trees& trees, std::size_t tree, const Query<Inputs>& x) {
   std::size_t at = trees.roots[tree];
   while (!trees.nodes[at].is_leaf()) {
     const Node node = trees.nodes[at];
@@ -62,13 +70,14 @@ std::uint32_t payload_by_hand(const Trees& trees, std::size_t tree, const Query&
   return trees.nodes[at].payload();
 }
 
-TEST_CASE("all ways down a tree end in the same leaf") {
+TEST_CASE_TEMPLATE("all ways down a tree end in the same leaf", Function, toy::Cliff, Waves) {
+  constexpr std::size_t inputs = Function::inputs;
   for (const int min_leaf : {1, 20, 2000}) {  // of the last each tree is one leaf
     CAPTURE(min_leaf);
     const auto forest =
-        train_extra_trees(toy::sample(toy::Cliff{}, 2000, 1), {.trees = 70, .min_leaf = min_leaf}, Serial{}, 1);
+        train_extra_trees(toy::sample(Function{}, 2000, 1), {.trees = 70, .min_leaf = min_leaf}, Serial{}, 1);
     const Trees& trees = forest.raw();
-    const std::vector<Query> queries = hard_queries(trees, detail::max_batch);
+    const std::vector<Query<inputs>> queries = hard_queries<inputs>(trees, detail::max_batch);
     std::vector<std::vector<std::uint32_t>> expected(queries.size(), std::vector<std::uint32_t>(70));
     for (std::size_t i = 0; i < queries.size(); ++i) {
       for (std::size_t t = 0; t < 70; ++t) expected[i][t] = payload_by_hand(trees, t, queries[i]);

@@ -134,6 +134,15 @@ TEST_CASE("a linear leaf of samples that say nothing about slopes stays finite a
   CHECK(predict<LinearLeaf>(fit<LinearLeaf>(same_inputs), 1, 1)[1] == doctest::Approx(2));
 }
 
+TEST_CASE("a linear leaf whose slopes are no floats predicts the mean") {
+  const Table steep{{0, 0, 0, 1, 1e-30F, 0, 1e20F, 3}};  // 1e50 per unit of the first input
+  const auto parameters = fit<LinearLeaf>(steep);
+  for (const float p : parameters) CHECK(std::isfinite(p));
+  const auto y = predict<LinearLeaf>(parameters, 1, 0);
+  CHECK(y[0] == doctest::Approx(5e19));
+  CHECK(y[1] == 3);  // 2e30 per unit is a float
+}
+
 TEST_CASE("leaves add to what is there") {
   const std::array<float, 2> x{};
   std::array<double, 2> sum{100, 200};

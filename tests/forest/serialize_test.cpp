@@ -262,6 +262,15 @@ TEST_CASE("a header that lies about sizes is refused before memory is asked for"
   }
 }
 
+TEST_CASE_TEMPLATE("a header that counts more leaves than there are is refused", Leaf, ConstantLeaf, LinearLeaf) {
+  const auto forest = small_forest<Leaf>();
+  Bytes bytes = bytes_of(forest);
+  put_u64(bytes, 48, forest.raw().leaves + 1);
+  bytes.insert(bytes.end(), sizeof(float) * forest.raw().leaf_parameters, std::byte{0});  // its numbers, too
+  sign(bytes);
+  CHECK_THROWS_WITH_AS(from_bytes<Laws<Leaf>>(bytes), doctest::Contains("leaves, its header says"), ForestError);
+}
+
 TEST_CASE("nodes that lead astray are refused") {
   const auto forest = small_forest<ConstantLeaf>();
   const Bytes good = bytes_of(forest);

@@ -38,6 +38,24 @@ TEST_CASE("a curve does not depend on the number of threads") {
   CHECK(one.coefficients == three.coefficients);
 }
 
+TEST_CASE("a curve that is asked for no counts has them all, and reports its repetitions") {
+  const auto walks = toys::final_poses(toys::walks(toys::paper_walk(), toys::paper_noise(), 8, 6));
+  std::vector<std::size_t> reported;
+  surefoot::LearningCurveOptions options{.repetitions = 4};
+  options.on_progress = [&](std::size_t done) { reported.push_back(done); };
+  const std::span<const WalkSequence> all(walks);
+  const auto curve = surefoot::learning_curve<ProportionalCorrection>(all, options, surefoot::Threads(2), 1);
+  CHECK(curve.counts == std::vector<std::size_t>{1, 2, 3});  // 5 judge
+  CHECK(curve.position.size() == 3);
+  CHECK(reported == std::vector<std::size_t>{1, 2, 3, 4});
+  for (const std::size_t bad : {0U, 4U}) {
+    options.counts = {1, bad};
+    CHECK_THROWS_WITH_AS(surefoot::learning_curve<ProportionalCorrection>(all, options, surefoot::Serial{}, 1),
+                         "LearningCurveOptions: counts must be from 1 to all but those that judge",
+                         surefoot::MotionError);
+  }
+}
+
 TEST_CASE("too few sequences for a curve are refused") {
   const auto walks = toys::final_poses(toys::walks(toys::paper_walk(), toys::paper_noise(), 5, 3));
   CHECK_THROWS_WITH_AS(

@@ -12,6 +12,8 @@ TEST_CASE("part of the last order is carried out in the next cycle") {
   p[18] = 3;    // dt per last dx
   const auto model = PreviousOrderCorrection::from_parameters(p);
   CHECK(model.displacement({1, 10, 100}, {7, 0, 0}).vec() == Vec<3>{2 + 3.5, 0, 21});
+  CHECK(model.present().matrix()(0, 1) == 2);
+  CHECK(model.previous()(0, 0) == 0.5);
   CHECK(PreviousOrderCorrection::parameter_info()[18].name == "dt per last dx");
   CHECK(PreviousOrderCorrection::parameter_info()[18].unit == "rad/m");
 }

@@ -18,6 +18,13 @@
 
 #include "surefoot/core/error.hpp"
 
+#if defined(__unix__) || defined(__APPLE__)
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#endif
+
 namespace surefoot {
 
 using Bytes = std::vector<std::byte>;
@@ -218,8 +225,25 @@ class ByteReader {
   std::size_t position_ = 0;
 };
 
-/// Writes the file aside (path + ".part") and renames it, so that `path` holds the old bytes or the new ones, never
-/// half.
+namespace detail {
+
+/// Waits until the bytes of a file are on the disk, not only on their way there (fsync; nothing where POSIX is
+/// missing).
+inline std::error_code flush_to_disk([[maybe_unused]] const std::filesystem::path& path) {
+  std::error_code error;
+#if defined(__unix__) || defined(__APPLE__)
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool flushed = file >= 0 && (::fsync(file) == 0 || errno == EINVAL);  // EINVAL: no disk behind it
+  if (!flushed) error.assign(errno, std::generic_category());
+  if (file >= 0) ::close(file);
+#endif
+  return error;
+}
+
+}  // namespace detail
+
+/// Writes the file aside (path + ".part"), flushes it to the disk and renames it, so that `path` holds the old bytes or
+/// the new ones, never half, whether the program dies or the power goes. Waits for the disk, some milliseconds.
 inline void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   std::filesystem::path aside = path;
   aside += ".part";
@@ -233,7 +257,8 @@ inline void write_file_atomically(const std::filesystem::path& path, std::span<c
     std::ofstream file(aside, std::ios::binary | std::ios::trunc);
     file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     file.close();
-    if (file) std::filesystem::rename(aside, path, error);
+    if (file) error = detail::flush_to_disk(aside);
+    if (file && !error) std::filesystem::rename(aside, path, error);
     if (file && !error) return;
   }
   std::error_code ignored;

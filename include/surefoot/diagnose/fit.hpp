@@ -96,8 +96,6 @@ class FitFunctions {
     return all;
   }
 
-  Eigen::MatrixXd jacobian(const Eigen::VectorXd& z) const { return jacobian(z, residuals(z)); }
-
   /// Forward differences from z, where the residuals are `here`. A free initial state moves the residuals of its own
   /// recording only.
   Eigen::MatrixXd jacobian(const Eigen::VectorXd& z, const Eigen::VectorXd& here) const {

@@ -70,11 +70,11 @@ struct CTables {
 };
 
 /// "{1,2,3}", broken into lines; C has no empty tables, so an empty one gets a 0.
-template <class Integer>
-std::string c_list(std::span<const Integer> items, const char* format) {
+template <class Number>
+std::string c_list(std::span<const Number> items, const char* format) {
   std::string list = "{";
   std::size_t line = 0;
-  for (const Integer item : items) {
+  for (const Number item : items) {
     char text[32];
     const int length = std::snprintf(text, sizeof text, format, item);
     if (line + static_cast<std::size_t>(length) > 118) {

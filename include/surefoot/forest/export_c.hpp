@@ -128,17 +128,15 @@ class CWriter {
 
   // How inputs become whole numbers.
   std::string input_code() const {
-    std::string scales;
-    for (const double scale : scales_) scales += (scales.empty() ? "{" : ", ") + digits(scale);
     const std::string limit = digits(c_limit(options_.thresholds));
     const std::string head = whole_ + " " + name_ + "_input(int input, double value)";
     return "/* Inputs are whole numbers: value * scale of the input, rounded. Where a value is farther than 1 / scale\n"
            "   from all thresholds, the leaves are those of the forest in floats. */\n"
            "static const double " +
-           name_ + "_scales[" + inputs_ + "] = " + scales + "};\n\n" + head + ";\n" + head + " {\n" +
-           "  const double scaled = value * " + name_ + "_scales[input];\n" + "  if (!(scaled > -" + limit +
-           ")) return -" + limit + ";\n" + "  if (scaled >= " + limit + ") return " + limit + ";\n" + "  return (" +
-           whole_ + ")(scaled < 0 ? scaled - 0.5 : scaled + 0.5);\n" + "}\n\n";
+           name_ + "_scales[" + inputs_ + "] = " + c_list(std::span<const double>(scales_), "%.17g") + ";\n\n" + head +
+           ";\n" + head + " {\n" + "  const double scaled = value * " + name_ + "_scales[input];\n" +
+           "  if (!(scaled > -" + limit + ")) return -" + limit + ";\n" + "  if (scaled >= " + limit + ") return " +
+           limit + ";\n" + "  return (" + whole_ + ")(scaled < 0 ? scaled - 0.5 : scaled + 0.5);\n" + "}\n\n";
   }
 
   std::string node_tables() const {
@@ -202,15 +200,10 @@ class CWriter {
 
   std::string bounds() const {
     if (options_.low.empty()) return {};
-    const auto list = [](const std::vector<double>& values) {
-      std::string text;
-      for (const double value : values) text += (text.empty() ? "{" : ", ") + digits(value);
-      return text + "}";
-    };
     return "  for (o = 0; o < " + outputs_ + "; ++o) {\n" + "    static const double low[" + outputs_ +
-           "] = " + list(options_.low) + ";\n" + "    static const double high[" + outputs_ +
-           "] = " + list(options_.high) + ";\n" + "    if (out[o] < low[o]) out[o] = low[o];\n" +
-           "    if (out[o] > high[o]) out[o] = high[o];\n" + "  }\n";
+           "] = " + c_list(std::span<const double>(options_.low), "%.17g") + ";\n" + "    static const double high[" +
+           outputs_ + "] = " + c_list(std::span<const double>(options_.high), "%.17g") + ";\n" +
+           "    if (out[o] < low[o]) out[o] = low[o];\n" + "    if (out[o] > high[o]) out[o] = high[o];\n" + "  }\n";
   }
 
   std::string table_descent() const {

@@ -24,9 +24,9 @@ namespace surefoot {
 
 struct LearningCurveOptions {
   PredictorOptions predictor = {};
-  std::vector<std::size_t> counts;  // of sequences to fit to, rising; empty: 1, 2, 3, ... all but those that judge
-  std::size_t validation = 5;       // sequences that judge each fit
-  std::size_t repetitions = 200;    // random splits
+  std::vector<std::size_t> counts = {};   // of sequences to fit to, rising; empty: 1, 2, ... all but those that judge
+  std::size_t validation = 5;             // sequences that judge each fit
+  std::size_t repetitions = 200;          // random splits
   std::optional<MotionNoise> noise = {};  // that weighs the likelihood; none: calibrated from all sequences
   // After each repetition of this process, from any thread, one at a time.
   std::function<void(std::size_t done)> on_progress = {};

@@ -58,6 +58,11 @@ inline bool sees_single_cycles(std::span<const WalkSequence> sequences) {
 
 namespace detail {
 
+/// log(erfc(z)), to 1e-5, also where erfc is less than any double: asymptotic series (Abramowitz & Stegun 7.1.23).
+inline double log_erfc(double z) {
+  return z < 20 ? std::log(std::erfc(z)) : -z * z - std::log(z * std::sqrt(std::numbers::pi)) - 0.5 / (z * z);
+}
+
 /// One component of the deviations of all cycles, ready to be compared with deviations that grow linearly.
 struct ComponentDeviations {
   Eigen::ArrayXd size;                 // |deviation|
@@ -80,14 +85,12 @@ struct ComponentDeviations {
     Eigen::ArrayXd result(size.size());
     for (Eigen::Index i = 0; i < size.size(); ++i) {
       const double half = std::numbers::sqrt3 * sigma_here[i];
-      const double out = (size[i] - half) / (s * std::numbers::sqrt2),
-                   in = (size[i] + half) / (s * std::numbers::sqrt2);
       if (half < 1e-3 * s) {
         result[i] = -0.5 * size[i] * size[i] / blur2 - std::log(s * std::sqrt(2 * std::numbers::pi));
-      } else if (out < 5) {
-        result[i] = std::log((std::erfc(out) - std::erfc(in)) / (4 * half));
       } else {
-        result[i] = -out * out - std::log(out * std::sqrt(std::numbers::pi) * 4 * half);
+        const double out = log_erfc((size[i] - half) / (s * std::numbers::sqrt2)),
+                     in = log_erfc((size[i] + half) / (s * std::numbers::sqrt2));
+        result[i] = out + std::log1p(-std::exp(in - out)) - std::log(4 * half);
       }
     }
     return result;
