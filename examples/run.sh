@@ -23,9 +23,9 @@ if [[ -d ${SUREFOOT_RECORDINGS:-} ]]; then
 else
   echo "== what does the model of a servo leave out? (SUREFOOT_RECORDINGS is not set: a plant of ours stands in)"
   "$build/bin/concealed_plants" --out "$results/plant" --cases 2 --seed 1 --families servo
-  "$build/bin/surefoot-diagnose" --model "$results/plant/cases/case_0002/model.toml" --out "$results/diagnosis" \
-    "$results"/plant/cases/case_0002/rec_*.csv
-  echo "concealed was: $results/plant/truth/case_0002.json"
+  "$build/bin/surefoot-diagnose" --model "$results/plant/cases/case_0001/model.toml" --out "$results/diagnosis" \
+    "$results"/plant/cases/case_0001/rec_*.csv
+  echo "concealed was: $results/plant/truth/case_0001.json"
 fi
 
 echo
