@@ -1,32 +1,16 @@
-// What runs in a control cycle must not allocate: operator new is replaced by one that counts. Not inlined: GCC
-// would take free() for a mismatched deallocation.
+// What runs in a control cycle must not allocate.
 #include <doctest/doctest.h>
 
 #include <array>
-#include <atomic>
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
-#include <new>
 
 #include "examples/sigmaban_robot/dynamixel/protocol1.hpp"
 #include "examples/sigmaban_robot/dynamixel/protocol2.hpp"
 #include "examples/sigmaban_robot/servos/servo_group.hpp"
 #include "examples/sigmaban_robot/walk_engine/spline_walk.hpp"
 #include "tests/examples/robot_bus_line.hpp"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  void* memory = std::malloc(size > 0 ? size : 1);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#include "tests/support/allocation_count.hpp"
 
 TEST_CASE("a step of the walk allocates nothing") {
   long before = allocations;

@@ -1,30 +1,15 @@
-// Prediction must not allocate: operator new is replaced by one that counts.
+// Prediction must not allocate.
 #include <doctest/doctest.h>
 
 #include <array>
-#include <atomic>
 #include <cstdint>
-#include <cstdlib>
-#include <new>
 #include <span>
 
 #include "surefoot/core/executor.hpp"
 #include "surefoot/forest/extra_trees.hpp"
 #include "surefoot/forest/forest.hpp"
 #include "tests/forest/samples.hpp"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  void* memory = std::malloc(size);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#include "tests/support/allocation_count.hpp"
 
 namespace surefoot {
 namespace {

@@ -3,13 +3,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
-#include <new>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,23 +19,10 @@
 #include "surefoot/forest/extra_trees.hpp"
 #include "surefoot/solve/export_policy.hpp"
 #include "tests/solve/temporary_file.hpp"
+#include "tests/support/allocation_count.hpp"
 #include "tests/support/cart_pole.hpp"
 #include "tests/support/double_integrator.hpp"
 #include "tests/support/pendulum.hpp"
-
-// operator new is replaced by one that counts. Not inlined: GCC would take free() for a mismatched deallocation.
-namespace {
-std::atomic<long> allocations{0};
-}
-
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  void* memory = std::malloc(size);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace surefoot {
 namespace {
