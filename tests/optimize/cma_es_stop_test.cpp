@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <set>
 #include <stop_token>
@@ -136,6 +137,15 @@ TEST_CASE("steps below the precision along one axis end the search") {
   CHECK_FALSE(converged(state, all_off));
   state.generation = 3;
   CHECK(converged(state, all_off) == StopReason::no_effect_axis);
+}
+
+TEST_CASE("a search of all evaluations that can be counted ends") {
+  CmaEsSearch search = cma_es(toy::sphere, VectorXd::Ones(3), 0.5, {.max_evaluations = 100}, Serial{}, 1).search;
+  search.evaluations = std::numeric_limits<std::uint64_t>::max() - 2;
+  const std::uint64_t before = search.evaluations;
+  const auto result = cma_es(toy::sphere, search, {.restarts = Restarts::bipop}, Serial{});
+  CHECK(result.reason == StopReason::max_evaluations);
+  CHECK(result.search.evaluations == before);
 }
 
 TEST_CASE("a state that nothing is wrong with goes on") {

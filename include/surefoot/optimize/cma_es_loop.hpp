@@ -41,7 +41,7 @@ class CmaEsLoop {
         core_(search_.state) {}
 
   CmaEsResult run() {
-    if (search_.evaluations == 0 && generation_cost() > options_.max_evaluations) {
+    if (search_.evaluations == 0 && generation_cost() > evaluations_left()) {
       throw OptimizeError("CmaEsOptions: max_evaluations must cover one generation, " +
                           std::to_string(generation_cost()) + " evaluations");
     }
@@ -51,9 +51,7 @@ class CmaEsLoop {
       if (const auto reason = descent_ended()) {
         if (!restart(*reason)) return result(*reason);
       }
-      if (search_.evaluations + generation_cost() > options_.max_evaluations) {
-        return result(StopReason::max_evaluations);
-      }
+      if (generation_cost() > evaluations_left()) return result(StopReason::max_evaluations);
       const bool late = search_.evaluations > 0 && seconds() >= options_.max_seconds;
       if (in_any_process(executor_, late)) return result(StopReason::time_budget);
       if (evaluate()) learn();
@@ -102,6 +100,10 @@ class CmaEsLoop {
   }
   bool adapts_to_noise() const { return options_.noise.max_evaluations > std::max(1, options_.noise.evaluations); }
   std::uint64_t generation_cost() const { return repetitions() * static_cast<std::uint64_t>(core_.state().population); }
+
+  std::uint64_t evaluations_left() const {
+    return options_.max_evaluations - std::min(search_.evaluations, options_.max_evaluations);
+  }
 
   // False if a stop came before all candidates were done.
   bool evaluate() {
