@@ -7,8 +7,10 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 
 # No contraction to fused multiply-add: a policy file has the same bits from every compiler and machine.
 add_library(surefoot_own INTERFACE)
-target_link_libraries(surefoot_own INTERFACE surefoot::surefoot)
-target_compile_options(surefoot_own INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Werror -ffp-contract=off)
+target_link_libraries(surefoot_own INTERFACE surefoot::compiled)
+set(own_options -Wall -Wextra -Wpedantic -Wconversion -Werror -ffp-contract=off)
+target_compile_options(surefoot_own INTERFACE ${own_options})
+target_compile_options(surefoot_compiled PRIVATE ${own_options})
 
 if(SUREFOOT_TIDY)
   find_program(SUREFOOT_CLANG_TIDY NAMES clang-tidy-19 clang-tidy)

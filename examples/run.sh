@@ -18,7 +18,7 @@ cmake --build "$build" --target sigmaban_approach minimal surefoot-diagnose sure
 echo
 if [[ -d ${SUREFOOT_RECORDINGS:-} ]]; then
   echo "== what does the textbook model of a DC motor leave out?"
-  "$build/bin/surefoot-diagnose" --model examples/diagnose/models/hoop_motor.toml --out "$results/diagnosis" \
+  "$build/bin/surefoot-diagnose" --model apps/diagnose/models/hoop_motor.toml --out "$results/diagnosis" \
     "$SUREFOOT_RECORDINGS"/hoop_motor/*.csv
 else
   echo "== what does the model of a servo leave out? (SUREFOOT_RECORDINGS is not set: a plant of ours stands in)"

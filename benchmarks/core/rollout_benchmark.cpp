@@ -2,7 +2,7 @@
 // cost.
 #include <benchmark/benchmark.h>
 
-#include "examples/sigmaban_approach/approach.hpp"
+#include "examples/sigmaban/approach/approach.hpp"
 #include "surefoot/core/rollout.hpp"
 #include "tests/support/pendulum.hpp"
 

@@ -9,7 +9,7 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/diagnose/diagnose.hpp"
 #ifdef SUREFOOT_HAS_MODEL_FILES
-#include "examples/diagnose/equations.hpp"
+#include "apps/diagnose/equations.hpp"
 #endif
 
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
-#include "surefoot/diagnose/augmented.hpp"
+#include "surefoot/diagnose/simulate_augmented.hpp"
 #include "tests/support/servo_pendulum.hpp"
 
 namespace diagnose_benchmarks {

@@ -7,41 +7,43 @@
 #include <vector>
 
 #include "benchmarks/diagnose/servo.hpp"
-#include "surefoot/diagnose/hypothesis.hpp"
+#include "surefoot/diagnose/estimation/hypothesis.hpp"
 #ifdef SUREFOOT_HAS_MODEL_FILES
-#include "examples/diagnose/equations.hpp"
+#include "apps/diagnose/equations.hpp"
+
+using namespace surefoot::diagnosis;
 #endif
 
 namespace {
 
 using surefoot::Hypothesis;
-using surefoot::Rig;
+using surefoot::BoundSimulator;
 
-Hypothesis with_effect(const Rig& rig, const std::string& effect) {
-  Hypothesis hypothesis = surefoot::nominal_hypothesis(rig);
+Hypothesis with_effect(const BoundSimulator& bound, const std::string& effect) {
+  Hypothesis hypothesis = surefoot::nominal_hypothesis(bound);
   for (const surefoot::NamedEffect& named : diagnose_benchmarks::left_out(effect)) {
-    hypothesis.effects.push_back(surefoot::attach(rig.info, named, surefoot::all_effects()));
+    hypothesis.effects.push_back(surefoot::attach(bound.info, named, surefoot::all_effects()));
     hypothesis.values.emplace_back(
         Eigen::Map<const Eigen::VectorXd>(named.values.data(), static_cast<Eigen::Index>(named.values.size())));
   }
   return hypothesis;
 }
 
-void simulate_all(const Rig& rig, const Hypothesis& hypothesis) {
-  for (std::size_t r = 0; r < rig.recordings.size(); ++r) {
-    benchmark::DoNotOptimize(surefoot::simulate(rig, hypothesis, r, rig.integration));
+void simulate_all(const BoundSimulator& bound, const Hypothesis& hypothesis) {
+  for (std::size_t r = 0; r < bound.recordings.size(); ++r) {
+    benchmark::DoNotOptimize(surefoot::simulate(bound, hypothesis, r, bound.integration));
   }
 }
 
 template <surefoot::Simulator S>
 void simulations(benchmark::State& state, const S& simulator, const std::string& effect) {
-  const Rig rig = surefoot::make_rig(simulator, diagnose_benchmarks::servo_recordings("", 1));
-  const Hypothesis hypothesis = with_effect(rig, effect);
-  for (auto _ : state) simulate_all(rig, hypothesis);
+  const BoundSimulator bound = surefoot::bind_simulator(simulator, diagnose_benchmarks::servo_recordings("", 1));
+  const Hypothesis hypothesis = with_effect(bound, effect);
+  for (auto _ : state) simulate_all(bound, hypothesis);
   using benchmark::Counter;
-  const auto recordings = static_cast<double>(rig.recordings.size());
+  const auto recordings = static_cast<double>(bound.recordings.size());
   state.counters["simulations"] = Counter(recordings, Counter::kIsIterationInvariantRate);
-  state.counters["time_per_row"] = Counter(diagnose_benchmarks::row_count(rig.recordings),
+  state.counters["time_per_row"] = Counter(diagnose_benchmarks::row_count(bound.recordings),
                                            Counter::kIsIterationInvariantRate | Counter::kInvert);  // [s]
 }
 
@@ -66,7 +68,7 @@ BENCHMARK_CAPTURE(simulations_of_equations, input_delay, "input_delay");
 // Both in turn, so that whatever else the computer does slows both down: how many times as long the equations take.
 void equations_against_native(benchmark::State& state, const std::string& effect) {
   const auto recordings = diagnose_benchmarks::servo_recordings("", 1);
-  const Rig compiled = surefoot::make_rig(native, recordings), read = surefoot::make_rig(equations(), recordings);
+  const BoundSimulator compiled = surefoot::bind_simulator(native, recordings), read = surefoot::bind_simulator(equations(), recordings);
   const Hypothesis of_compiled = with_effect(compiled, effect), of_read = with_effect(read, effect);
   double compiled_time = 0, read_time = 0;
   for (auto _ : state) {

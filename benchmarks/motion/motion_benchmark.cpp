@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "surefoot/motion/learning_curve.hpp"
-#include "surefoot/motion/previous_order_correction.hpp"
+#include "surefoot/motion/plan/learning_curve.hpp"
+#include "surefoot/motion/previous_command_correction.hpp"
 #include "tests/support/walks.hpp"
 
 namespace {

@@ -9,12 +9,12 @@
 #include <cstdlib>
 #include <span>
 
-#include "examples/sigmaban_approach/approach.hpp"
-#include "examples/sigmaban_approach/seed_states.hpp"
+#include "examples/sigmaban/approach/approach.hpp"
+#include "examples/sigmaban/approach/seed_states.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rollout.hpp"
 #include "surefoot/motion/calibrate.hpp"
-#include "surefoot/motion/choose_noise.hpp"
+#include "surefoot/motion/fit/choose_noise.hpp"
 #include "surefoot/motion/linear_correction.hpp"
 #include "surefoot/solve/rfpi.hpp"
 #include "tests/support/walks.hpp"

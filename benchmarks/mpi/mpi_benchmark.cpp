@@ -7,9 +7,9 @@
 #include <span>
 #include <string>
 
-#include "examples/sigmaban_approach/approach.hpp"
-#include "examples/sigmaban_approach/seed_states.hpp"
-#include "surefoot/motion/learning_curve.hpp"
+#include "examples/sigmaban/approach/approach.hpp"
+#include "examples/sigmaban/approach/seed_states.hpp"
+#include "surefoot/motion/plan/learning_curve.hpp"
 #include "surefoot/motion/linear_correction.hpp"
 #include "surefoot/mpi/mpi_executor.hpp"
 #include "surefoot/mpi/mpi_session.hpp"

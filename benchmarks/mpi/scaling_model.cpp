@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "benchmarks/mpi/traced_executor.hpp"
-#include "examples/sigmaban_approach/approach.hpp"
-#include "examples/sigmaban_approach/seed_states.hpp"
+#include "examples/sigmaban/approach/approach.hpp"
+#include "examples/sigmaban/approach/seed_states.hpp"
 #include "surefoot/solve/rfpi.hpp"
 
 int main(int argc, char** argv) {

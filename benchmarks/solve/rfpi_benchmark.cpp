@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "examples/sigmaban_approach/approach.hpp"
+#include "examples/sigmaban/approach/approach.hpp"
 #include "surefoot/core/rollout.hpp"
 #include "surefoot/solve/lookahead.hpp"
 #include "surefoot/solve/rfpi.hpp"

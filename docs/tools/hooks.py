@@ -9,7 +9,7 @@ from mkdocs.structure.files import File
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 OUTWARDS = re.compile(r"(?<!!)\[([^\]]+)\]\(\.\./([^)#]+)(#[^)]*)?\)")  # links from docs/ to files that are no pages
-README_PAGES = ["examples/sigmaban_robot/README.md"]  # pages of the site that live elsewhere
+README_PAGES = ["examples/sigmaban/robot/README.md"]  # pages of the site that live elsewhere
 
 
 def file_name_instead(found):

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../diagnose/own_simulator.hpp"
+#include "../../apps/diagnose/own_simulator.hpp"
 #include "surefoot/core/vec.hpp"
 
 struct ServoPendulum {

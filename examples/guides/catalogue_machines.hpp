@@ -8,7 +8,7 @@
 #include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/recording.hpp"
 #include "surefoot/diagnose/simulator.hpp"
-#include "surefoot/motion/pose2.hpp"
+#include "surefoot/core/pose2.hpp"
 
 namespace catalogue {
 

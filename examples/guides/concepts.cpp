@@ -8,7 +8,7 @@
 
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rollout.hpp"
-#include "surefoot/diagnose/augmented.hpp"
+#include "surefoot/diagnose/simulate_augmented.hpp"
 #include "surefoot/forest/extra_trees.hpp"
 #include "surefoot/motion/simulate_walk.hpp"
 #include "surefoot/optimize/cma_es.hpp"
@@ -121,7 +121,7 @@ inline Effect wind() {
           .place = Place::velocity,
           .parameters =
               {{.name = "force", .measure = {.effort = 1}, .low = -3, .high = 3, .starts = {0.1}, .strength = true}},
-          .force = [](const Moment&, Values p, Values) { return p[0]; }};
+          .force = [](const EffectContext&, Values p, Values) { return p[0]; }};
 }
 // [effect]
 

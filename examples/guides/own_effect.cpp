@@ -26,7 +26,7 @@ Effect cable() {
                      {.name = "slack", .measure = {.position = 1}, .low = -3, .high = 3, .starts = {-0.5, 0, 0.5, 1}}},
       .confusable_with = {"cubic_stiffness", "end_stop"},
       .experiment = "slow swings to either side, some short of the cable and some well into it",
-      .force = [](const Moment& m, Values p, Values) { return -p[0] * std::max(0.0, m.position - p[1]); }};
+      .force = [](const EffectContext& m, Values p, Values) { return -p[0] * std::max(0.0, m.position - p[1]); }};
 }
 // [effect]
 

@@ -11,6 +11,8 @@
 #include "tests/support/servo_pendulum.hpp"
 #include "tests/support/walking_robot.hpp"
 
+using namespace surefoot::diagnosis;
+
 using surefoot::Augmented;
 using surefoot::diagnose;
 using surefoot::DiagnoseOptions;
@@ -172,7 +174,7 @@ TEST_CASE("an effect of the user's own is found among the others") {
       .place = surefoot::Place::velocity,
       .parameters =
           {{.name = "strength", .measure = {.effort = 1}, .low = -3, .high = 3, .starts = {0.1}, .strength = true}},
-      .force = [](const surefoot::Moment& m, surefoot::Values p, surefoot::Values) {
+      .force = [](const surefoot::EffectContext& m, surefoot::Values p, surefoot::Values) {
         return -p[0] * std::exp(-std::pow((m.position - 0.3) / 0.1, 2));
       }};
   Augmented truth = machine({{.name = "magnet", .attached_to = "omega", .values = {0.4}}});
@@ -259,13 +261,13 @@ TEST_CASE("a model that yields no numbers is refused") {
 TEST_CASE("a start that was read off a sensor is known as well as that sensor reads") {
   auto recordings = toys::servo_recordings(machine({}), 3, 20);
   for (const std::size_t r : {0U, 1U}) recordings[r].initial[0] = recordings[r].outputs(0, 0);
-  surefoot::Rig rig = surefoot::make_rig(ServoPendulum{}, recordings);
-  surefoot::detail::free_measured_starts(rig, {0, 1, 2});
+  surefoot::BoundSimulator bound = surefoot::bind_simulator(ServoPendulum{}, recordings);
+  surefoot::diagnosis::free_measured_starts(bound, {0, 1, 2});
   for (const std::size_t r : {0U, 1U}) {
-    CHECK(rig.recordings[r].initial_scale[0] == doctest::Approx(0.001).epsilon(0.5));
-    CHECK(rig.recordings[r].initial_scale[1] == 0);
+    CHECK(bound.recordings[r].initial_scale[0] == doctest::Approx(0.001).epsilon(0.5));
+    CHECK(bound.recordings[r].initial_scale[1] == 0);
   }
-  CHECK(rig.recordings[2].initial_scale[0] == 0);  // known from elsewhere
+  CHECK(bound.recordings[2].initial_scale[0] == 0);  // known from elsewhere
 }
 
 TEST_CASE("recordings that do not fit the simulator are refused by name") {

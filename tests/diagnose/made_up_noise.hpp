@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
-#include "surefoot/diagnose/noise_model.hpp"
+#include "surefoot/diagnose/residual_tests/noise_model.hpp"
 
 namespace toys {
 

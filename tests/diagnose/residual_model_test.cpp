@@ -9,6 +9,8 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/forest/extra_trees.hpp"
 
+using namespace surefoot::diagnosis;
+
 namespace surefoot {
 namespace {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "surefoot/core/vec.hpp"
-#include "surefoot/diagnose/augmented.hpp"
+#include "surefoot/diagnose/simulate_augmented.hpp"
 
 namespace toys {
 

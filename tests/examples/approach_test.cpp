@@ -1,12 +1,12 @@
-#include "examples/sigmaban_approach/approach.hpp"
+#include "examples/sigmaban/approach/approach.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "surefoot/motion/motion_noise.hpp"
-#include "surefoot/motion/previous_order_correction.hpp"
+#include "surefoot/motion/noise.hpp"
+#include "surefoot/motion/previous_command_correction.hpp"
 
 using sigmaban::Approach;
 using sigmaban::degree;

@@ -9,8 +9,8 @@
 #include <iterator>
 #include <string>
 
-#include "examples/sigmaban_approach/winner2016.hpp"
-#include "tests/examples/program.hpp"
+#include "examples/sigmaban/approach/winner2016.hpp"
+#include "tests/support/program.hpp"
 
 using approach_program::program_exists;
 using approach_program::run;

@@ -1,4 +1,4 @@
-#include "examples/sigmaban_approach/moving_ball.hpp"
+#include "examples/sigmaban/approach/moving_ball.hpp"
 
 #include <doctest/doctest.h>
 

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <memory>
 
-#include "examples/sigmaban_robot/dynamixel/protocol1.hpp"
-#include "examples/sigmaban_robot/dynamixel/protocol2.hpp"
-#include "examples/sigmaban_robot/servos/servo_group.hpp"
-#include "examples/sigmaban_robot/walk_engine/spline_walk.hpp"
+#include "examples/sigmaban/robot/dynamixel/protocol1.hpp"
+#include "examples/sigmaban/robot/dynamixel/protocol2.hpp"
+#include "examples/sigmaban/robot/servos/servo_group.hpp"
+#include "examples/sigmaban/robot/walk_engine/spline_walk.hpp"
 #include "tests/examples/robot_bus_line.hpp"
 #include "tests/support/allocation_count.hpp"
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "examples/sigmaban_robot/bus/bus.hpp"
-#include "examples/sigmaban_robot/virtual_bus/memory_transport.hpp"
+#include "examples/sigmaban/robot/bus/bus.hpp"
+#include "examples/sigmaban/robot/virtual_bus/memory_transport.hpp"
 
 namespace dynamixel {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "examples/sigmaban_robot/dynamixel/packet.hpp"
+#include "examples/sigmaban/robot/dynamixel/packet.hpp"
 
 namespace dynamixel {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "examples/sigmaban_robot/dynamixel/protocol1.hpp"
+#include "examples/sigmaban/robot/dynamixel/protocol1.hpp"
 #include "tests/examples/robot_dynamixel_hex.hpp"
 
 using namespace dynamixel;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "examples/sigmaban_robot/dynamixel/control_tables.hpp"
-#include "examples/sigmaban_robot/dynamixel/units.hpp"
+#include "examples/sigmaban/robot/dynamixel/control_tables.hpp"
+#include "examples/sigmaban/robot/dynamixel/units.hpp"
 
 using namespace dynamixel;
 

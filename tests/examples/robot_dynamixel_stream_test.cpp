@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <vector>
 
-#include "examples/sigmaban_robot/dynamixel/protocol1.hpp"
-#include "examples/sigmaban_robot/dynamixel/protocol2.hpp"
+#include "examples/sigmaban/robot/dynamixel/protocol1.hpp"
+#include "examples/sigmaban/robot/dynamixel/protocol2.hpp"
 #include "surefoot/core/rng.hpp"
 #include "tests/examples/robot_dynamixel_hex.hpp"
 

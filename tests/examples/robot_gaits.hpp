@@ -7,8 +7,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "examples/sigmaban_robot/walk_engine/leg_inverse_kinematics.hpp"
-#include "examples/sigmaban_robot/walk_engine/walk_parameter_names.hpp"
+#include "examples/sigmaban/robot/walk_engine/leg_inverse_kinematics.hpp"
+#include "examples/sigmaban/robot/walk_engine/walk_parameter_names.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace sigmaban {

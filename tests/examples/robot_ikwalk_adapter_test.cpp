@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "examples/sigmaban_robot/walk_engine/ikwalk_adapter.hpp"
+#include "examples/sigmaban/robot/walk_engine/ikwalk_adapter.hpp"
 #include "tests/examples/robot_gaits.hpp"
 
 using namespace sigmaban;

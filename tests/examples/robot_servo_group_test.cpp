@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "examples/sigmaban_robot/servos/servo_group.hpp"
+#include "examples/sigmaban/robot/servos/servo_group.hpp"
 #include "tests/examples/robot_bus_line.hpp"
 
 using namespace dynamixel;

@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "examples/sigmaban_approach/winner2016.hpp"
-#include "examples/sigmaban_robot/twin/mjcf.hpp"
-#include "examples/sigmaban_robot/twin/play_approach.hpp"
-#include "examples/sigmaban_robot/twin/share.hpp"
-#include "examples/sigmaban_robot/twin/twin_sequence.hpp"
-#include "examples/walk_calibration/load_sequences.hpp"
+#include "examples/sigmaban/approach/winner2016.hpp"
+#include "examples/sigmaban/twin/mjcf.hpp"
+#include "examples/sigmaban/twin/play_approach.hpp"
+#include "examples/sigmaban/twin/share.hpp"
+#include "examples/sigmaban/twin/twin_sequence.hpp"
+#include "apps/calibrate/load_sequences.hpp"
 #include "surefoot/core/executor.hpp"
-#include "surefoot/motion/order_plan.hpp"
-#include "tests/examples/program.hpp"
+#include "surefoot/motion/plan/command_plan.hpp"
+#include "tests/support/program.hpp"
 
 using namespace sigmaban;
 using surefoot::Pose2, surefoot::Vec;

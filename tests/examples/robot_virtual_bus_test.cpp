@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "examples/sigmaban_robot/bus/bus.hpp"
-#include "examples/sigmaban_robot/bus/serial_port.hpp"
-#include "examples/sigmaban_robot/servo_programs/servo_ids.hpp"
-#include "examples/sigmaban_robot/virtual_bus/virtual_bus.hpp"
-#include "tests/examples/program.hpp"
+#include "examples/sigmaban/robot/bus/bus.hpp"
+#include "examples/sigmaban/robot/bus/serial_port.hpp"
+#include "examples/sigmaban/robot/servo_programs/servo_ids.hpp"
+#include "examples/sigmaban/robot/virtual_bus/virtual_bus.hpp"
+#include "tests/support/program.hpp"
 
 using namespace dynamixel;
 

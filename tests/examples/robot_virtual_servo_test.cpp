@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "examples/sigmaban_robot/virtual_bus/answerer.hpp"
+#include "examples/sigmaban/robot/virtual_bus/answerer.hpp"
 #include "tests/examples/robot_dynamixel_hex.hpp"
 
 using namespace dynamixel;

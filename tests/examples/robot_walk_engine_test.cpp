@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "examples/sigmaban_robot/walk_engine/spline_walk.hpp"
+#include "examples/sigmaban/robot/walk_engine/spline_walk.hpp"
 #include "tests/examples/robot_gaits.hpp"
 
 using namespace sigmaban;

@@ -6,10 +6,10 @@
 #include <sstream>
 #include <string>
 
-#include "examples/sigmaban_robot/walk_engine/compare_with_reference.hpp"
-#include "examples/sigmaban_robot/walk_engine/reference_file.hpp"
-#include "examples/sigmaban_robot/walk_engine/spline_walk.hpp"
-#include "tests/examples/program.hpp"
+#include "examples/sigmaban/robot/walk_engine/compare_with_reference.hpp"
+#include "examples/sigmaban/robot/walk_engine/reference_file.hpp"
+#include "examples/sigmaban/robot/walk_engine/spline_walk.hpp"
+#include "tests/support/program.hpp"
 
 using namespace sigmaban;
 

@@ -12,14 +12,14 @@
 #include <thread>
 #include <vector>
 
-#include "examples/sigmaban_approach/approach.hpp"
-#include "examples/sigmaban_robot/walk/ball.hpp"
-#include "examples/sigmaban_robot/walk/durations.hpp"
-#include "examples/sigmaban_robot/walk/gait.hpp"
-#include "examples/sigmaban_robot/walk/joints_file.hpp"
-#include "examples/sigmaban_robot/walk/walk_log.hpp"
-#include "examples/sigmaban_robot/walk_engine/spline_walk.hpp"
-#include "tests/examples/program.hpp"
+#include "examples/sigmaban/approach/approach.hpp"
+#include "examples/sigmaban/robot/walk/ball.hpp"
+#include "examples/sigmaban/robot/walk/durations.hpp"
+#include "examples/sigmaban/robot/walk/gait.hpp"
+#include "examples/sigmaban/robot/walk/joints_file.hpp"
+#include "examples/sigmaban/robot/walk/walk_log.hpp"
+#include "examples/sigmaban/robot/walk_engine/spline_walk.hpp"
+#include "tests/support/program.hpp"
 
 namespace sigmaban {
 namespace {

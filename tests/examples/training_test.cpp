@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <string>
 
-#include "examples/sigmaban_approach/approach.hpp"
+#include "examples/sigmaban/approach/approach.hpp"
 #include "surefoot/core/binary.hpp"
 #include "surefoot/solve/forest_policy.hpp"
-#include "tests/examples/program.hpp"
+#include "tests/support/program.hpp"
 
 using approach_program::program;
 using approach_program::program_exists;

@@ -1,4 +1,4 @@
-#include "examples/sigmaban_approach/winner2016.hpp"
+#include "examples/sigmaban/approach/winner2016.hpp"
 
 #include <doctest/doctest.h>
 

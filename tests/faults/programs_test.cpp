@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "examples/common/files.hpp"
-#include "examples/walk_calibration/motion_file.hpp"
+#include "apps/common/files.hpp"
+#include "apps/calibrate/motion_file.hpp"
 #include "surefoot/core/binary.hpp"
 #include "tests/faults/child.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rng.hpp"
-#include "surefoot/forest/unexplained.hpp"
+#include "surefoot/forest/train/unexplained_variance.hpp"
 #include "tests/forest/samples.hpp"
 
 namespace surefoot {

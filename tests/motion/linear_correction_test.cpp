@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "surefoot/core/rng.hpp"
-#include "surefoot/motion/previous_order_correction.hpp"
+#include "surefoot/motion/previous_command_correction.hpp"
 #include "tests/support/quadratic_correction.hpp"
 
 using surefoot::FullLinearCorrection;

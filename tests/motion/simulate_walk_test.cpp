@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "surefoot/motion/order_plan.hpp"
+#include "surefoot/motion/plan/command_plan.hpp"
 #include "tests/support/sigmaban_walk.hpp"
 
 using surefoot::PoseAccuracy;

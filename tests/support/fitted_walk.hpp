@@ -4,14 +4,14 @@
 #include <cstdint>
 #include <utility>
 
-#include "surefoot/diagnose/calibrate.hpp"
-#include "surefoot/diagnose/split.hpp"
+#include "surefoot/diagnose/estimation/calibrate.hpp"
+#include "surefoot/diagnose/estimation/data_split.hpp"
 #include "tests/support/walking_robot.hpp"
 
 namespace toys {
 
 struct FittedWalk {
-  surefoot::Rig rig;
+  surefoot::BoundSimulator rig;
   surefoot::RecordingSplit split;
   surefoot::FitProblem problem;
   surefoot::Hypothesis hypothesis;
@@ -20,7 +20,7 @@ struct FittedWalk {
 /// Forty sequences with a pose in every row, each predicted from the row before; see walk_recordings for `change`.
 template <class Change>
 FittedWalk fitted_walk(Change&& change, std::uint64_t seed, const surefoot::Parallel& parallel = surefoot::serially()) {
-  FittedWalk walk{.rig = surefoot::make_rig(WalkingRobot{}, walk_recordings(change, false, 40, seed)),
+  FittedWalk walk{.rig = surefoot::bind_simulator(WalkingRobot{}, walk_recordings(change, false, 40, seed)),
                   .split = {},
                   .problem = {},
                   .hypothesis = {}};

@@ -10,7 +10,7 @@
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
-#include "surefoot/diagnose/augmented.hpp"
+#include "surefoot/diagnose/simulate_augmented.hpp"
 
 namespace toys {
 

@@ -8,7 +8,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/motion/linear_correction.hpp"
-#include "surefoot/motion/motion_noise.hpp"
+#include "surefoot/motion/noise.hpp"
 #include "surefoot/motion/simulate_walk.hpp"
 #include "surefoot/motion/walk_sequence.hpp"
 #include "tests/support/walks.hpp"

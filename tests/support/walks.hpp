@@ -6,8 +6,8 @@
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/motion/linear_correction.hpp"
-#include "surefoot/motion/motion_noise.hpp"
-#include "surefoot/motion/order_plan.hpp"
+#include "surefoot/motion/noise.hpp"
+#include "surefoot/motion/plan/command_plan.hpp"
 #include "surefoot/motion/simulate_walk.hpp"
 #include "surefoot/motion/walk_sequence.hpp"
 

@@ -9,7 +9,7 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/forest/distill.hpp"
 #include "surefoot/forest/extra_trees.hpp"
-#include "surefoot/forest/extra_trees_options.hpp"
+#include "surefoot/forest/options.hpp"
 #include "surefoot/forest/leaf.hpp"
 #include "surefoot/forest/prune.hpp"
 #include "surefoot_model.hpp"

@@ -17,9 +17,9 @@
 
 #include "surefoot/core/executor.hpp"
 #include "surefoot/diagnose/diagnosis.hpp"
-#include "surefoot/diagnose/investigate.hpp"
 #include "surefoot/diagnose/options.hpp"
-#include "surefoot/diagnose/rig.hpp"
+#include "surefoot/diagnose/simulation/bound_simulator.hpp"
+#include "surefoot/diagnose/verdict/pipeline.hpp"
 
 namespace surefoot {
 
@@ -28,12 +28,14 @@ namespace surefoot {
 template <Simulator S, Executor E>
 Diagnosis diagnose(const S& simulator, std::span<const Recording> recordings, const DiagnoseOptions& options,
                    const E& executor, std::uint64_t seed, std::stop_token stop = {}) {
-  const auto make = [&simulator](std::vector<Recording> some) { return make_rig(simulator, std::move(some)); };
-  const Parallel parallel = [&executor](std::size_t count, const std::function<void(std::size_t)>& job) {
+  const auto make = [&simulator](std::vector<Recording> some) {
+    return diagnosis::bind_simulator(simulator, std::move(some));
+  };
+  const diagnosis::Parallel parallel = [&executor](std::size_t count, const std::function<void(std::size_t)>& job) {
     executor.run(count, job);
   };
-  return investigate(make, simulator.info(), std::vector<Recording>(recordings.begin(), recordings.end()), options,
-                     parallel, seed, stop)
+  return diagnosis::run_pipeline(make, simulator.info(), std::vector<Recording>(recordings.begin(), recordings.end()),
+                                 options, parallel, seed, stop)
       .diagnosis;
 }
 

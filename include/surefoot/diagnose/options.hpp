@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "surefoot/diagnose/effect.hpp"
-#include "surefoot/diagnose/named_effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
+#include "surefoot/diagnose/effects/named_effect.hpp"
 
 namespace surefoot {
 
@@ -19,8 +19,8 @@ struct DiagnoseOptions {
   std::vector<Effect> more_effects = {};  // of the user's own
   std::vector<NamedEffect> known = {};    // part of the model already; their numbers are calibrated with the others
   int max_effects = 4;
-  double budget_seconds = 0;  // ends the search for effects after that long; 0: never
-  std::size_t starts = 24;    // points of the global search for the nominal parameters
+  double max_seconds = 0;   // ends the search for effects after that long; 0: never
+  std::size_t starts = 24;  // points of the global search for the nominal parameters
   /// Told what is being done, the share of the work done (0..1) and the best so far.
   std::function<void(std::string_view stage, double share, std::string_view best)> progress = {};
 };

@@ -17,7 +17,7 @@ struct DiagnoseError : Error {
   using Error::Error;
 };
 
-/// One column per row of the recording (a moment for an ODE, a step for a map). Units are those of the model.
+/// One column per row of the recording (a context for an ODE, a step for a map). Units are those of the model.
 struct Recording {
   std::string name;                         // for messages and reports: the file's name
   std::map<std::string, double> constants;  // of this recording: mass, gain, supply voltage, ...
@@ -33,17 +33,11 @@ struct Recording {
 
 /// Rows [from, to) of a recording as one of its own. Its initial state is unknown unless it starts in row 0: it is
 /// estimated, from `initial` on, off by about `scale`.
-inline Recording part_of(const Recording& whole, Eigen::Index from, Eigen::Index to, const Eigen::VectorXd& initial,
-                         const Eigen::VectorXd& scale) {
-  Recording part;
-  part.name = whole.name + "[" + std::to_string(from) + ":" + std::to_string(to) + "]";
-  part.constants = whole.constants;
-  part.time = whole.time.segment(from, to - from);
-  part.inputs = whole.inputs.middleCols(from, to - from);
-  part.outputs = whole.outputs.middleCols(from, to - from);
-  part.initial = from == 0 ? whole.initial : initial;
-  part.initial_scale = from == 0 ? whole.initial_scale : scale;
-  return part;
-}
+Recording part_of(const Recording& whole, Eigen::Index from, Eigen::Index to, const Eigen::VectorXd& initial,
+                  const Eigen::VectorXd& scale);
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/recording.ipp"
+#endif

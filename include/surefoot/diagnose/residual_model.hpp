@@ -37,48 +37,13 @@ constexpr std::uint32_t residual_version = 1;
 
 }  // namespace detail
 
-inline void save_residual_model(const ResidualModel& model, const std::filesystem::path& path) {
-  ByteWriter out;
-  out.raw(std::as_bytes(std::span(detail::residual_magic)));
-  out.u32(detail::residual_version);
-  out.u32(static_cast<std::uint32_t>(model.features.size()));
-  out.u32(static_cast<std::uint32_t>(model.outputs.size()));
-  for (const std::string& name : model.features) out.text(name);
-  for (const std::string& name : model.outputs) out.text(name);
-  for (const double scale : model.scale) out.f64(scale);
-  write(out, model.forest);
-  out.add_checksum();
-  write_file_atomically(path, out.bytes());
-}
+void save_residual_model(const ResidualModel& model, const std::filesystem::path& path);
 
 /// Throws CoreError or ForestError if the file is damaged or of another kind.
-inline ResidualModel load_residual_model(const std::filesystem::path& path) {
-  const Bytes bytes = read_file(path);
-  ByteReader in(bytes, "file " + path.string());
-  const auto magic = in.raw(detail::residual_magic.size());
-  if (!std::ranges::equal(magic, std::as_bytes(std::span(detail::residual_magic)))) {
-    in.fail("is not a residual model: it must start with \"" + std::string(detail::residual_magic) + "\"");
-  }
-  if (const std::uint32_t version = in.u32(); version != detail::residual_version) {
-    in.fail("has format version " + std::to_string(version) + ", this library reads version " +
-            std::to_string(detail::residual_version));
-  }
-  const std::uint32_t features = in.u32(), outputs = in.u32();
-  ResidualModel model;
-  for (std::uint32_t i = 0; i < features; ++i) model.features.push_back(in.text());
-  for (std::uint32_t i = 0; i < outputs; ++i) model.outputs.push_back(in.text());
-  std::vector<double> scales;
-  for (std::uint32_t i = 0; i < outputs; ++i) scales.push_back(in.f64());
-  model.scale = Eigen::Map<const Eigen::VectorXd>(scales.data(), static_cast<Eigen::Index>(scales.size()));
-  if (!model.scale.allFinite()) in.fail("has a scale that is not finite");
-  model.forest = read<ResidualForest>(in);
-  in.expect_checksum();
-  in.expect_end();
-  if (model.forest.inputs() != static_cast<int>(features) || model.forest.outputs() != static_cast<int>(outputs) ||
-      model.forest.empty()) {
-    in.fail("has a forest that does not go with its names");
-  }
-  return model;
-}
+ResidualModel load_residual_model(const std::filesystem::path& path);
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/residual_model.ipp"
+#endif

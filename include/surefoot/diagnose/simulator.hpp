@@ -54,6 +54,20 @@ struct SimulatorInfo {
   std::optional<PlanarInfo> planar = {};
 };
 
+/// How an ODE is integrated.
+struct Integration {
+  int order = 4;    // 4, or 2
+  double step = 0;  // longest step [s]; 0: one step per row
+  int restart = 0;  // begin again from the measured state every so many rows; 0: never (all states must be measured)
+};
+
+/// A simulated recording; states are those before each restart.
+struct SimulatedRun {
+  Eigen::MatrixXd outputs;  // output x row
+  Eigen::MatrixXd states;   // state x row
+  bool finite = true;
+};
+
 /// Lets effects reach quantities inside the equations: called as tap(i, value) for signal i, gives the value to use.
 struct NoTap {
   double operator()(int /*signal*/, double value) const { return value; }
@@ -83,8 +97,8 @@ struct NoTap {
 /// `derivative(x, u, p, tap)` or `next(x, u, p, tap)`, which pass quantities inside through tap(i, value), named in
 /// info().signals.
 template <class S>
-concept Simulator = std::copyable<S> && requires(const S& simulator, const typename S::State& x,
-                                                 const typename S::Input& u, const Eigen::VectorXd& p) {
+concept Simulator = std::copyable<S> &&
+    requires(const S& simulator, const typename S::State& x, const typename S::Input& u, const Eigen::VectorXd& p) {
   { simulator.info() } -> std::convertible_to<SimulatorInfo>;
   { simulator.observe(x, u, p) } -> std::convertible_to<typename S::Output>;
   requires requires {

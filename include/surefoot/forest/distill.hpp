@@ -16,11 +16,11 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/forest/dataset.hpp"
 #include "surefoot/forest/extra_trees.hpp"
-#include "surefoot/forest/extra_trees_options.hpp"
+#include "surefoot/forest/options.hpp"
 #include "surefoot/forest/forest.hpp"
 #include "surefoot/forest/leaf.hpp"
-#include "surefoot/forest/trees.hpp"
-#include "surefoot/forest/unexplained.hpp"
+#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/train/unexplained_variance.hpp"
 
 namespace surefoot {
 

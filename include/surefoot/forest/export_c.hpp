@@ -19,11 +19,11 @@
 #include <string_view>
 #include <vector>
 
-#include "surefoot/forest/c_branches.hpp"
-#include "surefoot/forest/c_fixed_point.hpp"
-#include "surefoot/forest/c_tables.hpp"
+#include "surefoot/forest/c/c_branches.hpp"
+#include "surefoot/forest/c/c_fixed_point.hpp"
+#include "surefoot/forest/c/c_tables.hpp"
 #include "surefoot/forest/forest.hpp"
-#include "surefoot/forest/trees.hpp"
+#include "surefoot/forest/evaluate/trees.hpp"
 
 namespace surefoot {
 

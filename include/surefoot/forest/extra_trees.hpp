@@ -18,13 +18,13 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/forest/dataset.hpp"
-#include "surefoot/forest/extra_trees_options.hpp"
+#include "surefoot/forest/options.hpp"
 #include "surefoot/forest/forest.hpp"
 #include "surefoot/forest/leaf.hpp"
-#include "surefoot/forest/pool.hpp"
-#include "surefoot/forest/split.hpp"
-#include "surefoot/forest/tree_grower.hpp"
-#include "surefoot/forest/trees.hpp"
+#include "surefoot/forest/train/pool.hpp"
+#include "surefoot/forest/train/split.hpp"
+#include "surefoot/forest/train/tree_grower.hpp"
+#include "surefoot/forest/evaluate/trees.hpp"
 
 namespace surefoot {
 

@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "surefoot/core/vec.hpp"
-#include "surefoot/forest/descend.hpp"
-#include "surefoot/forest/descend_batch.hpp"
+#include "surefoot/forest/evaluate/descend.hpp"
+#include "surefoot/forest/evaluate/descend_batch.hpp"
 #include "surefoot/forest/leaf.hpp"
-#include "surefoot/forest/trees.hpp"
+#include "surefoot/forest/evaluate/trees.hpp"
 
 namespace surefoot {
 

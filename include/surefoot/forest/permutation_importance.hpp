@@ -16,7 +16,7 @@
 #include "surefoot/forest/error.hpp"
 #include "surefoot/forest/forest.hpp"
 #include "surefoot/forest/leaf.hpp"
-#include "surefoot/forest/unexplained.hpp"
+#include "surefoot/forest/train/unexplained_variance.hpp"
 
 namespace surefoot {
 

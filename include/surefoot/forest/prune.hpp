@@ -19,8 +19,8 @@
 #include "surefoot/forest/extra_trees.hpp"
 #include "surefoot/forest/forest.hpp"
 #include "surefoot/forest/leaf.hpp"
-#include "surefoot/forest/loose_tree.hpp"
-#include "surefoot/forest/unexplained.hpp"
+#include "surefoot/forest/train/loose_tree.hpp"
+#include "surefoot/forest/train/unexplained_variance.hpp"
 
 namespace surefoot {
 

@@ -28,10 +28,10 @@
 
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/error.hpp"
-#include "surefoot/forest/check_trees.hpp"
+#include "surefoot/forest/evaluate/check_trees.hpp"
 #include "surefoot/forest/error.hpp"
 #include "surefoot/forest/forest.hpp"
-#include "surefoot/forest/trees.hpp"
+#include "surefoot/forest/evaluate/trees.hpp"
 
 namespace surefoot {
 

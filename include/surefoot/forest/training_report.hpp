@@ -10,10 +10,10 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/forest/dataset.hpp"
 #include "surefoot/forest/extra_trees.hpp"
-#include "surefoot/forest/extra_trees_options.hpp"
+#include "surefoot/forest/options.hpp"
 #include "surefoot/forest/forest.hpp"
 #include "surefoot/forest/leaf.hpp"
-#include "surefoot/forest/out_of_bag.hpp"
+#include "surefoot/forest/train/out_of_bag.hpp"
 
 namespace surefoot {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "surefoot/core/executor.hpp"
-#include "surefoot/motion/choose_noise.hpp"
-#include "surefoot/motion/fit_model.hpp"
+#include "surefoot/motion/fit/choose_noise.hpp"
+#include "surefoot/motion/fit/fit_model.hpp"
 
 namespace surefoot {
 

@@ -12,7 +12,7 @@
 
 #include "surefoot/core/vec.hpp"
 #include "surefoot/motion/motion_model.hpp"
-#include "surefoot/motion/pose2.hpp"
+#include "surefoot/core/pose2.hpp"
 
 namespace surefoot {
 

@@ -9,7 +9,7 @@
 
 #include "surefoot/core/box.hpp"
 #include "surefoot/core/vec.hpp"
-#include "surefoot/motion/pose2.hpp"
+#include "surefoot/core/pose2.hpp"
 
 namespace surefoot {
 

@@ -8,9 +8,9 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/motion/motion_model.hpp"
-#include "surefoot/motion/motion_noise.hpp"
-#include "surefoot/motion/pose2.hpp"
-#include "surefoot/motion/pose_filter.hpp"
+#include "surefoot/motion/noise.hpp"
+#include "surefoot/core/pose2.hpp"
+#include "surefoot/motion/fit/pose_filter.hpp"
 #include "surefoot/motion/walk_sequence.hpp"
 
 namespace surefoot {

@@ -38,7 +38,7 @@ surefoot::Effect magnet() {
           .place = surefoot::Place::velocity,
           .parameters = {{"strength", {.effort = 1}, 0, 20, {0.1, 0.5}, true},
                          {"place", {.position = 1}, -3, 3, {-1, 0, 1}}},
-          .force = [](const surefoot::Moment& m, surefoot::Values p, surefoot::Values) {
+          .force = [](const surefoot::EffectContext& m, surefoot::Values p, surefoot::Values) {
             return pull(m.position, p[0], p[1]);
           }};
 }

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 
-#include "examples/sigmaban_robot/dynamixel/protocol1.hpp"
-#include "examples/sigmaban_robot/dynamixel/protocol2.hpp"
+#include "examples/sigmaban/robot/dynamixel/protocol1.hpp"
+#include "examples/sigmaban/robot/dynamixel/protocol2.hpp"
 #include "tests/fuzz/accepted.hpp"
 #include "tests/fuzz/feeds.hpp"
 

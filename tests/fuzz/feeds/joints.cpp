@@ -1,5 +1,5 @@
 // Joints that were read can be checked, and are written as they were.
-#include "examples/sigmaban_robot/walk/joints_file.hpp"
+#include "examples/sigmaban/robot/walk/joints_file.hpp"
 #include "tests/fuzz/accepted.hpp"
 #include "tests/fuzz/feeds.hpp"
 #include "tests/fuzz/memory_file.hpp"

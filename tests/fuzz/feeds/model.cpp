@@ -1,5 +1,5 @@
 // A model that was read computes, and is written as a file that is read again.
-#include "tests/examples/diagnose_mutations.hpp"
+#include "tests/apps/diagnose_mutations.hpp"
 #include "tests/fuzz/accepted.hpp"
 #include "tests/fuzz/feeds.hpp"
 #include "tests/fuzz/text_of.hpp"

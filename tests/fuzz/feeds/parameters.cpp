@@ -1,6 +1,6 @@
 // Parameters of Winner2016 that were read are written as they were.
-#include "examples/common/usage_error.hpp"
-#include "examples/sigmaban_approach/parameter_file.hpp"
+#include "apps/common/usage_error.hpp"
+#include "examples/sigmaban/approach/parameter_file.hpp"
 #include "tests/fuzz/accepted.hpp"
 #include "tests/fuzz/feeds.hpp"
 #include "tests/fuzz/memory_file.hpp"

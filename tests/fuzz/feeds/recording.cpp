@@ -1,8 +1,8 @@
 // Recordings that were read have finite times, inputs and starts, whatever the model wants of them.
 #include <array>
 
-#include "tests/examples/diagnose_models.hpp"
-#include "tests/examples/diagnose_mutations.hpp"
+#include "tests/apps/diagnose_models.hpp"
+#include "tests/apps/diagnose_mutations.hpp"
 #include "tests/fuzz/accepted.hpp"
 #include "tests/fuzz/feeds.hpp"
 #include "tests/fuzz/text_of.hpp"

@@ -1,9 +1,9 @@
 // Joint targets that were read are held against our walk engine, whatever settings they name.
 #include <sstream>
 
-#include "examples/sigmaban_robot/walk_engine/compare_with_reference.hpp"
-#include "examples/sigmaban_robot/walk_engine/reference_file.hpp"
-#include "examples/sigmaban_robot/walk_engine/spline_walk.hpp"
+#include "examples/sigmaban/robot/walk_engine/compare_with_reference.hpp"
+#include "examples/sigmaban/robot/walk_engine/reference_file.hpp"
+#include "examples/sigmaban/robot/walk_engine/spline_walk.hpp"
 #include "tests/fuzz/accepted.hpp"
 #include "tests/fuzz/feeds.hpp"
 #include "tests/fuzz/text_of.hpp"

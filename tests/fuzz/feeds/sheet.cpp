@@ -1,10 +1,10 @@
 // Orders and a sheet that go together become walks that can be read.
-#include "examples/walk_calibration/sheet.hpp"
+#include "apps/calibrate/sheet.hpp"
 
-#include "examples/walk_calibration/load_sequences.hpp"
-#include "examples/walk_calibration/walk_csv.hpp"
+#include "apps/calibrate/load_sequences.hpp"
+#include "apps/calibrate/walk_csv.hpp"
 #include "surefoot/diagnose/recording.hpp"
-#include "surefoot/motion/order_plan.hpp"
+#include "surefoot/motion/plan/command_plan.hpp"
 #include "tests/fuzz/accepted.hpp"
 #include "tests/fuzz/feeds.hpp"
 #include "tests/fuzz/text_of.hpp"

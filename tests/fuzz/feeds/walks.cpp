@@ -1,7 +1,7 @@
 // Walks that were read are sound, in every layout that a file can have.
 #include <vector>
 
-#include "examples/walk_calibration/load_sequences.hpp"
+#include "apps/calibrate/load_sequences.hpp"
 #include "surefoot/diagnose/recording.hpp"
 #include "tests/fuzz/accepted.hpp"
 #include "tests/fuzz/feeds.hpp"

@@ -10,9 +10,9 @@
 
 #include <algorithm>
 
-#include "surefoot/diagnose/effect.hpp"
-#include "surefoot/diagnose/effects/playing_motor.hpp"
-#include "surefoot/diagnose/effects/two_masses.hpp"
+#include "surefoot/diagnose/effects/detail/motor_behind_backlash.hpp"
+#include "surefoot/diagnose/effects/detail/two_masses.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
@@ -21,7 +21,7 @@ inline double play(double driven, double driver, double half_width) {
   return std::min(std::max(driven, driver - half_width), driver + half_width);
 }
 
-/// Memory: the position behind the play.
+/// HiddenStates: the position behind the play.
 inline Effect backlash() {
   return {.name = "backlash",
           .sentence = "backlash of {half_width} to either side at {at}",
@@ -34,45 +34,41 @@ inline Effect backlash() {
                           .strength = true}},
           .confusable_with = {"input_delay", "sensor_delay", "hysteresis", "coulomb_friction", "joint_elasticity"},
           .experiment = "slow reversals at two amplitudes: lost motion is the same for both",
-          .memories = 1,
-          .start = [](const Moment& m, Values, Memory memory) { memory[0] = m.position; },
-          .advance = [](const Moment& m, Values p, Memory memory) { memory[0] = play(memory[0], m.position, p[0]); },
-          .seen_position = [](const Moment& m, Values p, Values memory) { return play(memory[0], m.position, p[0]); }};
+          .hidden_states = 1,
+          .start = [](const EffectContext& m, Values, HiddenStates hidden) { hidden[0] = m.position; },
+          .advance = [](const EffectContext& m, Values p,
+                        HiddenStates hidden) { hidden[0] = play(hidden[0], m.position, p[0]); },
+          .seen_position = [](const EffectContext& m, Values p,
+                              Values hidden) { return play(hidden[0], m.position, p[0]); }};
 }
-
-namespace detail {
 
 inline TwoMasses gap_joint(Values p) {
   return TwoMasses{.ratio = p[0], .frequency = p[2], .damping = 0.2, .half_width = p[1]};
 }
 
-}  // namespace detail
-
 /// Damping ratio 0.2 in contact.
 inline Effect backlash_gap() {
-  return {
-      .name = "backlash",
-      .sentence = "a load of {ratio} times the inertia behind backlash of {half_width} to either side at {at}",
-      .place = Place::velocity,
-      .parameters =
-          {{.name = "ratio", .measure = {}, .low = 0, .high = 10, .starts = {0.01}, .strength = true},
-           {.name = "half_width", .measure = {.position = 1}, .low = 0.001, .high = 1, .starts = {0.02, 0.05, 0.1}},
-           {.name = "frequency",  // of the two inertias in contact [rad/s]
-            .measure = {.time = -1},
-            .low = 15,
-            .high = 200,
-            .starts = {40, 90}}},
-      .confusable_with = {"joint_elasticity", "hysteresis", "input_delay"},
-      .experiment = "quick reversals at two amplitudes, small ones inside the play",
-      .form = "gap",
-      .memories = 3,
-      .force = [](const Moment& m, Values p,
-                  Values memory) { return detail::force_of(detail::gap_joint(p), m, memory); },
-      .start = [](const Moment& m, Values, Memory memory) { detail::start(m, memory); },
-      .advance = [](const Moment& m, Values p, Memory memory) { detail::advance(detail::gap_joint(p), m, memory); }};
+  return {.name = "backlash",
+          .sentence = "a load of {ratio} times the inertia behind backlash of {half_width} to either side at {at}",
+          .place = Place::velocity,
+          .parameters =
+              {{.name = "ratio", .measure = {}, .low = 0, .high = 10, .starts = {0.01}, .strength = true},
+               {.name = "half_width", .measure = {.position = 1}, .low = 0.001, .high = 1, .starts = {0.02, 0.05, 0.1}},
+               {.name = "frequency",  // of the two inertias in contact [rad/s]
+                .measure = {.time = -1},
+                .low = 15,
+                .high = 200,
+                .starts = {40, 90}}},
+          .confusable_with = {"joint_elasticity", "hysteresis", "input_delay"},
+          .experiment = "quick reversals at two amplitudes, small ones inside the play",
+          .form = "gap",
+          .hidden_states = 3,
+          .force = [](const EffectContext& m, Values p, Values hidden) { return force_of(gap_joint(p), m, hidden); },
+          .start = [](const EffectContext& m, Values, HiddenStates hidden) { start(m, hidden); },
+          .advance = [](const EffectContext& m, Values p, HiddenStates hidden) { advance(gap_joint(p), m, hidden); }};
 }
 
-/// Rigid parts (see playing_motor.hpp). The inertia of the equations is that of both.
+/// Rigid parts (see motor_behind_backlash.hpp). The inertia of the equations is that of both.
 inline Effect backlash_motor() {
   return {.name = "backlash",
           .sentence = "a motor of inertia {motor_inertia} before backlash of {half_width} to either side at {at}",
@@ -91,20 +87,27 @@ inline Effect backlash_motor() {
           .confusable_with = {"first_order_lag", "joint_elasticity", "input_delay", "hysteresis"},
           .experiment = "slow reversals at two amplitudes: lost motion is the same for both",
           .form = "motor",
-          .memories = 4,
+          .hidden_states = 4,
           .needs_damping = true,
-          .impacts = true,
-          .force = [](const Moment& m, Values p,
-                      Values memory) { return detail::PlayingMotor{p[0], p[1]}.force(m, memory); },
-          .position_rate = [](const Moment& m, Values p,
-                              Values memory) { return detail::PlayingMotor{p[0], p[1]}.position_rate(m, memory); },
-          .memory_rate =
-              [](const Moment& m, Values p, Values memory, Memory rates) {
-                const detail::Offset mean = detail::PlayingMotor{p[0], p[1]}.mean_rates(m, memory);
+          .is_impulsive = true,
+          .force =
+              [](const EffectContext& m, Values p, Values hidden) {
+                return MotorBehindBacklash{p[0], p[1]}.force(m, hidden);
+              },
+          .position_rate =
+              [](const EffectContext& m, Values p, Values hidden) {
+                return MotorBehindBacklash{p[0], p[1]}.position_rate(m, hidden);
+              },
+          .hidden_rate =
+              [](const EffectContext& m, Values p, Values hidden, HiddenStates rates) {
+                const Offset mean = MotorBehindBacklash{p[0], p[1]}.mean_rates(m, hidden);
                 rates[2] = mean.d;
                 rates[3] = mean.w;
               },
-          .advance = [](const Moment&, Values p, Memory memory) { detail::PlayingMotor{p[0], p[1]}.advance(memory); }};
+          .advance =
+              [](const EffectContext&, Values p, HiddenStates hidden) {
+                MotorBehindBacklash{p[0], p[1]}.advance(hidden);
+              }};
 }
 
 inline Effect backlash_sensor() {

@@ -2,7 +2,7 @@
 // Confusable with ground that slopes (when the heading never changes much) and with an input that favours one side.
 #pragma once
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 

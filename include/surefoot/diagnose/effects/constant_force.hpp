@@ -2,7 +2,7 @@
 // Confusable with a bias of the sensor or of the input, and with gravity on a joint that keeps to a small range.
 #pragma once
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
@@ -15,7 +15,7 @@ inline Effect constant_force() {
           {{.name = "force", .measure = {.effort = 1}, .low = -3, .high = 3, .starts = {0.003, 0.1}, .strength = true}},
       .confusable_with = {"gravity_offset", "sensor_bias", "input_asymmetry"},
       .experiment = "hold several positions far apart, each reached from both sides",
-      .force = [](const Moment&, Values p, Values) { return p[0]; }};
+      .force = [](const EffectContext&, Values p, Values) { return p[0]; }};
 }
 
 }  // namespace surefoot::effects

@@ -2,7 +2,7 @@
 // Confusable with a leak when the state hardly changes, and with a drift of its sensor.
 #pragma once
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
@@ -15,7 +15,7 @@ inline Effect constant_rate() {
           {{.name = "rate", .measure = {.effort = 1}, .low = -3, .high = 3, .starts = {0.003, 0.1}, .strength = true}},
       .confusable_with = {"leak", "sensor_drift", "input_gain"},
       .experiment = "stop every input at a low and at a high level and wait",
-      .force = [](const Moment&, Values p, Values) { return p[0]; }};
+      .force = [](const EffectContext&, Values p, Values) { return p[0]; }};
 }
 
 }  // namespace surefoot::effects

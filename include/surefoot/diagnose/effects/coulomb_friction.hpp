@@ -5,7 +5,7 @@
 // never changes, and with hysteresis and a dead zone, which also swallow small motions.
 #pragma once
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
@@ -19,7 +19,7 @@ inline Effect coulomb_friction() {
       .confusable_with = {"stribeck_friction", "load_dependent_friction", "hysteresis", "viscous_friction",
                           "dead_zone"},
       .experiment = "a slow ramp with reversals, at a few speeds down to the slowest that still moves",
-      .dry = [](const Moment&, Values p) { return p[0]; }};
+      .dry = [](const EffectContext&, Values p) { return p[0]; }};
 }
 
 }  // namespace surefoot::effects

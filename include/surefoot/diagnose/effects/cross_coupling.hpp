@@ -6,13 +6,11 @@
 
 #include <string>
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
-namespace detail {
-
-template <double Pose2::* From, double Pose2::* To>
+template <double Pose2::*From, double Pose2::*To>
 Effect coupling(const std::string& from, const std::string& to, EffectParameter gain) {
   return {.name = "cross_coupling",
           .sentence = from + " motion causes " + to + " motion, {gain}",
@@ -49,25 +47,23 @@ inline EffectParameter sideways_gain() {
   return {.name = "gain", .measure = {}, .low = -2, .high = 2, .starts = {0.01}, .strength = true};
 }
 
-}  // namespace detail
-
 inline Effect cross_coupling_forward_to_turn() {
-  return detail::coupling<&Pose2::x, &Pose2::angle>("forward", "turn", detail::turn_gain());
+  return coupling<&Pose2::x, &Pose2::angle>("forward", "turn", turn_gain());
 }
 inline Effect cross_coupling_forward_to_lateral() {
-  return detail::coupling<&Pose2::x, &Pose2::y>("forward", "lateral", detail::sideways_gain());
+  return coupling<&Pose2::x, &Pose2::y>("forward", "lateral", sideways_gain());
 }
 inline Effect cross_coupling_lateral_to_turn() {
-  return detail::coupling<&Pose2::y, &Pose2::angle>("lateral", "turn", detail::turn_gain());
+  return coupling<&Pose2::y, &Pose2::angle>("lateral", "turn", turn_gain());
 }
 inline Effect cross_coupling_lateral_to_forward() {
-  return detail::coupling<&Pose2::y, &Pose2::x>("lateral", "forward", detail::sideways_gain());
+  return coupling<&Pose2::y, &Pose2::x>("lateral", "forward", sideways_gain());
 }
 inline Effect cross_coupling_turn_to_forward() {
-  return detail::coupling<&Pose2::angle, &Pose2::x>("turn", "forward", detail::distance_gain());
+  return coupling<&Pose2::angle, &Pose2::x>("turn", "forward", distance_gain());
 }
 inline Effect cross_coupling_turn_to_lateral() {
-  return detail::coupling<&Pose2::angle, &Pose2::y>("turn", "lateral", detail::distance_gain());
+  return coupling<&Pose2::angle, &Pose2::y>("turn", "lateral", distance_gain());
 }
 
 }  // namespace surefoot::effects

@@ -3,23 +3,24 @@
 // Confusable with a linear spring of the model at one amplitude, and with a soft end stop.
 #pragma once
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
 inline Effect cubic_stiffness() {
-  return {.name = "cubic_stiffness",
-          .sentence = "a spring that hardens with the cube of the position, {stiffness}, at {at}",
-          .place = Place::velocity,
-          .parameters = {{.name = "stiffness",
-                          .measure = {.effort = 1, .position = -3},
-                          .low = -3,
-                          .high = 3,
-                          .starts = {0.003, 0.1},
-                          .strength = true}},
-          .confusable_with = {"end_stop", "gravity_offset", "saturation"},
-          .experiment = "free oscillations, or slow sweeps, at a small and at the largest amplitude",
-          .force = [](const Moment& m, Values p, Values) { return -p[0] * m.position * m.position * m.position; }};
+  return {
+      .name = "cubic_stiffness",
+      .sentence = "a spring that hardens with the cube of the position, {stiffness}, at {at}",
+      .place = Place::velocity,
+      .parameters = {{.name = "stiffness",
+                      .measure = {.effort = 1, .position = -3},
+                      .low = -3,
+                      .high = 3,
+                      .starts = {0.003, 0.1},
+                      .strength = true}},
+      .confusable_with = {"end_stop", "gravity_offset", "saturation"},
+      .experiment = "free oscillations, or slow sweeps, at a small and at the largest amplitude",
+      .force = [](const EffectContext& m, Values p, Values) { return -p[0] * m.position * m.position * m.position; }};
 }
 
 }  // namespace surefoot::effects

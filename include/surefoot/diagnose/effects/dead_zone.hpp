@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
@@ -25,7 +25,7 @@ inline Effect dead_zone() {
                           .strength = true}},
           .confusable_with = {"coulomb_friction", "input_gain", "backlash"},
           .experiment = "small inputs that grow slowly from zero, both ways",
-          .signal = [](const Moment& m, Values p, Values) {
+          .signal = [](const EffectContext& m, Values p, Values) {
             return std::max(m.value - p[0], 0.0) + std::min(m.value + p[0], 0.0);
           }};
 }
@@ -38,7 +38,7 @@ inline Effect dead_zone_step() {
           .confusable_with = {"coulomb_friction", "backlash"},
           .experiment = "small inputs that grow slowly from zero, both ways",
           .form = "step",
-          .signal = [](const Moment& m, Values p, Values) {
+          .signal = [](const EffectContext& m, Values p, Values) {
             const double edge = std::clamp((std::abs(m.value) / p[0] - 0.9) / 0.2, 0.0, 1.0);
             return m.value * edge * edge * (3 - 2 * edge);
           }};

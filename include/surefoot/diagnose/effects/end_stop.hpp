@@ -3,12 +3,10 @@
 // Confusable with a limit of the input (the machine does not get further) and with a hardening spring.
 #pragma once
 
-#include "surefoot/diagnose/effect.hpp"
-#include "surefoot/diagnose/effects/extremes.hpp"
+#include "surefoot/diagnose/effects/detail/extremes.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
-
-namespace detail {
 
 // side +1: upper, -1: lower
 template <int Side>
@@ -33,10 +31,8 @@ Effect end_stop_of(std::string form) {
           }};
 }
 
-}  // namespace detail
+inline Effect end_stop_upper() { return end_stop_of<1>("upper"); }
 
-inline Effect end_stop_upper() { return detail::end_stop_of<1>("upper"); }
-
-inline Effect end_stop_lower() { return detail::end_stop_of<-1>("lower"); }
+inline Effect end_stop_lower() { return end_stop_of<-1>("lower"); }
 
 }  // namespace surefoot::effects

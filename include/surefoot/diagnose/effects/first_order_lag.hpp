@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
@@ -25,27 +25,27 @@ inline Effect first_order_lag() {
           .experiment =
               "sharp steps of the input at random times: after a lag it starts at once, after a delay nothing "
               "moves",
-          .memories = 2,
+          .hidden_states = 2,
           .start =
-              [](const Moment& m, Values, Memory memory) {
-                memory[0] = m.value;
-                memory[1] = 0;
+              [](const EffectContext& m, Values, HiddenStates hidden) {
+                hidden[0] = m.value;
+                hidden[1] = 0;
               },
-          .memory_rate =
-              [](const Moment& m, Values, Values, Memory rates) {
+          .hidden_rate =
+              [](const EffectContext& m, Values, Values, HiddenStates rates) {
                 rates[0] = 0;
                 rates[1] = m.value;
               },
           .advance =
-              [](const Moment& m, Values p, Memory memory) {
-                if (m.step > 0) memory[0] += -std::expm1(-m.step / p[0]) * (memory[1] / m.step - memory[0]);
-                memory[1] = 0;
+              [](const EffectContext& m, Values p, HiddenStates hidden) {
+                if (m.step > 0) hidden[0] += -std::expm1(-m.step / p[0]) * (hidden[1] / m.step - hidden[0]);
+                hidden[1] = 0;
               },
           .signal =
-              [](const Moment& m, Values p, Values memory) {
+              [](const EffectContext& m, Values p, Values hidden) {
                 const double steps = m.step / p[0];
                 const double still = steps > 1e-9 ? -std::expm1(-steps) / steps : 1.0;
-                return m.value + (memory[0] - m.value) * still;
+                return m.value + (hidden[0] - m.value) * still;
               }};
 }
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
@@ -21,7 +21,7 @@ inline Effect gravity_offset() {
                           .strength = true}},
           .confusable_with = {"constant_force", "sensor_bias", "cogging"},
           .experiment = "hold angles over at least half a turn, each reached from both sides",
-          .force = [](const Moment& m, Values p, Values) { return p[0] * std::cos(m.position); }};
+          .force = [](const EffectContext& m, Values p, Values) { return p[0] * std::cos(m.position); }};
 }
 
 }  // namespace surefoot::effects

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 

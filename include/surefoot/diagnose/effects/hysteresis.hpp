@@ -3,18 +3,16 @@
 //   z' = v - |v| z / width  (exponent 1, beta alone),   force = -force * z / width.
 // Form "n = 2" has exponent 2 and beta = gamma: dz/dq = 1 - (z/width)^2 on the way up, 1 on the way back. Both are
 // functions of the distance travelled since the last step, so they are evaluated in closed form and stable for any
-// step. Memory: z, position after the last step. Confusable with dry friction (width to 0) and with backlash, which
-// also forgets the way at each reversal.
+// step. HiddenStates: z, position after the last step. Confusable with dry friction (width to 0) and with backlash,
+// which also forgets the way at each reversal.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
-
-namespace detail {
 
 /// z after moving by `way` from z. |result| <= width if |z| was.
 inline double bouc_wen_1(double z, double way, double width) {
@@ -46,25 +44,23 @@ Effect hysteresis_of(std::string form) {
       .confusable_with = {"coulomb_friction", "backlash", "stribeck_friction"},
       .experiment = "slow reversals of growing amplitude, from far below to far above the width",
       .form = std::move(form),
-      .memories = 2,
-      .force = [](const Moment& m, Values p,
-                  Values memory) { return -p[0] * Move(memory[0], m.position - memory[1], p[1]) / p[1]; },
+      .hidden_states = 2,
+      .force = [](const EffectContext& m, Values p,
+                  Values hidden) { return -p[0] * Move(hidden[0], m.position - hidden[1], p[1]) / p[1]; },
       .start =
-          [](const Moment& m, Values, Memory memory) {
-            memory[0] = 0;
-            memory[1] = m.position;
+          [](const EffectContext& m, Values, HiddenStates hidden) {
+            hidden[0] = 0;
+            hidden[1] = m.position;
           },
       .advance =
-          [](const Moment& m, Values p, Memory memory) {
-            memory[0] = Move(memory[0], m.position - memory[1], p[1]);
-            memory[1] = m.position;
+          [](const EffectContext& m, Values p, HiddenStates hidden) {
+            hidden[0] = Move(hidden[0], m.position - hidden[1], p[1]);
+            hidden[1] = m.position;
           }};
 }
 
-}  // namespace detail
+inline Effect hysteresis() { return hysteresis_of<bouc_wen_1>(""); }
 
-inline Effect hysteresis() { return detail::hysteresis_of<detail::bouc_wen_1>(""); }
-
-inline Effect hysteresis_squared() { return detail::hysteresis_of<detail::bouc_wen_2>("n = 2"); }
+inline Effect hysteresis_squared() { return hysteresis_of<bouc_wen_2>("n = 2"); }
 
 }  // namespace surefoot::effects

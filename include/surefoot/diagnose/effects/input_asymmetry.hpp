@@ -2,7 +2,7 @@
 // Confusable with a constant force (when the input is always about as large) and with a gain (when it is one-sided).
 #pragma once
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
@@ -15,7 +15,7 @@ inline Effect input_asymmetry() {
           {{.name = "asymmetry", .measure = {}, .low = -0.95, .high = 0.95, .starts = {0.003, 0.1}, .strength = true}},
       .confusable_with = {"constant_force", "input_gain", "body_drift", "sensor_bias"},
       .experiment = "the same steps of the input to either side, in two sizes",
-      .signal = [](const Moment& m, Values p, Values) { return m.value * (m.value > 0 ? 1 + p[0] : 1 - p[0]); }};
+      .signal = [](const EffectContext& m, Values p, Values) { return m.value * (m.value > 0 ? 1 + p[0] : 1 - p[0]); }};
 }
 
 }  // namespace surefoot::effects

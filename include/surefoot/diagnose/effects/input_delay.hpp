@@ -2,7 +2,7 @@
 // Confusable with a lag (the near twin), with a late sensor, and at one amplitude with backlash.
 #pragma once
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 

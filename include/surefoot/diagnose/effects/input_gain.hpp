@@ -2,7 +2,7 @@
 // Confusable with any parameter of the model that scales the same force (a motor constant, an inertia).
 #pragma once
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
@@ -14,7 +14,7 @@ inline Effect input_gain() {
               {{.name = "excess", .measure = {}, .low = -0.95, .high = 3, .starts = {0.003, 0.1}, .strength = true}},
           .confusable_with = {"input_asymmetry", "dead_zone", "supply_sag", "viscous_friction"},
           .experiment = "steps of the input of several sizes, both ways",
-          .signal = [](const Moment& m, Values p, Values) { return m.value * (1 + p[0]); }};
+          .signal = [](const EffectContext& m, Values p, Values) { return m.value * (1 + p[0]); }};
 }
 
 }  // namespace surefoot::effects

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
@@ -23,8 +23,8 @@ inline Effect leak() {
                           .strength = true}},
           .confusable_with = {"constant_rate", "input_gain", "overflow"},
           .experiment = "fill it up, stop every input and record the decay until little is left",
-          .stored = true,
-          .force = [](const Moment& m, Values p, Values) { return -p[0] * m.value; }};
+          .needs_conserved_state = true,
+          .force = [](const EffectContext& m, Values p, Values) { return -p[0] * m.value; }};
 }
 
 inline Effect leak_hole() {
@@ -40,8 +40,8 @@ inline Effect leak_hole() {
           .confusable_with = {"constant_rate", "input_gain", "overflow"},
           .experiment = "fill it up, stop every input and record the decay until little is left",
           .form = "hole",
-          .stored = true,
-          .force = [](const Moment& m, Values p, Values) { return -p[0] * std::sqrt(std::max(m.value, 0.0)); }};
+          .needs_conserved_state = true,
+          .force = [](const EffectContext& m, Values p, Values) { return -p[0] * std::sqrt(std::max(m.value, 0.0)); }};
 }
 
 }  // namespace surefoot::effects

@@ -7,13 +7,12 @@
 
 #include <cmath>
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
-namespace detail {
-
-inline Effect load_friction(std::string form, std::string sentence, std::function<double(const Moment&, Values)> dry) {
+inline Effect load_friction(std::string form, std::string sentence,
+                            std::function<double(const EffectContext&, Values)> dry) {
   return {.name = "load_dependent_friction",
           .sentence = std::move(sentence),
           .place = Place::velocity,
@@ -27,21 +26,19 @@ inline Effect load_friction(std::string form, std::string sentence, std::functio
           .dry = std::move(dry)};
 }
 
-}  // namespace detail
-
 inline Effect load_dependent_friction() {
-  return detail::load_friction("drive", "dry friction of {factor} times the driving force at {at}",
-                               [](const Moment& m, Values p) { return p[0] * std::abs(m.drive); });
+  return load_friction("drive", "dry friction of {factor} times the driving force at {at}",
+                       [](const EffectContext& m, Values p) { return p[0] * std::abs(m.drive); });
 }
 
 inline Effect load_dependent_friction_under_load() {
-  return detail::load_friction("load", "dry friction of {factor} times the load at {at}",
-                               [](const Moment& m, Values p) { return p[0] * std::abs(m.load); });
+  return load_friction("load", "dry friction of {factor} times the load at {at}",
+                       [](const EffectContext& m, Values p) { return p[0] * std::abs(m.load); });
 }
 
 inline Effect load_dependent_friction_in_gears() {
-  return detail::load_friction("gears", "dry friction of {factor} times the force that the gears pass on at {at}",
-                               [](const Moment& m, Values p) { return p[0] * 0.5 * std::abs(m.drive - m.load); });
+  return load_friction("gears", "dry friction of {factor} times the force that the gears pass on at {at}",
+                       [](const EffectContext& m, Values p) { return p[0] * 0.5 * std::abs(m.drive - m.load); });
 }
 
 }  // namespace surefoot::effects

@@ -2,8 +2,8 @@
 // Confusable with a clipped sensor or a limited input, which also cut the top off.
 #pragma once
 
-#include "surefoot/diagnose/effect.hpp"
-#include "surefoot/diagnose/effects/extremes.hpp"
+#include "surefoot/diagnose/effects/detail/extremes.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
@@ -19,8 +19,8 @@ inline Effect overflow() {
                           .of_peak = true}},
           .confusable_with = {"saturation", "leak"},
           .experiment = "fill it well beyond the suspected level, slowly and quickly, and let it fall again",
-          .stored = true,
-          .suggest = detail::near_largest,
+          .needs_conserved_state = true,
+          .suggest = near_largest,
           .limit = [](Values p, double& value, double&, double&) {
             if (value > p[0]) value = p[0];
           }};
@@ -40,9 +40,9 @@ inline Effect overflow_spill() {
           .confusable_with = {"saturation", "leak"},
           .experiment = "fill it well beyond the suspected level, slowly and quickly, and watch where it goes",
           .form = "spill",
-          .stored = true,
-          .spills = true,
-          .suggest = detail::near_largest,
+          .needs_conserved_state = true,
+          .has_overflow_target = true,
+          .suggest = near_largest,
           .limit = [](Values p, double& value, double&, double& other) {
             if (value <= p[0]) return;
             other += p[1] * (value - p[0]);

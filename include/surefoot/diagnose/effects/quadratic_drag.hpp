@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
@@ -21,7 +21,7 @@ inline Effect quadratic_drag() {
                           .strength = true}},
           .confusable_with = {"viscous_friction", "coulomb_friction"},
           .experiment = "let it coast freely from the highest speed down to rest",
-          .force = [](const Moment& m, Values p, Values) { return -p[0] * m.value * std::abs(m.value); }};
+          .force = [](const EffectContext& m, Values p, Values) { return -p[0] * m.value * std::abs(m.value); }};
 }
 
 }  // namespace surefoot::effects

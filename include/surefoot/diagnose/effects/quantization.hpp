@@ -7,8 +7,8 @@
 
 #include <cmath>
 
-#include "surefoot/diagnose/effect.hpp"
-#include "surefoot/diagnose/effects/sensor_steps.hpp"
+#include "surefoot/diagnose/effects/detail/sensor_steps.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 

@@ -6,11 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
-
-namespace detail {
 
 // Starts in shares of the largest input; a soft limit already acts well below its level.
 inline EffectParameter saturation_level(std::vector<double> starts) {
@@ -18,27 +16,25 @@ inline EffectParameter saturation_level(std::vector<double> starts) {
       .name = "level", .measure = {.value = 1}, .low = 0.05, .high = 6, .starts = std::move(starts), .of_peak = true};
 }
 
-}  // namespace detail
-
 inline Effect saturation() {
   return {.name = "saturation",
           .sentence = "{at} is limited to {level} either way",
           .place = Place::input,
-          .parameters = {detail::saturation_level({0.4, 0.6, 0.8, 0.93})},
+          .parameters = {saturation_level({0.4, 0.6, 0.8, 0.93})},
           .confusable_with = {"input_gain", "supply_sag", "rate_limit", "slip_saturation"},
           .experiment = "steps of the input of growing size, up to the largest",
-          .signal = [](const Moment& m, Values p, Values) { return std::clamp(m.value, -p[0], p[0]); }};
+          .signal = [](const EffectContext& m, Values p, Values) { return std::clamp(m.value, -p[0], p[0]); }};
 }
 
 inline Effect saturation_soft() {
   return {.name = "saturation",
           .sentence = "{at} levels off at {level} either way",
           .place = Place::input,
-          .parameters = {detail::saturation_level({0.5, 0.8, 1.3, 2.5})},
+          .parameters = {saturation_level({0.5, 0.8, 1.3, 2.5})},
           .confusable_with = {"input_gain", "supply_sag", "slip_saturation"},
           .experiment = "steps of the input of growing size, up to the largest",
           .form = "soft",
-          .signal = [](const Moment& m, Values p, Values) { return p[0] * std::tanh(m.value / p[0]); }};
+          .signal = [](const EffectContext& m, Values p, Values) { return p[0] * std::tanh(m.value / p[0]); }};
 }
 
 }  // namespace surefoot::effects

@@ -2,7 +2,7 @@
 // Confusable with a constant force, with weight off its line, and with a wrong initial state.
 #pragma once
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 

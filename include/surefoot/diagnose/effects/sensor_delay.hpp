@@ -6,17 +6,15 @@
 #include <cstddef>
 #include <vector>
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
-
-namespace detail {
 
 inline void read_late(const Series& series, double delay) {
   const std::size_t rows = series.readings.size();
   if (rows == 0) return;
   const std::vector<double> now(series.readings.begin(), series.readings.end());
-  std::size_t after = 0;  // the first row later than the moment that is read
+  std::size_t after = 0;  // the first row later than the context that is read
   for (std::size_t row = 0; row < rows; ++row) {
     const double t = series.time[row] - delay;
     while (after < rows && series.time[after] <= t) ++after;
@@ -31,8 +29,6 @@ inline void read_late(const Series& series, double delay) {
   }
 }
 
-}  // namespace detail
-
 inline Effect sensor_delay() {
   return {.name = "sensor_delay",
           .sentence = "the sensor {at} reads {delay} late",
@@ -45,7 +41,7 @@ inline Effect sensor_delay() {
                           .strength = true}},
           .confusable_with = {"input_delay", "first_order_lag", "backlash"},
           .experiment = "move it by hand, or by a known drive, past a mark seen by a second sensor",
-          .sensor = [](const Series& series, Values p) { detail::read_late(series, p[0]); }};
+          .sensor = [](const Series& series, Values p) { read_late(series, p[0]); }};
 }
 
 }  // namespace surefoot::effects

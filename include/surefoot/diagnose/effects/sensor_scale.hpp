@@ -2,7 +2,7 @@
 // Confusable with a gain of the input, and with any parameter that makes all motions larger.
 #pragma once
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 

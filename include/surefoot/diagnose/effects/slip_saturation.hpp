@@ -5,13 +5,11 @@
 
 #include <cmath>
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
-namespace detail {
-
-template <double Pose2::* Part>
+template <double Pose2::*Part>
 Effect slip_saturation_of(std::string form, EffectParameter level) {
   return {.name = "slip_saturation",
           .sentence = "slip: " + form + " steps level off at {level}",
@@ -32,18 +30,12 @@ inline EffectParameter slip_distance() {
   return {.name = "level", .measure = {.value = 1}, .low = 0.005, .high = 2, .starts = {0.02, 0.05, 0.12, 0.3}};
 }
 
-}  // namespace detail
+inline Effect slip_saturation_forward() { return slip_saturation_of<&Pose2::x>("forward", slip_distance()); }
 
-inline Effect slip_saturation_forward() {
-  return detail::slip_saturation_of<&Pose2::x>("forward", detail::slip_distance());
-}
-
-inline Effect slip_saturation_lateral() {
-  return detail::slip_saturation_of<&Pose2::y>("lateral", detail::slip_distance());
-}
+inline Effect slip_saturation_lateral() { return slip_saturation_of<&Pose2::y>("lateral", slip_distance()); }
 
 inline Effect slip_saturation_turn() {
-  return detail::slip_saturation_of<&Pose2::angle>(
+  return slip_saturation_of<&Pose2::angle>(
       "turn", {.name = "level", .measure = {.position = 1}, .low = 0.02, .high = 3, .starts = {0.1, 0.25, 0.6}});
 }
 

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
@@ -29,7 +29,7 @@ inline Effect stribeck_friction() {
       .experiment =
           "slow ramps with reversals at several speeds, from crawling to fast: the force needed falls with "
           "speed",
-      .dry = [](const Moment& m, Values p) {
+      .dry = [](const EffectContext& m, Values p) {
         const double ratio = m.value / p[2];
         return p[0] + p[1] * std::exp(-ratio * ratio);
       }};

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
@@ -19,7 +19,7 @@ inline Effect supply_sag() {
           {{.name = "sag", .measure = {.value = -1}, .low = 0, .high = 1, .starts = {0.003, 0.1}, .strength = true}},
       .confusable_with = {"saturation", "input_gain", "quadratic_drag"},
       .experiment = "long pushes of several strengths, with the supply's voltage recorded",
-      .signal = [](const Moment& m, Values p, Values) {
+      .signal = [](const EffectContext& m, Values p, Values) {
         return m.value * std::max(0.0, 1 - p[0] * std::abs(m.value));
       }};
 }

@@ -5,7 +5,7 @@
 // EMF of a motor brakes in the same way.
 #pragma once
 
-#include "surefoot/diagnose/effect.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
@@ -21,7 +21,7 @@ inline Effect viscous_friction() {
                           .strength = true}},
           .confusable_with = {"coulomb_friction", "quadratic_drag", "input_gain"},
           .experiment = "let it coast freely from a few different speeds",
-          .force = [](const Moment& m, Values p, Values) { return -p[0] * m.value; }};
+          .force = [](const EffectContext& m, Values p, Values) { return -p[0] * m.value; }};
 }
 
 }  // namespace surefoot::effects

@@ -1,0 +1,17 @@
+// Where sequences really ended against where they should have: a picture.
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include "surefoot/motion/previous_command_correction.hpp"
+#include "surefoot/motion/walk_sequence.hpp"
+
+namespace calibrate_program {
+
+/// Draws BASE.svg and BASE.png: left by the orders as they are, right by the model; a line joins what belongs together.
+/// `kept_aside`: the sequences were not fitted to. Throws example::UsageError if gnuplot is missing.
+void draw_final_poses(const std::filesystem::path& base, const surefoot::PreviousOrderCorrection& model,
+                      std::span<const surefoot::WalkSequence> sequences, bool kept_aside);
+
+}  // namespace calibrate_program

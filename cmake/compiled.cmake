@@ -1,0 +1,24 @@
+# surefoot::compiled: the headers with everything that does not depend on types of the user compiled once. Its sources
+# are the same files: one translation unit per folder of include/surefoot, of all its .ipp.
+file(GLOB_RECURSE definitions CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/include
+     ${PROJECT_SOURCE_DIR}/include/surefoot/*.ipp)
+set(folders)
+foreach(file IN LISTS definitions)
+  get_filename_component(folder ${file} DIRECTORY)
+  list(APPEND folders ${folder})
+  string(MAKE_C_IDENTIFIER ${folder} id)
+  string(APPEND text_${id} "#include \"${file}\"\n")
+endforeach()
+list(REMOVE_DUPLICATES folders)
+set(sources)
+foreach(folder IN LISTS folders)
+  string(MAKE_C_IDENTIFIER ${folder} id)
+  file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/compiled/${id}.cpp CONTENT "${text_${id}}")
+  list(APPEND sources ${PROJECT_BINARY_DIR}/compiled/${id}.cpp)
+endforeach()
+
+add_library(surefoot_compiled STATIC EXCLUDE_FROM_ALL ${sources})
+add_library(surefoot::compiled ALIAS surefoot_compiled)
+set_target_properties(surefoot_compiled PROPERTIES OUTPUT_NAME surefoot EXPORT_NAME compiled POSITION_INDEPENDENT_CODE ON)
+target_link_libraries(surefoot_compiled PUBLIC surefoot)
+target_compile_definitions(surefoot_compiled PUBLIC SUREFOOT_COMPILED)

@@ -1,0 +1,224 @@
+// bus_check: the bus and its safety layer against virtual servos that lose and damage answers, in real time. Each cycle
+// sends goals to all joints and reads all of them. Exit code 1 where anything is not as it must be.
+//
+// A damaged answer could in principle pass the CRC-16: damage to two bytes in a row, as made here, never does; damage
+// to more does in one of 65,536 cases.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <iomanip>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "../../../../apps/common/interrupt.hpp"
+#include "../../../../apps/common/run_program.hpp"
+#include "../bus/background_port.hpp"
+#include "../bus/realtime.hpp"
+#include "../bus/serial_port.hpp"
+#include "../servos/servo_group.hpp"
+#include "../virtual_bus/virtual_bus.hpp"
+#include "stall_watch.hpp"
+
+namespace {
+
+using namespace dynamixel;
+
+struct Options {
+  double seconds = 60;
+  int servos = 20;
+  double rate_hz = 100;
+  double latency_s = 1.5e-3;
+  double memory_s = 60e-3;
+  double silent_for_s = 2;
+  std::uint32_t bits_per_s = 3'000'000;
+  std::uint64_t seed = 1;
+  Faults faults{.lost = 0.01, .corrupted = 0.01};
+};
+
+struct Findings {
+  std::uint64_t cycles = 0;
+  std::uint64_t missed = 0;          // were not over when the next one began
+  std::uint64_t stalled = 0;         // of them, in which the machine itself stood still
+  std::uint64_t incomplete = 0;      // some joint had no answer
+  std::uint64_t accepted = 0;        // answers
+  std::uint64_t wrong = 0;           // of them, not what the servo sent in that cycle
+  std::uint64_t false_reports = 0;   // of silence
+  double longest_s = 0;              // cycle, with how late it began
+  double latest_s = 0;               // that a cycle began, because the system woke us late
+  double spent_s = 0;                // in all cycles
+  std::optional<double> reported_s;  // silence, after it began
+  std::optional<double> back_s;      // after it ended
+};
+
+using ServoBus = Bus<Protocol2, BackgroundPort<SerialPort>>;
+
+/// Runs the cycles. A servo in the middle of the bus is silent for a while, from a third of the time on.
+Findings run(const Options& options, VirtualBus<Protocol2>& line, ServoBus& bus, std::vector<Joint> joints,
+             StallWatch& watch, const example::Interrupt& interrupt) {
+  Findings found;
+  const Time period = from_seconds(1 / options.rate_hz);
+  ServoGroup<ServoBus> group(bus, mx_64_protocol_2, std::move(joints), {.listen_s = 0.7 / options.rate_hz});
+  group.start();
+  const std::size_t victim = group.joints().size() / 2;
+  const std::uint8_t victim_id = group.joints()[victim].id;
+  const Time begin = bus.port().now() + period;
+  const Time silent_from = begin + from_seconds(options.seconds / 3);
+  const Time silent_to = silent_from + from_seconds(options.silent_for_s);
+  bool silenced = false, heard_again = false;
+  std::vector<double> goals(group.joints().size());
+  std::vector<std::array<Time, 2>> missed;
+  for (Time start = begin; start < begin + from_seconds(options.seconds) && !interrupt.requested(); start += period) {
+    std::this_thread::sleep_until(std::chrono::steady_clock::time_point(start));
+    if (!silenced && start >= silent_from) {
+      line.with([&](auto& answerer) { answerer.set_silent(victim_id, true); });
+      silenced = true;
+    }
+    if (!heard_again && start >= silent_to) {
+      line.with([&](auto& answerer) { answerer.set_silent(victim_id, false); });
+      heard_again = true;
+    }
+    const auto first = line.with([](const auto& answerer) { return answerer.instructions() + 1; });
+    for (std::size_t i = 0; i < goals.size(); ++i) {
+      goals[i] = 0.5 * std::sin(3 * to_seconds(start - begin) + static_cast<double>(i));
+    }
+    const Time work = bus.port().now();
+    found.latest_s = std::max(found.latest_s, to_seconds(work - start));
+    group.set_goals(goals);
+    const std::size_t answered = group.update(start + from_seconds(0.7 / options.rate_hz));
+    const Time end = bus.port().now();
+
+    ++found.cycles;
+    if (end > start + period) missed.push_back({start - period, end});
+    found.incomplete += answered < goals.size() ? 1 : 0;
+    found.accepted += answered;
+    found.longest_s = std::max(found.longest_s, to_seconds(end - start));
+    found.spent_s += to_seconds(end - work);
+    for (const ServoEvent& event : group.events()) {
+      if (event.kind == ServoEventKind::silent) {
+        if (event.joint != victim || found.reported_s || !silenced) {
+          ++found.false_reports;
+        } else {
+          found.reported_s = to_seconds(end - silent_from);
+        }
+      }
+      if (event.kind == ServoEventKind::back && event.joint == victim && !found.back_s && heard_again) {
+        found.back_s = to_seconds(end - silent_to);
+      }
+    }
+    for (std::size_t i = 0; i < goals.size(); ++i) {
+      if (!group.states()[i].fresh) continue;
+      const bool right = line.with(
+          [&](const auto& answerer) { return answerer.gave(group.joints()[i].id, group.received(i), first); });
+      found.wrong += right ? 0 : 1;
+    }
+  }
+  found.missed = missed.size();
+  for (const auto& [from, to] : missed) found.stalled += watch.any(from, to) ? 1 : 0;
+  return found;
+}
+
+bool say(bool right, const std::string& what) {
+  std::cout << (right ? "  ok      " : "  FAILED  ") << what << '\n';
+  return right;
+}
+
+std::string milliseconds(std::optional<double> seconds) {
+  return seconds ? std::to_string(static_cast<int>(std::lround(*seconds * 1e3))) + " ms" : "never";
+}
+
+int check(const Options& options) {
+  const example::Interrupt interrupt;
+  const bool realtime = ask_for_realtime();
+  std::vector<VirtualServo> servos;
+  std::vector<Joint> joints;
+  for (int i = 0; i < options.servos; ++i) {
+    const auto id = static_cast<std::uint8_t>(i + 1);
+    servos.emplace_back(mx_64_protocol_2, id, 0.01 * i);
+    joints.push_back({.name = "joint " + std::to_string(id), .id = id});
+  }
+  VirtualBus<Protocol2> line{
+      Answerer<Protocol2>(servos, {.bits_per_s = options.bits_per_s, .faults = options.faults, .seed = options.seed})};
+  ServoBus bus(BackgroundPort(SerialPort(line.path(), options.bits_per_s)),
+               {.return_delay_s = 0, .latency_s = options.latency_s, .memory_s = options.memory_s});
+  std::cout << options.servos << " virtual servos at " << options.bits_per_s << " bit/s behind " << line.path() << ", "
+            << options.rate_hz << " Hz for " << options.seconds << " s, "
+            << (realtime ? "real-time priority" : "no real-time priority") << '\n'
+            << std::flush;
+  StallWatch watch;
+  const Findings found = run(options, line, bus, joints, watch, interrupt);
+
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  bus.listen();
+  ServoStatistics ours;
+  for (const Joint& joint : joints) ours += bus.statistics(joint.id);
+  const FaultCounts made = line.with([](const auto& answerer) { return answerer.counts(); });
+  const std::uint64_t unheard = ours.lost + ours.skipped, unsent = made.lost + made.silent + made.withheld;
+  const auto pair = [](std::uint64_t counted, std::uint64_t truth) {
+    return std::to_string(counted) + " counted, " + std::to_string(truth) + " made";
+  };
+  std::cout << std::fixed << std::setprecision(2) << found.cycles << " cycles of "
+            << found.spent_s / static_cast<double>(std::max<std::uint64_t>(found.cycles, 1)) * 1e3 << " ms on average, "
+            << found.longest_s * 1e3 << " ms at most, begun up to " << found.latest_s * 1e3 << " ms late; "
+            << found.incomplete << " without all answers; " << found.accepted << " answers\n"
+            << "asked " << ours.asked << " times: " << ours.answered << " answered, " << ours.lost << " lost, "
+            << ours.corrupted << " corrupted, " << ours.late << " late, " << ours.skipped << " behind a silent one, "
+            << ours.wrong_id << " wrong id, " << ours.wrong_length << " wrong length, " << ours.duplicates
+            << " twice\n";
+  bool right = say(!interrupt.requested(), "ran to the end");
+  right &= say(found.missed == found.stalled,
+               "missed control cycles: " + std::to_string(found.missed) +
+                   ", of them while the machine stood still: " + std::to_string(found.stalled) +
+                   " (threads that only sleep woke late " + std::to_string(watch.count()) + " times)");
+  // An answer that the system hands over late may look like another fault at first; the sum is right in any case.
+  const bool comparable = ours.late == 0;
+  const std::string note = comparable ? "" : "; kinds not compared, as the system handed over some answers late";
+  right &= say(!comparable || ours.corrupted == made.corrupted,
+               "corrupted answers: " + pair(ours.corrupted, made.corrupted) + note);
+  right &= say(!comparable || ours.lost == made.lost + made.silent,
+               "lost answers, with those of the silent servo: " + pair(ours.lost, made.lost + made.silent) + note);
+  right &= say(ours.corrupted + unheard == made.corrupted + unsent,
+               "all of these, with those not sent behind a silent one: " +
+                   pair(ours.corrupted + unheard, made.corrupted + unsent));
+  right &= say(ours.wrong_id + ours.wrong_length + ours.duplicates + ours.refused == 0,
+               "faults counted but not made: " +
+                   std::to_string(ours.wrong_id + ours.wrong_length + ours.duplicates + ours.refused));
+  right &= say(found.wrong == 0, "wrong values accepted: " + std::to_string(found.wrong));
+  right &= say(found.false_reports == 0, "false reports of silence: " + std::to_string(found.false_reports));
+  right &= say(found.reported_s && *found.reported_s <= 0.050,
+               "silence reported after " + milliseconds(found.reported_s) + " (at most 50 ms)");
+  right &= say(found.back_s.has_value(), "heard again after " + milliseconds(found.back_s));
+  return right ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App program{"The servo bus against virtual servos with faults, in real time", "bus_check"};
+  Options options;
+  program.add_option("--seconds", options.seconds)->check(CLI::Range(1.0, 1e6))->capture_default_str();
+  program.add_option("--servos", options.servos)->check(CLI::Range(2, 64))->capture_default_str();
+  program.add_option("--rate", options.rate_hz, "[Hz]")->check(CLI::Range(1.0, 1000.0))->capture_default_str();
+  program.add_option("--baud", options.bits_per_s, "[bit/s]")->capture_default_str();
+  program.add_option("--latency", options.latency_s, "of the operating system, allowed for [s]")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  program
+      .add_option(
+          "--memory", options.memory_s,
+          "how late answers are still recognised [s]; a busy kernel hands over the bytes of a pseudo-terminal late")
+      ->check(CLI::Range(1e-3, 1.0))
+      ->capture_default_str();
+  program.add_option("--silent-for", options.silent_for_s, "[s]")->capture_default_str();
+  program.add_option("--lost", options.faults.lost, "share of answers")->capture_default_str();
+  program.add_option("--corrupted", options.faults.corrupted, "share of answers")->capture_default_str();
+  program.add_option("--seed", options.seed)->capture_default_str();
+  int code = EXIT_SUCCESS;
+  program.callback([&] { code = check(options); });
+  const int parsed = example::run_program(program, argc, argv);
+  return parsed == EXIT_SUCCESS ? code : parsed;
+}

@@ -1,0 +1,75 @@
+// `record`: sequences of walk orders and where the twin got by them, as CSV.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../../../apps/common/files.hpp"
+#include "../../../apps/calibrate/load_sequences.hpp"
+#include "../../../apps/calibrate/stoppable.hpp"
+#include "commands.hpp"
+#include "progress_line.hpp"
+#include "surefoot/motion/plan/command_plan.hpp"
+#include "twin_sequence.hpp"
+
+namespace sigmaban {
+namespace {
+
+struct Options {
+  TwinOptions twin;
+  int sequences = 25, cycles = 25;
+  std::filesystem::path orders, out;
+};
+
+/// Per cycle, one matrix per sequence.
+std::vector<Eigen::Matrix3Xd> orders_of(const Options& options) {
+  if (options.orders.empty()) {
+    return surefoot::plan_orders(surefoot::OrderBounds(), options.sequences, options.cycles, options.twin.seed);
+  }
+  calibrate_program::LoadOptions load;
+  load.usual_steps = steps_per_cycle;
+  load.poses_needed = false;
+  std::vector<Eigen::Matrix3Xd> orders;
+  for (auto& sequence : calibrate_program::load_sequences({options.orders}, load).sequences) {
+    orders.push_back(std::move(sequence.orders));
+  }
+  return orders;
+}
+
+void run(const Options& options) {
+  const WalkingTwinOptions twin = walking_twin_options(options.twin);
+  const std::vector<Eigen::Matrix3Xd> orders = orders_of(options);
+  example::prepare_output(options.out);
+  calibrate_program::until_interrupted(options.twin.threads, [&](const calibrate_program::StoppableThreads& threads) {
+    const auto sequences =
+        record_sequences(twin, orders, options.twin.seed, threads, ProgressLine("sequences", orders.size()));
+    const auto falls = std::ranges::count_if(sequences, &TwinSequence::fell);
+    example::write_text(options.out, sequences_csv(sequences));
+    std::printf("%s: %zd sequences", options.out.c_str(), std::ssize(sequences) - falls);
+    if (falls > 0) std::printf("; %zd more ended in a fall and are left out", falls);
+    std::printf("\n");
+  });
+}
+
+}  // namespace
+
+void add_record(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      program.add_subcommand("record", "Write what is recorded of the twin: orders, displacement and pose per cycle");
+  command->footer(
+      "Orders in the file are per step, a cycle has two: tell surefoot-calibrate --steps-per-cycle 2.\n"
+      "Ctrl-C ends early and keeps the sequences that are done.");
+  add_sequence_options(*command, options->sequences, options->cycles);
+  command
+      ->add_option("--orders", options->orders,
+                   "CSV file of orders in place of random ones, as written by surefoot-calibrate plan or by record")
+      ->check(CLI::ExistingFile);
+  add_twin_options(*command, options->twin);
+  command->add_option("--out", options->out, "CSV file to write")->required();
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace sigmaban

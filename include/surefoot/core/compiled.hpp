@@ -1,0 +1,12 @@
+// The switch between headers alone and a compiled library.
+//
+// A header NAME.hpp whose functions do not depend on types of the user has their definitions in NAME.ipp. Headers alone
+// (the default) include it, as inline functions. With SUREFOOT_COMPILED, which the CMake target surefoot::compiled
+// sets, they do not: that library has the same definitions, compiled once from the same files.
+#pragma once
+
+#ifdef SUREFOOT_COMPILED
+#define SUREFOOT_INLINE
+#else
+#define SUREFOOT_INLINE inline
+#endif

@@ -1,0 +1,110 @@
+// Definitions of surefoot/diagnose/effects/catalogue.hpp.
+#pragma once
+
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/effects/backlash.hpp"
+#include "surefoot/diagnose/effects/body_drift.hpp"
+#include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/effects/cogging.hpp"
+#include "surefoot/diagnose/effects/constant_force.hpp"
+#include "surefoot/diagnose/effects/constant_rate.hpp"
+#include "surefoot/diagnose/effects/coulomb_friction.hpp"
+#include "surefoot/diagnose/effects/cross_coupling.hpp"
+#include "surefoot/diagnose/effects/cubic_stiffness.hpp"
+#include "surefoot/diagnose/effects/dead_zone.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
+#include "surefoot/diagnose/effects/end_stop.hpp"
+#include "surefoot/diagnose/effects/first_order_lag.hpp"
+#include "surefoot/diagnose/effects/gravity_offset.hpp"
+#include "surefoot/diagnose/effects/ground_slope.hpp"
+#include "surefoot/diagnose/effects/hysteresis.hpp"
+#include "surefoot/diagnose/effects/input_asymmetry.hpp"
+#include "surefoot/diagnose/effects/input_delay.hpp"
+#include "surefoot/diagnose/effects/input_gain.hpp"
+#include "surefoot/diagnose/effects/joint_elasticity.hpp"
+#include "surefoot/diagnose/effects/leak.hpp"
+#include "surefoot/diagnose/effects/load_dependent_friction.hpp"
+#include "surefoot/diagnose/effects/overflow.hpp"
+#include "surefoot/diagnose/effects/parameter_drift.hpp"
+#include "surefoot/diagnose/effects/quadratic_drag.hpp"
+#include "surefoot/diagnose/effects/quantization.hpp"
+#include "surefoot/diagnose/effects/rate_limit.hpp"
+#include "surefoot/diagnose/effects/saturation.hpp"
+#include "surefoot/diagnose/effects/sensor_bias.hpp"
+#include "surefoot/diagnose/effects/sensor_delay.hpp"
+#include "surefoot/diagnose/effects/sensor_drift.hpp"
+#include "surefoot/diagnose/effects/sensor_scale.hpp"
+#include "surefoot/diagnose/effects/slip_saturation.hpp"
+#include "surefoot/diagnose/effects/stribeck_friction.hpp"
+#include "surefoot/diagnose/effects/supply_sag.hpp"
+#include "surefoot/diagnose/effects/viscous_friction.hpp"
+
+namespace surefoot {
+
+SUREFOOT_INLINE std::vector<Effect> velocity_effects() {
+  return {effects::viscous_friction(),
+          effects::coulomb_friction(),
+          effects::stribeck_friction(),
+          effects::load_dependent_friction(),
+          effects::load_dependent_friction_under_load(),
+          effects::load_dependent_friction_in_gears(),
+          effects::quadratic_drag(),
+          effects::constant_force(),
+          effects::cubic_stiffness(),
+          effects::hysteresis(),
+          effects::hysteresis_squared(),
+          effects::backlash(),
+          effects::backlash_gap(),
+          effects::backlash_motor(),
+          effects::joint_elasticity(),
+          effects::cogging(),
+          effects::gravity_offset(),
+          effects::end_stop_upper(),
+          effects::end_stop_lower()};
+}
+
+SUREFOOT_INLINE std::vector<Effect> input_effects() {
+  return {effects::input_gain(),      effects::input_asymmetry(), effects::dead_zone(),  effects::dead_zone_step(),
+          effects::saturation(),      effects::saturation_soft(), effects::rate_limit(), effects::input_delay(),
+          effects::first_order_lag(), effects::supply_sag()};
+}
+
+SUREFOOT_INLINE std::vector<Effect> planar_effects() {
+  return {effects::slip_saturation_forward(),
+          effects::slip_saturation_lateral(),
+          effects::slip_saturation_turn(),
+          effects::body_drift(),
+          effects::ground_slope(),
+          effects::ground_slope_distance(),
+          effects::cross_coupling_forward_to_turn(),
+          effects::cross_coupling_forward_to_lateral(),
+          effects::cross_coupling_lateral_to_turn(),
+          effects::cross_coupling_lateral_to_forward(),
+          effects::cross_coupling_turn_to_forward(),
+          effects::cross_coupling_turn_to_lateral()};
+}
+
+SUREFOOT_INLINE std::vector<Effect> all_effects() {
+  std::vector<Effect> all;
+  for (const auto& place : {planar_effects(), velocity_effects(), state_effects(), input_effects(), sensor_effects(),
+                            parameter_effects()}) {
+    all.insert(all.end(), place.begin(), place.end());
+  }
+  return all;
+}
+
+SUREFOOT_INLINE std::vector<Effect> state_effects() {
+  return {effects::leak(), effects::leak_hole(), effects::constant_rate(), effects::overflow(),
+          effects::overflow_spill()};
+}
+
+SUREFOOT_INLINE std::vector<Effect> sensor_effects() {
+  return {effects::sensor_bias(),  effects::sensor_scale(),       effects::sensor_delay(),   effects::sensor_drift(),
+          effects::quantization(), effects::quantization_floor(), effects::backlash_sensor()};
+}
+
+SUREFOOT_INLINE std::vector<Effect> parameter_effects() { return {effects::parameter_drift()}; }
+
+}  // namespace surefoot

@@ -1,0 +1,137 @@
+// In what steps a sensor may read: from readings that crowd around multiples of a step or, where noise behind the
+// converter hides that, from errors that follow the sawtooth of a step.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
+
+namespace surefoot::effects {
+
+/// The largest step whose multiples the readings crowd around, if there is one: the mean of exp(2 pi i y / step) over
+/// readings from all parts of the range (Rayleigh's test of a direction). Empty: no such step above 1/1000 of the
+/// range.
+inline std::vector<double> lattice_steps(Values readings) {
+  if (readings.size() < 100) return {};
+  const auto [low, high] = std::minmax_element(readings.begin(), readings.end());
+  const double least = *low, range = *high - *low;
+  if (!(range > 0)) return {};
+  constexpr std::size_t parts = 300;
+  std::vector<double> kept(parts), seen(parts);  // one reading of each part of the range, any with equal probability
+  Rng rng(1);
+  for (const double reading : readings) {
+    const auto part = std::min(parts - 1, static_cast<std::size_t>((reading - least) / range * parts));
+    if (rng.uniform() * ++seen[part] < 1) kept[part] = reading;
+  }
+  std::vector<double> one_per_part;
+  for (std::size_t part = 0; part < parts; ++part) {
+    if (seen[part] > 0) one_per_part.push_back(kept[part]);
+  }
+  if (one_per_part.size() < 8) return {};
+  const auto crowding = [&](double step) {
+    double cosine = 0, sine = 0;
+    for (const double reading : one_per_part) {
+      const double angle = 2 * std::numbers::pi * reading / step;
+      cosine += std::cos(angle);
+      sine += std::sin(angle);
+    }
+    return std::hypot(cosine, sine) / static_cast<double>(one_per_part.size());
+  };
+  // Directions of all readings, turned on from one frequency to the next.
+  std::vector<std::complex<double>> direction, turn;
+  for (const double reading : one_per_part) {
+    const double at = 2 * std::numbers::pi * (reading - least) / range;
+    direction.push_back(std::polar(1.0, 6 * at));
+    turn.push_back(std::polar(1.0, 0.1 * at));
+  }
+  const auto count = static_cast<double>(one_per_part.size());
+  for (double frequency = 6; frequency < 1000; frequency += 0.1) {  // steps in the range
+    std::complex<double> sum = 0;
+    for (std::size_t i = 0; i < direction.size(); ++i) {
+      sum += direction[i];
+      direction[i] *= turn[i];
+    }
+    double share = std::abs(sum) / count, step = range / frequency;
+    if (share < 0.5 || share * share * count < 25) continue;
+    for (double width = 0.1 / frequency; width > 1e-5; width *= 0.5) {  // uphill to the top of the peak
+      for (const double next : {step * (1 - width), step * (1 + width)}) {
+        const double there = crowding(next);
+        if (there <= share) continue;
+        share = there;
+        step = next;
+      }
+    }
+    return {step};
+  }
+  return {};
+}
+
+/// The step whose sawtooth, step * floor(y / step + shift) - y over the simulated values y, takes away most of the
+/// squared errors (readings minus simulated); means are left out. Empty: none takes away a hundredth. Steps from the
+/// size of the errors to a quarter of the range are tried. Cost: 3,000 samples times up to 10,000 steps.
+inline std::vector<double> sawtooth_steps(Values readings, Values simulated, double shift) {
+  const std::size_t every = std::max<std::size_t>(1, readings.size() / 3000);
+  std::vector<double> values, errors;
+  double mean = 0;
+  for (std::size_t i = 0; i < readings.size(); i += every) {
+    if (!std::isfinite(simulated[i]) || !std::isfinite(readings[i])) continue;
+    values.push_back(simulated[i]);
+    errors.push_back(readings[i] - simulated[i]);
+    mean += errors.back();
+  }
+  if (values.size() < 100) return {};
+  const auto count = static_cast<double>(values.size());
+  double squares = 0, largest = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    errors[i] -= mean / count;
+    squares += errors[i] * errors[i];
+    largest = std::max(largest, std::abs(values[i]));
+  }
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const double range = *high - *low, size = std::sqrt(squares / count);
+  if (!(range > 0) || !(size > 0)) return {};
+  const auto taken_away = [&](double frequency) {  // of the squares
+    const double step = 1 / frequency;
+    double product = 0, teeth = 0, sum = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double tooth = step * std::floor(values[i] * frequency + shift) - values[i];
+      product += tooth * errors[i];
+      teeth += tooth * tooth;
+      sum += tooth;
+    }
+    return (2 * product - teeth + sum * sum / count) / squares;
+  };
+  const double from = 4 / range, to = std::min(1 / size, 1000 / largest), apart = 0.1 / largest;
+  double best = 0, share = 0.01;
+  for (double frequency = from; frequency < to; frequency += apart) {
+    const double there = taken_away(frequency);
+    if (there <= share) continue;
+    share = there;
+    best = frequency;
+  }
+  if (best == 0) return {};
+  for (double width = apart; width > 1e-4 * apart; width *= 0.5) {  // uphill to the top of the peak
+    for (const double next : {best - width, best + width}) {
+      const double there = taken_away(next);
+      if (there <= share) continue;
+      share = there;
+      best = next;
+    }
+  }
+  return {1 / best};
+}
+
+/// Both, crowding first.
+inline std::vector<double> sensor_steps(Values readings, Values simulated, double shift) {
+  std::vector<double> steps = lattice_steps(readings);
+  for (const double step : sawtooth_steps(readings, simulated, shift)) steps.push_back(step);
+  return steps;
+}
+
+}  // namespace surefoot::effects

@@ -1,0 +1,136 @@
+// An effect: one piece of physics that a simulator may have left out. A value: what it is called, which parameters it
+// has, where it may attach, and what it does there. The library's own stand in effects/, one file each; users make
+// theirs the same way and hand them to diagnose() among the others.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/pose2.hpp"
+
+namespace surefoot {
+
+/// Where an effect attaches.
+enum class Place : std::uint8_t {
+  velocity,   // a state of an ODE that is the speed of something; the effect is a force on it
+  state,      // any state; the effect adds to its rate (map: to its next value)
+  input,      // an input or a signal inside the equations, on its way to the machine
+  output,     // a sensor
+  planar,     // the displacement of a step in the plane (maps with a pose)
+  parameter,  // a parameter that does not stay the same
+};
+
+/// Powers of the natural measures at the place of attachment; the measure of a parameter is their product. `value`
+/// belongs to the thing attached to (velocity or state, input, output, parameter), `position` to what a velocity is the
+/// speed of, `effort` to the force on it, `rate` to what this force changes, `time` is that of 200 rows.
+struct Measure {
+  int effort = 0, value = 0, position = 0, time = 0, rate = 0;
+};
+
+/// A parameter of an effect. Bounds and starting values are multiples of the typical size of its measure in the
+/// recordings, so that they need not be chosen for each machine.
+struct EffectParameter {
+  std::string name;
+  Measure measure = {};
+  double low = 0, high = 1;
+  std::vector<double> starts;  // tried in turn, in every combination; for a strength: a small but visible one
+  bool strength = false;       // the effect vanishes, in proportion, as this goes to 0
+  bool of_peak = false;        // starts are shares of the largest value in the recordings instead (levels that clip)
+};
+
+/// What an effect may look at in a context of a simulation. Units are those of the model.
+struct EffectContext {
+  double time = 0;      // since the first row [s], or steps
+  double step = 0;      // of the integration [s], or 1
+  double value = 0;     // of the state or signal it is attached to, without the effect
+  double position = 0;  // what `value` is the speed of; 0 if that is no state
+  double rate = 0;      // of the state it is attached to, as the simulator has it
+  double effort = 1;    // what turns this rate into a force or torque
+  double drive = 0;     // force due to the inputs, if the effect asks for it (needs_drive)
+  double load = 0;      // force that remains with inputs and speed at zero, likewise (or needs_damping)
+  double damping = 0;   // by how much the force falls per unit of `value` (needs_damping)
+};
+
+using Values = std::span<const double>;
+using HiddenStates = std::span<double>;
+
+/// A sensor's readings at the rows of a recording, to be changed in place.
+struct Series {
+  Values time;  // [s], or steps
+  std::span<double> readings;
+};
+
+/// What an effect is and does. Only the functions that it needs are set; p are its parameters in their order, `hidden`
+/// its hidden states.
+struct Effect {
+  std::string name;
+  std::string sentence =
+      {};  // for people; "{level}" stands for the parameter of that name with its unit, "{at}" for the place
+  Place place = Place::velocity;
+  std::vector<EffectParameter> parameters = {};
+  std::vector<std::string> confusable_with = {};  // names of effects that leave a similar mark
+  std::string experiment = {};                    // that shows this effect by itself
+  std::string form = {};                          // tells variants of one name apart, mostly empty
+
+  int hidden_states = 0;
+  bool needs_drive = false;
+  bool needs_damping = false;
+  bool is_impulsive = false;  // its mark does not grow in proportion: starts are ranked as they are, and not scaled
+  bool at_start = false;      // a sensor's fault that an initial state read off that sensor has, too
+  bool needs_conserved_state =
+      false;  // needs a state of which there is more or less (Place::state): no angle, and rates depend on it
+  bool has_overflow_target = false;  // also tried with each other state as `other` (limit)
+
+  /// Force on a velocity, in effort units; for Place::state the addition to the rate.
+  std::function<double(const EffectContext&, Values p, Values hidden)> force = {};
+  /// Addition to the rate of what a velocity is the speed of: where is_impulsive within a step move it otherwise than
+  /// their mean force does.
+  std::function<double(const EffectContext&, Values p, Values hidden)> position_rate = {};
+  /// Level of dry friction, at least 0: the force that holds the velocity at zero, or opposes it.
+  std::function<double(const EffectContext&, Values p)> dry = {};
+  /// Hidden states: values at the start (zero without this), rates, and what is done once after each step.
+  std::function<void(const EffectContext&, Values p, HiddenStates hidden)> start = {};
+  std::function<void(const EffectContext&, Values p, Values hidden, HiddenStates rates)> hidden_rate = {};
+  std::function<void(const EffectContext&, Values p, HiddenStates hidden)> advance = {};
+  /// What becomes of an input or a signal.
+  std::function<double(const EffectContext&, Values p, Values hidden)> signal = {};
+  /// Delay of an input [s, or steps].
+  std::function<double(Values p)> delay = {};
+  /// Starting values of the first parameter, in place of `starts`, that readings suggest: those of the sensor attached
+  /// to, or of one that reads the state attached to (for a velocity: what it is the speed of).
+  /// Beside each reading stands what was simulated without the effect.
+  std::function<std::vector<double>(Values readings, Values simulated)> suggest = {};
+  /// What position the equations see, for Place::velocity.
+  std::function<double(const EffectContext&, Values p, Values hidden)> seen_position = {};
+  /// After each step: the state attached to, what it is the speed of, and for effects that spill another state.
+  std::function<void(Values p, double& value, double& position, double& other)> limit = {};
+  /// What a sensor reads.
+  std::function<void(const Series&, Values p)> sensor = {};
+  /// Displacement of a step from one pose (its heading is in the world) [m, m, rad].
+  std::function<Pose2(const Pose2& displacement, double heading, Values p)> planar = {};
+  /// Factor of a parameter.
+  std::function<double(const EffectContext&, Values p)> factor = {};
+};
+
+/// An effect at its place in one simulator.
+struct AttachedEffect {
+  std::shared_ptr<const Effect> effect;
+  int at = 0;         // index of the state, of the input (signals follow the inputs), of the output or of the parameter
+  int other = -1;     // another state, for effects that spill
+  std::string place;  // the name of what it is attached to
+  int rank = 0;       // of the effect in the catalogue, which begins with the simplest
+
+  std::string label() const { return effect->name + " at " + place; }
+};
+
+inline bool same_effect(const AttachedEffect& a, const AttachedEffect& b) {
+  return a.effect->name == b.effect->name && a.effect->form == b.effect->form && a.at == b.at && a.other == b.other &&
+         a.effect->place == b.effect->place;
+}
+
+}  // namespace surefoot

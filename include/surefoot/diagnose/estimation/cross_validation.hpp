@@ -1,0 +1,97 @@
+// How well hypotheses do, block by block, so that two of them can be compared in pairs.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "surefoot/diagnose/estimation/fit.hpp"
+
+namespace surefoot::diagnosis {
+
+/// Robust squared residuals summed over blocks of the recordings; the blocks are the same for every hypothesis.
+struct BlockLosses {
+  std::vector<double> blocks = {}, counts = {};
+  std::vector<std::size_t> ends = {};  // by recording: of its blocks
+
+  double total() const {
+    double sum = 0;
+    for (const double block : blocks) sum += block;
+    return sum;
+  }
+  double cells() const {
+    double sum = 0;
+    for (const double count : counts) sum += count;
+    return sum;
+  }
+  std::vector<double> by_recording() const {
+    std::vector<double> sums(ends.size(), 0.0);
+    for (std::size_t r = 0; r < ends.size(); ++r) {
+      for (std::size_t b = r == 0 ? 0 : ends[r - 1]; b < ends[r]; ++b) sums[r] += blocks[b];
+    }
+    return sums;
+  }
+  void append(const BlockLosses& other) {
+    for (const std::size_t end : other.ends) ends.push_back(blocks.size() + end);
+    blocks.insert(blocks.end(), other.blocks.begin(), other.blocks.end());
+    counts.insert(counts.end(), other.counts.begin(), other.counts.end());
+  }
+  /// Root mean square in units of the weighting.
+  double rms() const { return cells() > 0 ? std::sqrt(total() / cells()) : 0; }
+};
+
+/// Splits a recording's residuals into at most eight blocks, each long enough to be nearly independent of the others.
+inline Eigen::Index blocks_of(Eigen::Index cells) { return std::clamp<Eigen::Index>(cells / 60, 1, 8); }
+
+void append_losses(BlockLosses& score, const Eigen::VectorXd& residuals, double robust);
+
+/// BlockLosses of a hypothesis as it is, on some recordings.
+BlockLosses block_losses(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                         const std::vector<std::size_t>& recordings, const Weighting& weighting,
+                         const Integration& integration, const Parallel& parallel);
+
+/// How much better `after` is than `before`.
+struct Comparison {
+  double gain = 0;     // share of the root mean square error that goes: 1 - after / before
+  double stderr_ = 0;  // of it, over blocks
+  double t = 0;        // gain of the loss over its standard error
+  double p_value = 1;  // one-sided
+};
+
+/// Upper tail of the standard normal distribution.
+inline double normal_tail(double t) { return 0.5 * std::erfc(t / std::sqrt(2.0)); }
+
+/// One-sided p-value of Student's t with `dof` degrees of freedom, by its normal score (Wallace 1959).
+inline double student_tail(double t, double dof) {
+  if (dof < 1) return 1;
+  return normal_tail(std::copysign(std::sqrt(dof * std::log1p(t * t / dof)) * (8 * dof + 1) / (8 * dof + 3), t));
+}
+
+/// Student's t of the mean of some differences.
+double t_value(const std::vector<double>& differences);
+
+/// One more way to test the differences between two lists of losses; the best one counts.
+void test_losses(const std::vector<double>& before, const std::vector<double>& after, Comparison& best);
+
+/// Paired over blocks, and over whole recordings where there are at least six: by the losses themselves, and by their
+/// relative differences (a - b) / (a + b), which a few with large losses cannot decide. The best counts, and pays for
+/// the choice.
+Comparison compare_losses(const BlockLosses& before, const BlockLosses& after);
+
+/// Held-out score: each fold is judged by a fit to the other folds, which starts from `start`. Blocks come in the order
+/// of the folds.
+struct CrossValidation {
+  BlockLosses score;
+  std::vector<Hypothesis> folds;
+};
+
+CrossValidation cross_validate(const BoundSimulator& bound, const Hypothesis& start, const FitProblem& problem,
+                               const std::vector<std::vector<std::size_t>>& folds, const Parallel& parallel);
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/estimation/cross_validation.ipp"
+#endif

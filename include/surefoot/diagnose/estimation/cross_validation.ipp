@@ -1,0 +1,116 @@
+// Definitions of surefoot/diagnose/estimation/cross_validation.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/cross_validation.hpp"
+#include "surefoot/diagnose/estimation/fit.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE void append_losses(BlockLosses& score, const Eigen::VectorXd& residuals, double robust) {
+  const Eigen::Index cells = residuals.size(), blocks = blocks_of(cells);
+  for (Eigen::Index b = 0; b < blocks; ++b) {
+    const Eigen::Index from = cells * b / blocks, to = cells * (b + 1) / blocks;
+    const Eigen::VectorXd part = residuals.segment(from, to - from);
+    double loss = mean_loss(part, robust) * static_cast<double>(part.size());
+    if (!std::isfinite(loss)) loss = 1e6 * static_cast<double>(part.size());
+    score.blocks.push_back(loss);
+    score.counts.push_back(static_cast<double>(part.size()));
+  }
+  score.ends.push_back(score.blocks.size());
+}
+
+SUREFOOT_INLINE BlockLosses block_losses(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                         const std::vector<std::size_t>& recordings, const Weighting& weighting,
+                                         const Integration& integration, const Parallel& parallel) {
+  std::vector<Eigen::VectorXd> residuals(recordings.size());
+  parallel(recordings.size(), [&](std::size_t i) {
+    const std::size_t r = recordings[i];
+    residuals[i] = weighed_residuals(bound, r, simulate(bound, hypothesis, r, integration),
+                                     cells_of(bound.recordings[r]), weighting);
+  });
+  BlockLosses result;
+  for (const Eigen::VectorXd& one : residuals) append_losses(result, one, weighting.robust);
+  return result;
+}
+
+SUREFOOT_INLINE double t_value(const std::vector<double>& differences) {
+  const auto n = static_cast<double>(differences.size());
+  if (n < 2) return 0;
+  double mean = 0, squares = 0;
+  for (const double d : differences) mean += d / n;
+  for (const double d : differences) squares += (d - mean) * (d - mean);
+  const double deviation = std::sqrt(squares / (n - 1) / n);
+  return deviation > 0 ? std::clamp(mean / deviation, -1e3, 1e3) : (mean > 0 ? 1e3 : mean < 0 ? -1e3 : 0);
+}
+
+SUREFOOT_INLINE void test_losses(const std::vector<double>& before, const std::vector<double>& after,
+                                 Comparison& best) {
+  std::vector<double> absolute, relative;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double d = before[i] - after[i], sum = before[i] + after[i];
+    absolute.push_back(d);
+    relative.push_back(sum > 0 ? d / sum : 0);
+  }
+  const auto dof = static_cast<double>(before.size()) - 1;
+  for (const double t : {t_value(absolute), t_value(relative)}) {
+    const double p = student_tail(t, dof);
+    if (p >= best.p_value) continue;
+    best.p_value = p;
+    best.t = t;
+  }
+}
+
+SUREFOOT_INLINE Comparison compare_losses(const BlockLosses& before, const BlockLosses& after) {
+  Comparison result;
+  const double a = before.total(), b = after.total();
+  if (before.blocks.empty() || !(a > 0)) return result;
+  result.gain = 1 - std::sqrt(b / a);
+  const auto n = static_cast<double>(before.blocks.size());
+  if (n < 2) return result;
+  if (b < a) {
+    const bool by_recording = before.ends.size() >= 6;
+    test_losses(before.blocks, after.blocks, result);
+    if (by_recording) test_losses(before.by_recording(), after.by_recording(), result);
+    result.p_value = std::min(1.0, (by_recording ? 4 : 2) * result.p_value);
+  } else {
+    std::vector<double> differences;
+    for (std::size_t i = 0; i < before.blocks.size(); ++i) differences.push_back(before.blocks[i] - after.blocks[i]);
+    result.t = t_value(differences);
+  }
+  double squares = 0;  // of the ratio b / a, which the gain is the root of
+  for (std::size_t i = 0; i < before.blocks.size(); ++i) {
+    const double off = after.blocks[i] - b / a * before.blocks[i];
+    squares += off * off;
+  }
+  result.stderr_ = std::sqrt(n / (n - 1) * squares) / a / (2 * std::sqrt(std::max(b / a, 1e-12)));
+  return result;
+}
+
+SUREFOOT_INLINE CrossValidation cross_validate(const BoundSimulator& bound, const Hypothesis& start,
+                                               const FitProblem& problem,
+                                               const std::vector<std::vector<std::size_t>>& folds,
+                                               const Parallel& parallel) {
+  CrossValidation result;
+  for (std::size_t k = 0; k < folds.size(); ++k) {
+    FitProblem others = problem;
+    others.recordings.clear();
+    for (std::size_t j = 0; j < folds.size(); ++j) {
+      if (j != k) others.recordings.insert(others.recordings.end(), folds[j].begin(), folds[j].end());
+    }
+    const Hypothesis fitted =
+        with_estimated_starts(bound, fit(bound, start, others, parallel).hypothesis, folds[k], problem, parallel);
+    const BlockLosses one = block_losses(bound, fitted, folds[k], problem.weighting, problem.integration, parallel);
+    result.score.append(one);
+    result.folds.push_back(fitted);
+  }
+  return result;
+}
+
+}  // namespace surefoot::diagnosis

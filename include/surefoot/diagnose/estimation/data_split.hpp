@@ -1,0 +1,30 @@
+// Which recordings are for the fit and the choice, and which for the test.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/recording.hpp"
+
+namespace surefoot::diagnosis {
+
+struct RecordingSplit {
+  std::vector<std::size_t> training, test;
+  std::vector<std::vector<std::size_t>> folds;  // of the training recordings
+};
+
+/// Test recordings are those named, or a random share; never all, and at least one. The rest is dealt into folds, up
+/// to two more than asked for if each recording is then left out alone.
+RecordingSplit split_recordings(const std::vector<Recording>& recordings, const std::vector<std::string>& test,
+                                double share, std::size_t folds, std::uint64_t seed);
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/estimation/data_split.ipp"
+#endif

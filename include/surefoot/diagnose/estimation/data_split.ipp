@@ -1,0 +1,53 @@
+// Definitions of surefoot/diagnose/estimation/data_split.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/estimation/data_split.hpp"
+#include "surefoot/diagnose/recording.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE RecordingSplit split_recordings(const std::vector<Recording>& recordings,
+                                                const std::vector<std::string>& test, double share, std::size_t folds,
+                                                std::uint64_t seed) {
+  std::vector<std::size_t> order(recordings.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  Rng rng(seed, 0x5370u);
+  for (std::size_t i = order.size(); i > 1; --i) {
+    std::swap(order[i - 1], order[rng.below(static_cast<std::uint32_t>(i))]);
+  }
+  RecordingSplit split;
+  for (const std::string& name : test) {
+    const auto found = std::find_if(recordings.begin(), recordings.end(),
+                                    [&](const Recording& recording) { return recording.name == name; });
+    if (found == recordings.end()) throw DiagnoseError("the test recording '" + name + "' is not among the recordings");
+    split.test.push_back(static_cast<std::size_t>(found - recordings.begin()));
+  }
+  if (test.empty()) {
+    const auto wanted = static_cast<std::size_t>(std::lround(share * static_cast<double>(recordings.size())));
+    const std::size_t count = std::clamp<std::size_t>(wanted, 1, recordings.size() - 1);
+    split.test.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+  std::sort(split.test.begin(), split.test.end());
+  for (const std::size_t r : order) {
+    if (!std::binary_search(split.test.begin(), split.test.end(), r)) split.training.push_back(r);
+  }
+  if (split.training.empty()) throw DiagnoseError("no recording is left for the fit: name fewer test recordings");
+  const std::size_t count = split.training.size();
+  split.folds.resize(count <= folds + 2 ? count : folds);
+  for (std::size_t i = 0; i < split.training.size(); ++i)
+    split.folds[i % split.folds.size()].push_back(split.training[i]);
+  for (auto& fold : split.folds) std::sort(fold.begin(), fold.end());
+  std::sort(split.training.begin(), split.training.end());
+  return split;
+}
+
+}  // namespace surefoot::diagnosis

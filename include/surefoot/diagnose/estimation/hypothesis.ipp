@@ -1,0 +1,166 @@
+// Definitions of surefoot/diagnose/estimation/hypothesis.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/hypothesis.hpp"
+#include "surefoot/diagnose/simulation/bound_simulator.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE Hypothesis nominal_hypothesis(const BoundSimulator& bound) {
+  Hypothesis nominal;
+  nominal.parameters = nominal_parameters(bound.info);
+  for (const Recording& recording : bound.recordings) nominal.initial.push_back(recording.initial);
+  return nominal;
+}
+
+SUREFOOT_INLINE SimulatedRun simulate(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t recording,
+                                      const Integration& integration) {
+  return bound.simulate(bound, recording, hypothesis.parameters, {hypothesis.effects, hypothesis.values},
+                        hypothesis.initial[recording], integration);
+}
+
+SUREFOOT_INLINE std::vector<SimulatedRun> simulate_all(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                       const std::vector<std::size_t>& recordings,
+                                                       const Integration& integration, const Parallel& parallel) {
+  std::vector<SimulatedRun> result(recordings.size());
+  parallel(recordings.size(),
+           [&](std::size_t i) { result[i] = simulate(bound, hypothesis, recordings[i], integration); });
+  return result;
+}
+
+SUREFOOT_INLINE double measure_size(const BoundSimulator& bound, const AttachedEffect& attached,
+                                    const Measure& measure) {
+  const auto at = static_cast<std::size_t>(attached.at);
+  const auto inputs = bound.info.inputs.size();
+  double value = 1, effort = 1, position = 1, rate = 1;
+  switch (attached.effect->place) {
+    case Place::velocity:
+    case Place::state: {
+      value = bound.sizes.state[at];
+      effort = bound.sizes.effort[at];
+      rate = bound.sizes.rate[at];
+      const int of = bound.structure.position_of[at];
+      if (of >= 0) position = bound.sizes.position[static_cast<std::size_t>(of)];
+      break;
+    }
+    case Place::input:
+      value = at < inputs ? bound.sizes.input[at] : bound.sizes.signal[at - inputs];
+      break;
+    case Place::output:
+      value = bound.sizes.output[at];
+      break;
+    case Place::planar:
+    case Place::parameter:
+      break;
+  }
+  return std::pow(effort, measure.effort) * std::pow(value, measure.value) * std::pow(position, measure.position) *
+         std::pow(rate, measure.rate) * std::pow(bound.sizes.time, measure.time);
+}
+
+SUREFOOT_INLINE void append_unit(std::string& above, std::string& below, const std::string& unit, int power) {
+  if (unit.empty() || unit == "1") return;
+  for (int i = 0; i < std::abs(power); ++i) {
+    std::string& side = power > 0 ? above : below;
+    const bool compound = unit.find('/') != std::string::npos && power < 0;
+    side += (side.empty() ? "" : " ") + (compound ? "(" + unit + ")" : unit);
+  }
+}
+
+SUREFOOT_INLINE std::string measure_unit(const BoundSimulator& bound, const AttachedEffect& attached,
+                                         const Measure& measure) {
+  const auto at = static_cast<std::size_t>(attached.at);
+  const bool map = bound.info.kind == SimulatorKind::map;
+  std::string value, effort, position;
+  switch (attached.effect->place) {
+    case Place::velocity:
+    case Place::state: {
+      const StateInfo& state = bound.info.states[at];
+      value = state.unit;
+      const bool force = attached.effect->place == Place::velocity && !state.effort_unit.empty();
+      effort = force ? state.effort_unit : map ? state.unit : state.unit + "/s";
+      const int of = bound.structure.position_of[at];
+      if (of >= 0) position = bound.info.states[static_cast<std::size_t>(of)].unit;
+      break;
+    }
+    case Place::input:
+      if (at < bound.info.inputs.size()) value = bound.info.inputs[at].unit;
+      break;
+    case Place::output:
+      value = bound.info.outputs[at].unit;
+      break;
+    case Place::planar:
+      value = "m";
+      position = "rad";
+      break;
+    case Place::parameter:
+      break;
+  }
+  std::string above, below;
+  append_unit(above, below, effort, measure.effort);
+  append_unit(above, below, value, measure.value + measure.rate);
+  append_unit(above, below, position, measure.position);
+  append_unit(above, below, map ? "step" : "s", measure.time - measure.rate);
+  if (above.empty()) above = "1";
+  if (below.empty()) return above;
+  return above + "/" + (below.find(' ') != std::string::npos ? "(" + below + ")" : below);
+}
+
+SUREFOOT_INLINE double& value_of(Hypothesis& hypothesis, const Variable& variable) {
+  switch (variable.kind) {
+    case Variable::Kind::parameter:
+      return hypothesis.parameters[static_cast<Eigen::Index>(variable.index)];
+    case Variable::Kind::effect:
+      return hypothesis.values[variable.index][static_cast<Eigen::Index>(variable.item)];
+    case Variable::Kind::initial:
+      break;
+  }
+  return hypothesis.initial[variable.item][static_cast<Eigen::Index>(variable.index)];
+}
+
+SUREFOOT_INLINE std::vector<Variable> variables_of(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                   const std::vector<std::size_t>& recordings, Free free) {
+  std::vector<Variable> variables;
+  if (free != Free::initial_only) {
+    for (std::size_t i = 0; i < bound.info.parameters.size(); ++i) {
+      const ParameterInfo& info = bound.info.parameters[i];
+      if (info.fixed || !(info.high > info.low)) continue;
+      const bool logarithmic = info.low > 0 && info.high / info.low >= 10;
+      const double now = std::abs(hypothesis.parameters[static_cast<Eigen::Index>(i)]);
+      variables.push_back({Variable::Kind::parameter, i, 0, info.low, info.high,
+                           std::max(now, 0.02 * (info.high - info.low)), logarithmic});
+    }
+  }
+  if (free == Free::everything) {
+    for (std::size_t e = 0; e < hypothesis.effects.size(); ++e) {
+      const auto& parameters = hypothesis.effects[e].effect->parameters;
+      for (std::size_t k = 0; k < parameters.size(); ++k) {
+        const double unit = measure_size(bound, hypothesis.effects[e], parameters[k].measure);
+        const double low = parameters[k].low * unit, high = parameters[k].high * unit;
+        const bool logarithmic = low > 0 && high / low >= 10;
+        const double now = std::abs(hypothesis.values[e][static_cast<Eigen::Index>(k)]);
+        variables.push_back({Variable::Kind::effect, e, k, low, high, std::max(now, 0.02 * (high - low)), logarithmic});
+      }
+    }
+  }
+  for (const std::size_t r : recordings) {
+    const Recording& recording = bound.recordings[r];
+    for (Eigen::Index i = 0; i < recording.initial_scale.size(); ++i) {
+      const double scale = recording.initial_scale[i];
+      if (!(scale > 0)) continue;
+      const double middle = recording.initial[i];
+      variables.push_back({Variable::Kind::initial, static_cast<std::size_t>(i), r, middle - 20 * scale,
+                           middle + 20 * scale, scale, false});
+    }
+  }
+  return variables;
+}
+
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,64 @@
+// Definitions of surefoot/diagnose/estimation/recording_error.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/calibrate.hpp"
+#include "surefoot/diagnose/estimation/recording_error.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE double recording_error(const BoundSimulator& bound, std::size_t r, const SimulatedRun& trajectory,
+                                       const Eigen::VectorXd& scale) {
+  const std::vector<Cell> cells = cells_of(bound.recordings[r]);
+  Eigen::VectorXd off = raw_residuals(bound, r, trajectory, cells);
+  for (std::size_t i = 0; i < cells.size(); ++i) off[static_cast<Eigen::Index>(i)] /= scale[cells[i].output];
+  return off.size() > 0 ? std::sqrt(off.squaredNorm() / static_cast<double>(off.size())) : 0;
+}
+
+SUREFOOT_INLINE double over_all(const std::vector<double>& errors, const std::vector<double>& counts) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    sum += errors[i] * errors[i] * counts[i];
+    count += counts[i];
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+SUREFOOT_INLINE std::vector<double> cell_counts(const BoundSimulator& bound,
+                                                const std::vector<std::size_t>& recordings) {
+  std::vector<double> counts;
+  for (const std::size_t r : recordings) counts.push_back(static_cast<double>(cells_of(bound.recordings[r]).size()));
+  return counts;
+}
+
+SUREFOOT_INLINE Eigen::VectorXd error_scale(const BoundSimulator& bound) {
+  std::vector<std::size_t> all(bound.recordings.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  Eigen::VectorXd scale = output_spreads(bound, all);
+  for (Eigen::Index k = 0; k < scale.size(); ++k) {
+    const double noise = bound.info.outputs[static_cast<std::size_t>(k)].noise;
+    if (noise > 0) scale[k] = noise;
+  }
+  return scale;
+}
+
+SUREFOOT_INLINE double whole_error(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                   const std::vector<std::size_t>& recordings, Integration integration,
+                                   const Parallel& parallel) {
+  integration.restart = 0;
+  const auto runs = simulate_all(bound, hypothesis, recordings, integration, parallel);
+  const Eigen::VectorXd scale = error_scale(bound);
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    errors.push_back(recording_error(bound, recordings[i], runs[i], scale));
+  }
+  return over_all(errors, cell_counts(bound, recordings));
+}
+
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,96 @@
+// Definitions of surefoot/diagnose/estimation/starting_values.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/hypothesis.hpp"
+#include "surefoot/diagnose/estimation/starting_values.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE double peak_at(const BoundSimulator& bound, const AttachedEffect& attached) {
+  const auto at = static_cast<std::size_t>(attached.at);
+  const std::size_t inputs = bound.info.inputs.size();
+  double peak = 1;
+  if (attached.effect->place == Place::velocity) {
+    const int position = bound.structure.position_of[at];
+    peak = bound.sizes.state_peak[position >= 0 ? static_cast<std::size_t>(position) : at];
+  } else if (attached.effect->place == Place::state) {
+    peak = bound.sizes.state_peak[at];
+  } else if (attached.effect->place == Place::input) {
+    peak = at < inputs ? bound.sizes.input_peak[at] : bound.sizes.signal_peak[at - inputs];
+  }
+  return peak > 0 ? peak : 1;
+}
+
+SUREFOOT_INLINE int output_watching(const BoundSimulator& bound, const AttachedEffect& attached) {
+  const auto at = static_cast<std::size_t>(attached.at);
+  switch (attached.effect->place) {
+    case Place::output:
+      return attached.at;
+    case Place::state:
+      return bound.structure.output_of[at];
+    case Place::velocity:
+      return bound.structure.position_of[at] < 0
+                 ? -1
+                 : bound.structure.output_of[static_cast<std::size_t>(bound.structure.position_of[at])];
+    default:
+      return -1;
+  }
+}
+
+SUREFOOT_INLINE std::vector<Observed> observe(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                              const std::vector<SimulatedRun>& runs) {
+  std::vector<Observed> result(bound.info.outputs.size());
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const Eigen::MatrixXd& outputs = bound.recordings[recordings[i]].outputs;
+    for (Eigen::Index k = 0; k < outputs.rows(); ++k) {
+      for (Eigen::Index row = 0; row < outputs.cols(); ++row) {
+        if (!std::isfinite(outputs(k, row))) continue;
+        result[static_cast<std::size_t>(k)].readings.push_back(outputs(k, row));
+        result[static_cast<std::size_t>(k)].simulated.push_back(runs[i].outputs(k, row));
+      }
+    }
+  }
+  return result;
+}
+
+SUREFOOT_INLINE std::vector<Eigen::VectorXd> starts_of(const BoundSimulator& bound, const AttachedEffect& attached,
+                                                       const std::vector<Observed>& observed) {
+  const auto& parameters = attached.effect->parameters;
+  std::vector<Eigen::VectorXd> result{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters.size()))};
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const double unit =
+        parameters[k].of_peak ? peak_at(bound, attached) : measure_size(bound, attached, parameters[k].measure);
+    std::vector<Eigen::VectorXd> longer;
+    for (const Eigen::VectorXd& one : result) {
+      for (const double start : parameters[k].starts) {
+        longer.push_back(one);
+        longer.back()[static_cast<Eigen::Index>(k)] = start * unit;
+      }
+    }
+    result = std::move(longer);
+  }
+  const int output = output_watching(bound, attached);
+  if (!attached.effect->suggest || output < 0) return result;
+  const Observed& seen = observed[static_cast<std::size_t>(output)];
+  const std::vector<double> suggested = attached.effect->suggest(seen.readings, seen.simulated);
+  if (suggested.empty()) return result;
+  std::vector<Eigen::VectorXd> better;
+  for (const Eigen::VectorXd& one : result) {
+    if (one[0] != result.front()[0]) continue;  // each combination of the other parameters once
+    for (const double value : suggested) {
+      better.push_back(one);
+      better.back()[0] = value;
+    }
+  }
+  return better;
+}
+
+}  // namespace surefoot::diagnosis

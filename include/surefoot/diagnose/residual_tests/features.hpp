@@ -1,0 +1,40 @@
+// What a mismatch may depend on: one table of features of the motion, row by row.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "surefoot/diagnose/estimation/calibrate.hpp"
+
+namespace surefoot::diagnosis {
+
+struct FeatureTable {
+  std::vector<std::string> names;
+  Eigen::MatrixXd values;              // feature x sample
+  std::vector<std::size_t> recording;  // by sample: place in the list of recordings
+  std::vector<Eigen::Index> row;
+};
+
+/// Steps of a walk may differ in turn, as its legs do: by periods of up to so many.
+constexpr int longest_gait = 4;
+
+/// Names of the features: states, sizes of velocities, time since their last reversal, inputs and their changes, time
+/// (for maps also modulo 2 to 4), and whatever constants differ between the recordings.
+std::vector<std::string> feature_names(const BoundSimulator& bound);
+
+/// Every `stride`-th row of the recordings, along the given trajectories.
+FeatureTable make_features(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                           const std::vector<SimulatedRun>& trajectories, Eigen::Index stride);
+
+/// The states alone.
+FeatureTable only_states(const BoundSimulator& bound, const FeatureTable& all);
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/residual_tests/features.ipp"
+#endif

@@ -1,0 +1,31 @@
+// Definitions of surefoot/diagnose/residual_tests/mismatch.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/noise_regime.hpp"
+#include "surefoot/diagnose/residual_tests/mismatch.hpp"
+#include "surefoot/diagnose/residual_tests/whiteness.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE Mismatch measure_mismatch(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                          const std::vector<SimulatedRun>& trajectories, const Eigen::VectorXd& sigma,
+                                          NoiseKind noise, std::vector<WhitenessTest>* by_output) {
+  Mismatch result;
+  for (Eigen::Index k = 0; k < sigma.size(); ++k) {
+    const Eigen::Index memory = memory_of(noise);
+    const WhitenessTest structure = test_whiteness(bound, recordings, trajectories, k, memory, 10 * memory);
+    if (by_output != nullptr) by_output->push_back(structure);
+    result.energy += structure.share * structure.rms * structure.rms / (sigma[k] * sigma[k]);
+    if (structure.p_value < 0.01) result.share = std::max(result.share, structure.share);
+    result.p_value = std::min(result.p_value, structure.p_value * static_cast<double>(sigma.size()));
+  }
+  return result;
+}
+
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,135 @@
+// Definitions of surefoot/diagnose/residual_tests/noise_model.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/residual_tests/noise_model.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE Eigen::VectorXd log_likelihoods(const ResidualNoise& model, const NoiseSeries& series) {
+  Eigen::VectorXd result(series.value.size());
+  const double root = std::sqrt(model.share);
+  double mean = 0, variance = 1, last_gap = -1, kept = 0;  // of the correlated part
+  for (Eigen::Index i = 0; i < result.size(); ++i) {
+    if (i > 0) {
+      const double gap = series.time[i] - series.time[i - 1];
+      if (std::abs(gap - last_gap) > 1e-6 * gap) {
+        kept = model.time > 0 ? std::exp(-gap / model.time) : 0;
+        last_gap = gap;
+      }
+      mean *= kept;
+      variance = 1 - kept * kept * (1 - variance);
+    }
+    const double grown = model.growth * series.speed[i];
+    const double size = model.rest * model.rest + grown * grown;
+    const double expected = model.share * variance + 1 - model.share;
+    const double off = series.value[i] / std::sqrt(size) - root * mean;
+    result[i] = -0.5 * (std::log(2 * 3.14159265358979 * size * expected) + off * off / expected);
+    const double gain = root * variance / expected;
+    mean += gain * off;
+    variance -= gain * root * variance;
+  }
+  return result;
+}
+
+SUREFOOT_INLINE double total_log_likelihood(const ResidualNoise& model, const std::vector<NoiseSeries>& series) {
+  double sum = 0;
+  for (const NoiseSeries& one : series) sum += log_likelihoods(model, one).sum();
+  return std::isfinite(sum) ? sum : -std::numeric_limits<double>::max();
+}
+
+SUREFOOT_INLINE double climb(const NoiseCoordinates& coordinates, const std::vector<NoiseSeries>& series,
+                             Eigen::VectorXd& z, double width, double least) {
+  double most = total_log_likelihood(coordinates.model(z), series);
+  const auto try_at = [&](const Eigen::VectorXd& next) {
+    const double now = total_log_likelihood(coordinates.model(next), series);
+    if (now <= most) return false;
+    most = now;
+    z = next;
+    return true;
+  };
+  for (; width > least; width *= 0.5) {
+    for (int round = 0; round < 4; ++round) {
+      const Eigen::VectorXd before = z;
+      for (Eigen::Index k = 0; k < z.size(); ++k) {
+        const Eigen::VectorXd step = width * Eigen::VectorXd::Unit(z.size(), k);
+        if (!try_at(z + step)) try_at(z - step);
+      }
+      if (z == before) break;
+      try_at(2 * z - before);  // coordinates hang together
+    }
+  }
+  return most;
+}
+
+SUREFOOT_INLINE NoiseFit fit_noise(const std::vector<NoiseSeries>& series, ResidualNoiseShape shape) {
+  const NoiseCoordinates coordinates(shape, series);
+  NoiseFit best{.shape = shape};
+  if (!(coordinates.count() > 0)) return best;
+  Eigen::VectorXd at;
+  for (const double rows : {1.0, 30.0}) {
+    if (shape.memory == NoiseMemory::none && rows > 1) continue;
+    Eigen::VectorXd z = coordinates.start(rows);
+    const double most = climb(coordinates, series, z, 1, 0.01);
+    if (most <= best.log_likelihood) continue;
+    best.log_likelihood = most;
+    at = z;
+  }
+  best.model = best.low = best.high = coordinates.model(at);
+
+  // Intervals from the curvature there.
+  const Eigen::Index n = at.size();
+  Eigen::MatrixXd curvature(n, n);
+  constexpr double h = 0.05;
+  const auto shifted = [&](Eigen::Index i, double a, Eigen::Index j, double b) {
+    Eigen::VectorXd z = at;
+    z[i] += a;
+    z[j] += b;
+    return total_log_likelihood(coordinates.model(z), series);
+  };
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      curvature(i, j) = curvature(j, i) =
+          i == j ? -(shifted(i, h, j, 0) - 2 * best.log_likelihood + shifted(i, -h, j, 0)) / (h * h)
+                 : -(shifted(i, h, j, h) - shifted(i, h, j, -h) - shifted(i, -h, j, h) + shifted(i, -h, j, -h)) /
+                       (4 * h * h);
+    }
+  }
+  const Eigen::MatrixXd covariance = curvature.inverse();
+  const auto half = [](double variance) { return 1.96 * std::sqrt(std::clamp(variance, 0.0, 4.0)); };
+  const auto around = [&](double ResidualNoise::*number, double width) {
+    best.low.*number = best.model.*number * std::exp(-width);
+    best.high.*number = best.model.*number * std::exp(width);
+  };
+  around(&ResidualNoise::rest, half(covariance(0, 0)));
+  if (shape.grows) around(&ResidualNoise::growth, half(covariance(0, 0) + covariance(1, 1) + 2 * covariance(0, 1)));
+  const Eigen::Index k = shape.grows ? 2 : 1;
+  if (shape.memory != NoiseMemory::none) around(&ResidualNoise::time, half(covariance(k, k)));
+  if (shape.memory == NoiseMemory::fading_and_white) {
+    Eigen::VectorXd z = at;
+    z[k + 1] = at[k + 1] - half(covariance(k + 1, k + 1));
+    best.low.share = coordinates.model(z).share;
+    z[k + 1] = at[k + 1] + half(covariance(k + 1, k + 1));
+    best.high.share = coordinates.model(z).share;
+  }
+  return best;
+}
+
+SUREFOOT_INLINE ResidualNoise refit_noise(const std::vector<NoiseSeries>& series, const NoiseFit& near) {
+  const NoiseCoordinates coordinates(near.shape, series);
+  if (!(coordinates.count() > 0)) return near.model;
+  Eigen::VectorXd z = coordinates.at(near.model);
+  climb(coordinates, series, z, 0.2, 0.02);
+  return coordinates.model(z);
+}
+
+}  // namespace surefoot::diagnosis

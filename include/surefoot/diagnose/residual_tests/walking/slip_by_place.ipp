@@ -1,0 +1,148 @@
+// Definitions of surefoot/diagnose/residual_tests/walking/slip_by_place.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/pose2.hpp"
+#include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/estimation/noise_regime.hpp"
+#include "surefoot/diagnose/residual_tests/predictability.hpp"
+#include "surefoot/diagnose/residual_tests/walking/slip_by_place.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE std::optional<MeasuredSteps> measured_steps(const BoundSimulator& bound,
+                                                            const std::vector<std::size_t>& recordings,
+                                                            const std::vector<SimulatedRun>& runs) {
+  if (!bound.info.planar) return std::nullopt;
+  const auto output_of = [&](int state) { return bound.structure.output_of[static_cast<std::size_t>(state)]; };
+  const int x = output_of(bound.info.planar->x), y = output_of(bound.info.planar->y),
+            heading = output_of(bound.info.planar->heading);
+  if (x < 0 || y < 0 || heading < 0) return std::nullopt;
+  Eigen::Index count = 0;
+  for (const std::size_t r : recordings) count += bound.recordings[r].rows();
+  MeasuredSteps steps;
+  steps.place.resize(2, count);
+  steps.simulated.resize(3, count);
+  steps.residual.resize(3, count);
+  Eigen::Index at = 0;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const Eigen::MatrixXd& measured = bound.recordings[recordings[i]].outputs;
+    const auto pose = [&](const Eigen::MatrixXd& outputs, Eigen::Index row) {
+      return Pose2{outputs(x, row), outputs(y, row), outputs(heading, row)};
+    };
+    for (Eigen::Index row = 1; row < measured.cols(); ++row) {
+      const Pose2 before = pose(measured, row - 1), after = pose(measured, row), expected = pose(runs[i].outputs, row);
+      if (!(before.vec() + after.vec() + expected.vec()).allFinite()) continue;
+      const Pose2 back = before.inverse();
+      steps.place.col(at) = before.position();
+      steps.simulated.col(at) = (back * expected).vec();
+      steps.residual.col(at) = steps.simulated.col(at) - (back * after).vec();
+      steps.residual(2, at) = wrap_angle(steps.residual(2, at));
+      ++at;
+    }
+  }
+  steps.place.conservativeResize(2, at);
+  steps.simulated.conservativeResize(3, at);
+  steps.residual.conservativeResize(3, at);
+  return steps;
+}
+
+SUREFOOT_INLINE double sign_flip_p_value(const std::vector<double>& terms) {
+  constexpr int draws = 4000;
+  const double sum = std::accumulate(terms.begin(), terms.end(), 0.0);
+  Rng rng(1);
+  int as_large = 1;
+  for (int draw = 0; draw < draws; ++draw) {
+    double flipped = 0;
+    for (const double term : terms) flipped += rng.uniform() < 0.5 ? term : -term;
+    as_large += flipped >= sum ? 1 : 0;
+  }
+  return static_cast<double>(as_large) / (draws + 1);
+}
+
+SUREFOOT_INLINE Comparison slip_by_place(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                         const FitProblem& problem, const std::vector<std::vector<std::size_t>>& folds,
+                                         const Parallel& parallel, std::uint64_t seed) {
+  std::vector<MeasuredSteps> by_fold;
+  Eigen::Array3d step_square = Eigen::Array3d::Zero(), error_square = step_square;
+  double count = 0;
+  for (const auto& fold : folds) {
+    const auto runs = simulate_all(bound, hypothesis, fold, problem.integration, parallel);
+    auto steps = measured_steps(bound, fold, runs);
+    if (!steps) return {};
+    step_square += steps->simulated.array().square().rowwise().sum();
+    error_square += steps->residual.array().square().rowwise().sum();
+    count += static_cast<double>(steps->place.cols());
+    by_fold.push_back(std::move(*steps));
+  }
+  if (count < 100) return {};
+  const Eigen::Array3d step_size = (step_square / count).sqrt().max(1e-12);
+  const Eigen::Array3d error_size = (error_square / count).sqrt().max(1e-12);
+  const double limit = problem.weighting.robust;
+  for (auto& steps : by_fold) {
+    steps.simulated.array().colwise() /= step_size;
+    steps.residual = (steps.residual.array().colwise() / error_size).max(-limit).min(limit);
+  }
+
+  std::vector<Eigen::Matrix3Xd> left(by_fold.size());
+  parallel(by_fold.size(), [&](std::size_t f) {
+    Dataset<2, 6> known;
+    Eigen::Index at = 0;
+    const auto total = static_cast<Eigen::Index>(count) - by_fold[f].place.cols();
+    known.inputs.resize(2, total);
+    known.outputs.resize(6, total);
+    for (std::size_t g = 0; g < by_fold.size(); ++g) {
+      if (g == f) continue;
+      const auto& steps = by_fold[g];
+      const Eigen::Index length = steps.place.cols();
+      known.inputs.middleCols(at, length) = steps.place.cast<float>();
+      known.outputs.middleCols(at, length).topRows<3>() = steps.residual.cwiseProduct(steps.simulated);
+      known.outputs.middleCols(at, length).bottomRows<3>() = steps.simulated.cwiseAbs2();
+      at += length;
+    }
+    ExtraTreesOptions options;
+    options.trees = 40;
+    options.min_leaf = std::max(10, static_cast<int>(total / 100));
+    const auto forest = train_extra_trees(known, options, Serial{}, seed + f);
+    left[f] = by_fold[f].residual;
+    for (Eigen::Index j = 0; j < left[f].cols(); ++j) {
+      const Eigen::Matrix<double, 6, 1> means =
+          forest.predict(Eigen::Vector2d(by_fold[f].place.col(j))).template cast<double>();
+      const Eigen::Array3d factor = means.head<3>().array() / means.tail<3>().array().max(0.05);
+      left[f].col(j) -= (factor * by_fold[f].simulated.col(j).array()).matrix();
+    }
+  });
+  Comparison best;
+  const Eigen::Index stretch = memory_of(NoiseKind::process);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    double before = 0, after = 0;
+    std::vector<double> agreement;  // of what was predicted with what was left, by stretches of steps
+    for (std::size_t f = 0; f < by_fold.size(); ++f) {
+      before += by_fold[f].residual.row(k).squaredNorm();
+      after += left[f].row(k).squaredNorm();
+      const auto agreed = by_fold[f].residual.row(k).cwiseProduct(by_fold[f].residual.row(k) - left[f].row(k)).eval();
+      for (Eigen::Index from = 0; from < agreed.size(); from += stretch) {
+        agreement.push_back(agreed.segment(from, std::min(stretch, agreed.size() - from)).sum());
+      }
+    }
+    const double gain = before > 0 ? 1 - std::sqrt(after / before) : 0;
+    const double p_value = std::min(1.0, 3 * sign_flip_p_value(agreement));
+    if (p_value < best.p_value || (p_value == best.p_value && gain > best.gain)) {
+      best = {.gain = gain, .stderr_ = 0, .t = 0, .p_value = p_value};
+    }
+  }
+  return best;
+}
+
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,55 @@
+// Detects that something is left: residuals of a good model are noise, which forgets itself within a few rows; what a
+// model leaves out does not.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/estimation/cross_validation.hpp"
+
+namespace surefoot::diagnosis {
+
+/// How much of the residuals of one output is not noise.
+struct WhitenessTest {
+  double share = 0;    // of the mean square that is still correlated after the noise has forgotten itself
+  double p_value = 1;  // one-sided, that there is none
+  double rms = 0;      // of the residuals, in the unit of the output
+};
+
+/// Residuals of one output in one recording; what was not measured is 0.
+Eigen::VectorXd series_of(const BoundSimulator& bound, std::size_t r, const SimulatedRun& trajectory,
+                          Eigen::Index output);
+
+/// Sums of products of neighbours `lag` rows apart, by lag, over all series.
+Eigen::VectorXd lagged_products(const std::vector<Eigen::VectorXd>& series, Eigen::Index from, Eigen::Index to);
+
+/// Upper tail of a sum of squares with this mean and variance, as a scaled chi-square (Wilson & Hilferty 1931).
+double chi_square_tail(double value, double mean, double variance);
+
+/// Squared correlations of residuals over all lags of `from` to `to` rows (a portmanteau, after Box & Pierce 1970), so
+/// that slow errors and oscillations count alike. What noise alone would give is found by turning the signs of chunks
+/// of `from` rows at random, which keeps noise as it is if it forgets itself within that many. Wild single samples are
+/// cut off. Cost: 40 * rows * lags.
+WhitenessTest test_whiteness(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                             const std::vector<SimulatedRun>& trajectories, Eigen::Index output, Eigen::Index from,
+                             Eigen::Index to);
+
+/// Standard deviation of noise that differs from row to row, from third differences of what was measured (they remove
+/// motion that is smooth over four rows); noise that is correlated from row to row is underestimated.
+double fast_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings, Eigen::Index output);
+
+/// Standard deviation of the noise of one output: as stated, or as far as it is fast.
+inline double noise_of(const BoundSimulator& bound, const std::vector<std::size_t>& recordings, Eigen::Index output) {
+  const double stated = bound.info.outputs[static_cast<std::size_t>(output)].noise;
+  return stated > 0 ? stated : fast_noise(bound, recordings, output);
+}
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/residual_tests/whiteness.ipp"
+#endif

@@ -1,0 +1,111 @@
+// Definitions of surefoot/diagnose/residual_tests/whiteness.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/estimation/cross_validation.hpp"
+#include "surefoot/diagnose/residual_tests/whiteness.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE Eigen::VectorXd series_of(const BoundSimulator& bound, std::size_t r, const SimulatedRun& trajectory,
+                                          Eigen::Index output) {
+  const std::vector<Cell> cells = cells_of(bound.recordings[r]);
+  const Eigen::VectorXd off = raw_residuals(bound, r, trajectory, cells);
+  Eigen::VectorXd series = Eigen::VectorXd::Zero(bound.recordings[r].rows());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells[i].output == output) series[cells[i].row] = off[static_cast<Eigen::Index>(i)];
+  }
+  return series;
+}
+
+SUREFOOT_INLINE Eigen::VectorXd lagged_products(const std::vector<Eigen::VectorXd>& series, Eigen::Index from,
+                                                Eigen::Index to) {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(to - from + 1);
+  for (const Eigen::VectorXd& one : series) {
+    for (Eigen::Index lag = from; lag <= std::min(to, one.size() - 1); ++lag) {
+      sums[lag - from] += one.head(one.size() - lag).dot(one.tail(one.size() - lag));
+    }
+  }
+  return sums;
+}
+
+SUREFOOT_INLINE double chi_square_tail(double value, double mean, double variance) {
+  if (!(mean > 0) || !(variance > 0)) return 1;
+  const double spread = variance / (9 * mean * mean);  // 2 / (9 k), for k = 2 mean^2 / variance degrees of freedom
+  return normal_tail((std::cbrt(value / mean) - (1 - spread)) / std::sqrt(spread));
+}
+
+SUREFOOT_INLINE WhitenessTest test_whiteness(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                             const std::vector<SimulatedRun>& trajectories, Eigen::Index output,
+                                             Eigen::Index from, Eigen::Index to) {
+  constexpr int draws = 40;
+  WhitenessTest result;
+  std::vector<Eigen::VectorXd> all;
+  double sum = 0, count = 0;
+  Eigen::Index longest = 0;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    all.push_back(series_of(bound, recordings[i], trajectories[i], output));
+    longest = std::max(longest, all.back().size());
+    for (const double value : all.back()) {
+      if (value == 0 || !std::isfinite(value)) continue;
+      sum += value * value;
+      ++count;
+    }
+  }
+  if (count < 1) return result;
+  result.rms = std::sqrt(sum / count);
+  to = std::min(to, longest / 4);
+  if (to < from || longest < 6 * from) return result;
+  double squares = 0;
+  for (Eigen::VectorXd& series : all) {
+    series = series.unaryExpr(
+        [&](double v) { return std::isfinite(v) ? std::clamp(v, -5 * result.rms, 5 * result.rms) : 0.0; });
+    squares += series.squaredNorm();
+  }
+  if (!(squares > 0)) return result;
+  const Eigen::VectorXd correlation = lagged_products(all, from, to) / squares;
+  Rng rng(1);
+  double mean = 0, variance = 0;
+  std::vector<double> nulls;
+  std::vector<Eigen::VectorXd> turned = all;
+  for (int draw = 0; draw < draws; ++draw) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      for (Eigen::Index row = 0; row < all[i].size(); row += from) {
+        const Eigen::Index length = std::min(from, all[i].size() - row);
+        turned[i].segment(row, length) = all[i].segment(row, length) * (rng.uniform() < 0.5 ? -1.0 : 1.0);
+      }
+    }
+    nulls.push_back((lagged_products(turned, from, to) / squares).squaredNorm());
+    mean += nulls.back() / draws;
+  }
+  for (const double null : nulls) variance += (null - mean) * (null - mean) / (draws - 1);
+  result.p_value = chi_square_tail(correlation.squaredNorm(), mean, variance);
+  const double excess = std::max(0.0, correlation.squaredNorm() - mean) / static_cast<double>(correlation.size());
+  result.share = std::min(std::sqrt(2 * excess), correlation.cwiseAbs().maxCoeff());  // of a sine: half its square
+  return result;
+}
+
+SUREFOOT_INLINE double fast_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                  Eigen::Index output) {
+  std::vector<double> third;
+  for (const std::size_t r : recordings) {
+    const auto y = bound.recordings[r].outputs.row(output);
+    for (Eigen::Index i = 0; i + 3 < y.size(); ++i) {
+      const double d = y[i + 3] - 3 * y[i + 2] + 3 * y[i + 1] - y[i];
+      if (std::isfinite(d)) third.push_back(std::abs(d));
+    }
+  }
+  if (third.size() < 20) return 0;
+  const auto middle = third.begin() + static_cast<std::ptrdiff_t>(third.size() / 2);
+  std::nth_element(third.begin(), middle, third.end());
+  return *middle / 0.6745 / std::sqrt(20.0);
+}
+
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,32 @@
+// Screens recordings before anything is fitted: wild single samples, channels that never move, time stamps, and what is
+// therefore impossible to see.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "surefoot/diagnose/diagnosis.hpp"
+#include "surefoot/diagnose/simulator.hpp"
+
+namespace surefoot {
+
+/// Throws a DiagnoseError that names recording and channel unless sizes agree, inputs are finite and time rises.
+void check_recording(const SimulatorInfo& info, const Recording& recording);
+
+/// Takes single wild samples out (as not measured) and says so: values far from both neighbours, which agree.
+std::vector<Remark> remove_outliers(const SimulatorInfo& info, Recording& recording);
+
+/// What cannot be seen in these recordings.
+std::vector<Remark> screen(const SimulatorInfo& info, const std::vector<Recording>& recordings);
+
+}  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/screening.ipp"
+#endif

@@ -1,0 +1,124 @@
+// Definitions of surefoot/diagnose/screening.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/diagnosis.hpp"
+#include "surefoot/diagnose/screening.hpp"
+#include "surefoot/diagnose/simulator.hpp"
+
+namespace surefoot {
+
+SUREFOOT_INLINE void check_recording(const SimulatorInfo& info, const Recording& recording) {
+  const auto fail = [&](const std::string& what) { throw DiagnoseError(recording.name + ": " + what); };
+  if (recording.rows() < 2) fail("needs at least two rows, has " + std::to_string(recording.rows()));
+  if (recording.inputs.rows() != static_cast<Eigen::Index>(info.inputs.size()) ||
+      (recording.inputs.rows() > 0 && recording.inputs.cols() != recording.rows())) {
+    fail("inputs must have one row per input of the model and one column per time");
+  }
+  if (recording.outputs.rows() != static_cast<Eigen::Index>(info.outputs.size()) ||
+      recording.outputs.cols() != recording.rows()) {
+    fail("outputs must have one row per output of the model and one column per time");
+  }
+  const auto states = static_cast<Eigen::Index>(info.states.size());
+  if (recording.initial.size() != states || recording.initial_scale.size() != states ||
+      !recording.initial.allFinite()) {
+    fail("the initial state must have one finite value, and one scale, per state of the model");
+  }
+  for (Eigen::Index row = 0; row < recording.rows(); ++row) {
+    for (Eigen::Index i = 0; i < recording.inputs.rows(); ++i) {
+      if (!std::isfinite(recording.inputs(i, row))) {
+        fail("input '" + info.inputs[static_cast<std::size_t>(i)].name + "' has no value in row " +
+             std::to_string(row) + "; inputs must be known throughout");
+      }
+    }
+    if (row > 0 && !(recording.time[row] > recording.time[row - 1])) {
+      fail("time does not rise at row " + std::to_string(row));
+    }
+  }
+  if (!recording.outputs.array().isFinite().any()) fail("no output was ever measured");
+}
+
+SUREFOOT_INLINE std::vector<Remark> remove_outliers(const SimulatorInfo& info, Recording& recording) {
+  std::vector<Remark> remarks;
+  for (Eigen::Index k = 0; k < recording.outputs.rows(); ++k) {
+    const Eigen::RowVectorXd y = recording.outputs.row(k);
+    std::vector<double> bends;
+    for (Eigen::Index i = 1; i + 1 < y.size(); ++i) {
+      const double bend = std::abs(y[i] - 0.5 * (y[i - 1] + y[i + 1]));
+      if (std::isfinite(bend)) bends.push_back(bend);
+    }
+    if (bends.size() < 30) continue;
+    const auto high = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() * 19 / 20);
+    std::nth_element(bends.begin(), high, bends.end());
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const double value : y) {
+      if (!std::isfinite(value)) continue;
+      least = std::min(least, value);
+      most = std::max(most, value);
+    }
+    const double limit = std::max(8 * *high, 0.01 * (most - least));
+    for (Eigen::Index i = 1; i + 1 < y.size(); ++i) {
+      const double bend = std::abs(y[i] - 0.5 * (y[i - 1] + y[i + 1]));
+      if (!(bend > limit) || std::abs(y[i + 1] - y[i - 1]) > 0.5 * bend) continue;
+      recording.outputs(k, i) = std::numeric_limits<double>::quiet_NaN();
+      char text[200];
+      std::snprintf(text, sizeof text, "one wild sample of %s at time %.4g (%.4g between %.4g and %.4g) was taken out",
+                    info.outputs[static_cast<std::size_t>(k)].name.c_str(), recording.time[i], y[i], y[i - 1],
+                    y[i + 1]);
+      remarks.push_back({recording.name, text});
+    }
+  }
+  return remarks;
+}
+
+SUREFOOT_INLINE std::vector<Remark> screen(const SimulatorInfo& info, const std::vector<Recording>& recordings) {
+  std::vector<Remark> remarks;
+  for (std::size_t i = 0; i < info.inputs.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Recording& recording : recordings) {
+      low = std::min(low, recording.inputs.row(k).minCoeff());
+      high = std::max(high, recording.inputs.row(k).maxCoeff());
+    }
+    if (!(high > low)) {
+      remarks.push_back({"", "input " + info.inputs[i].name +
+                                 " never changes: nothing on its path (gain, delay, dead zone) can be told"});
+    } else if (low >= 0 || high <= 0) {
+      remarks.push_back({"", "input " + info.inputs[i].name +
+                                 " never changes its sign: what differs between both sides cannot be seen"});
+    }
+  }
+  for (std::size_t i = 0; i < info.outputs.size(); ++i) {
+    for (const Recording& recording : recordings) {
+      double low = std::numeric_limits<double>::infinity(), high = -low;
+      Eigen::Index count = 0, at_edge = 0;
+      const auto y = recording.outputs.row(static_cast<Eigen::Index>(i));
+      for (const double value : y) {
+        if (!std::isfinite(value)) continue;
+        low = std::min(low, value);
+        high = std::max(high, value);
+        ++count;
+      }
+      for (const double value : y) at_edge += value == high || value == low ? 1 : 0;
+      if (count > 2 && !(high > low)) {
+        remarks.push_back({recording.name, "output " + info.outputs[i].name + " never changes"});
+      } else if (count > 50 && at_edge > count / 10) {
+        remarks.push_back({recording.name, "output " + info.outputs[i].name +
+                                               " stays at its largest or smallest value for more than a tenth of the "
+                                               "samples: it may be clipped"});
+      }
+    }
+  }
+  return remarks;
+}
+
+}  // namespace surefoot

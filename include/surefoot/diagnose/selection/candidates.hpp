@@ -1,0 +1,29 @@
+// Where effects may attach: every effect at every place of a simulator that it fits.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "surefoot/diagnose/estimation/hypothesis.hpp"
+
+namespace surefoot::diagnosis {
+
+/// Inputs and signals (after the inputs) that are worth an effect: they change, and are no mere multiple of one before.
+std::vector<bool> distinct_inputs(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                  const std::vector<std::size_t>& recordings,
+                                  const std::vector<SimulatedRun>& trajectories);
+
+/// Every (effect, place) that fits the simulator; `distinct` as above.
+std::vector<AttachedEffect> attachments(const BoundSimulator& bound, const std::vector<Effect>& effects,
+                                        const std::vector<bool>& distinct);
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/selection/candidates.ipp"
+#endif

@@ -1,0 +1,117 @@
+// Definitions of surefoot/diagnose/selection/candidates.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/hypothesis.hpp"
+#include "surefoot/diagnose/selection/candidates.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE std::vector<bool> distinct_inputs(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                  const std::vector<std::size_t>& recordings,
+                                                  const std::vector<SimulatedRun>& trajectories) {
+  const std::size_t inputs = bound.info.inputs.size(), count = inputs + bound.info.signals.size();
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count));
+  std::vector<bool> changes(count, false);
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    if (!trajectories[i].finite) continue;
+    Eigen::MatrixXd efforts, signals;
+    bound.probe(bound, recordings[i], hypothesis.parameters, trajectories[i].states, efforts, signals);
+    Eigen::MatrixXd all(products.rows(), signals.cols());
+    all << bound.recordings[recordings[i]].inputs, signals;
+    all = all.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; }).eval();
+    products += all * all.transpose();
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto line = all.row(static_cast<Eigen::Index>(k));
+      changes[k] = changes[k] || line.maxCoeff() > line.minCoeff();
+    }
+  }
+  std::vector<bool> distinct(count, false);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto a = static_cast<Eigen::Index>(k);
+    distinct[k] = changes[k] && (k < inputs || bound.structure.driven_signal[k - inputs]);
+    for (std::size_t j = 0; j < k; ++j) {
+      const auto b = static_cast<Eigen::Index>(j);
+      if (!distinct[j]) continue;
+      const double cosine = products(a, b) / std::sqrt(std::max(products(a, a) * products(b, b), 1e-300));
+      if (std::abs(cosine) > 1 - 1e-9) distinct[k] = false;
+    }
+  }
+  return distinct;
+}
+
+SUREFOOT_INLINE std::vector<AttachedEffect> attachments(const BoundSimulator& bound, const std::vector<Effect>& effects,
+                                                        const std::vector<bool>& distinct) {
+  std::vector<AttachedEffect> result;
+  const SimulatorInfo& info = bound.info;
+  int rank = -1;
+  for (const Effect& effect : effects) {
+    ++rank;
+    if ((effect.needs_drive || effect.needs_damping) && info.inputs.empty()) continue;  // nothing drives it
+    const auto shared = std::make_shared<const Effect>(effect);
+    const auto attach = [&](std::size_t at, const std::string& place, int other = -1) {
+      result.push_back({shared, static_cast<int>(at), other, place, rank});
+    };
+    switch (effect.place) {
+      case Place::velocity:
+        for (std::size_t i = 0; i < info.states.size(); ++i) {
+          const bool positioned = bound.structure.position_of[i] >= 0;
+          bool needs_position = effect.seen_position || effect.limit;
+          for (const EffectParameter& parameter : effect.parameters) {
+            needs_position = needs_position || parameter.measure.position != 0;
+          }
+          if (bound.structure.velocity[i] && (positioned || !needs_position)) attach(i, info.states[i].name);
+        }
+        break;
+      case Place::state:
+        for (std::size_t i = 0; i < info.states.size(); ++i) {
+          bool is_position = false;
+          for (const int position : bound.structure.position_of)
+            is_position = is_position || position == static_cast<int>(i);
+          const bool pose =
+              info.planar && (static_cast<int>(i) == info.planar->x || static_cast<int>(i) == info.planar->y ||
+                              static_cast<int>(i) == info.planar->heading);
+          if (is_position || bound.structure.velocity[i] || pose) continue;  // there forces act, or walking effects
+          const std::string& unit = info.states[i].unit;
+          const bool angle = unit == "rad" || unit == "deg";
+          if (effect.needs_conserved_state && (angle || !bound.structure.matters[i])) continue;
+          if (!effect.has_overflow_target) {
+            attach(i, info.states[i].name);
+            continue;
+          }
+          for (std::size_t j = 0; j < info.states.size(); ++j) {
+            if (j != i) attach(i, info.states[i].name, static_cast<int>(j));
+          }
+        }
+        break;
+      case Place::input:
+        for (std::size_t i = 0; i < distinct.size(); ++i) {
+          if (!distinct[i] || (effect.delay && i >= info.inputs.size())) continue;
+          attach(i, i < info.inputs.size() ? info.inputs[i].name : info.signals[i - info.inputs.size()]);
+        }
+        break;
+      case Place::output:
+        for (std::size_t i = 0; i < info.outputs.size(); ++i) attach(i, info.outputs[i].name);
+        break;
+      case Place::planar:
+        if (info.planar) attach(0, "planar");
+        break;
+      case Place::parameter:
+        for (std::size_t i = 0; i < info.parameters.size(); ++i) {
+          if (!info.parameters[i].fixed) attach(i, info.parameters[i].name);
+        }
+        break;
+    }
+  }
+  return result;
+}
+
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,54 @@
+// Definitions of surefoot/diagnose/simulation/bound_simulator.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/simulation/bound_simulator.hpp"
+#include "surefoot/diagnose/simulation/simulation_run.hpp"
+#include "surefoot/diagnose/simulation/structure.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE double root_mean_square(const Eigen::Ref<const Eigen::RowVectorXd>& values) {
+  double sum = 0;
+  Eigen::Index count = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    sum += value * value;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0;
+}
+
+SUREFOOT_INLINE double spread(const Eigen::Ref<const Eigen::RowVectorXd>& values) {
+  double sum = 0, squares = 0;
+  Eigen::Index count = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    sum += value;
+    squares += value * value;
+    ++count;
+  }
+  if (count < 2) return 0;
+  const double mean = sum / static_cast<double>(count);
+  return std::sqrt(std::max(0.0, squares / static_cast<double>(count) - mean * mean));
+}
+
+SUREFOOT_INLINE Eigen::VectorXd nominal_parameters(const SimulatorInfo& info) {
+  Eigen::VectorXd p(static_cast<Eigen::Index>(info.parameters.size()));
+  for (std::size_t i = 0; i < info.parameters.size(); ++i) p[static_cast<Eigen::Index>(i)] = info.parameters[i].value;
+  return p;
+}
+
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,132 @@
+// The inputs of a recording as functions of time: held or interpolated between rows, each possibly late.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "surefoot/diagnose/simulation/small_vectors.hpp"
+#include "surefoot/diagnose/simulator.hpp"
+
+namespace surefoot::diagnosis {
+
+template <class Input>
+class InputSignal {
+ public:
+  InputSignal(const SimulatorInfo& info, const Recording& recording)
+      : recording_(recording),
+        late_(info.inputs.size(), 0.0),
+        linear_(info.inputs.size()),
+        seen_(info.inputs.size(), 0) {
+    for (std::size_t i = 0; i < linear_.size(); ++i) {
+      linear_[i] = info.inputs[i].linear;
+      any_special_ = any_special_ || linear_[i];
+      steady_ = steady_ && !linear_[i];
+    }
+    held_ = at_row(0);
+  }
+
+  /// Makes input i come later by `delay` [s, or steps]; delays of one input add up.
+  void delay(int i, double delay) {
+    late_[static_cast<std::size_t>(i)] += delay;
+    any_special_ = true;
+    integral_.resize(late_.size());
+    auto& sum = integral_[static_cast<std::size_t>(i)];
+    if (!sum.empty() || linear_[static_cast<std::size_t>(i)]) return;
+    sum.assign(static_cast<std::size_t>(recording_.rows()), 0.0);
+    for (std::size_t row = 1; row < sum.size(); ++row) {
+      const auto r = static_cast<Eigen::Index>(row);
+      sum[row] = sum[row - 1] + recording_.inputs(i, r - 1) * (recording_.time[r] - recording_.time[r - 1]);
+    }
+  }
+
+  Input at_row(Eigen::Index row) const {
+    Input u = unset<Input>(recording_.inputs.rows());
+    for (Eigen::Index i = 0; i < u.size(); ++i) u[i] = recording_.inputs(i, row);
+    return u;
+  }
+
+  void go_to(Eigen::Index row) {
+    held_ = at_row(row);
+    if (!any_special_) return;
+    for (std::size_t i = 0; i < seen_.size(); ++i) seen_[i] = row_before(i, recording_.time[row] - late_[i]);
+  }
+
+  /// The first time after t, if before `end`, at which a held input that comes late changes; else `end`. Steps that end
+  /// there see constant inputs, and what they lead to is a smooth function of the delay.
+  double next_change(double t, double end) const {
+    const double after = t + 1e-9 * (end - t);  // what is rounded to t has been
+    double next = end;
+    for (std::size_t i = 0; i < late_.size(); ++i) {
+      if (late_[i] == 0 || linear_[i]) continue;
+      const auto k = static_cast<Eigen::Index>(i);
+      for (Eigen::Index row = row_before(i, after - late_[i]) + 1; row < recording_.rows(); ++row) {
+        const double change = recording_.time[row] + late_[i];
+        if (change >= next) break;
+        if (change > after && recording_.inputs(k, row) != recording_.inputs(k, row - 1)) next = change;
+      }
+    }
+    return next;
+  }
+
+  /// Whether any held input comes late.
+  bool late() const { return !integral_.empty(); }
+
+  /// The inputs of that row as they stand in the recording.
+  const Input& now() const { return held_; }
+
+  /// Whether inputs stay the same during a step: none is interpolated.
+  bool steady() const { return steady_; }
+
+  /// The inputs at the share `share` of a step of length h from time t on, within the row that go_to named.
+  Input between(double t, double h, double share) const { return any_special_ ? moving(t, h, share) : held_; }
+
+ private:
+  Input moving(double t, double h, double share) const {
+    Input u = held_;
+    for (std::size_t i = 0; i < late_.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      if (linear_[i]) {
+        u[k] = interpolated(k, t + share * h - late_[i]);
+      } else if (late_[i] != 0) {
+        u[k] = (integral(i, t + h - late_[i]) - integral(i, t - late_[i])) / h;
+      }
+    }
+    return u;
+  }
+
+  // The last row at or before time t, or the first; rows are searched from the one that input i showed last.
+  Eigen::Index row_before(std::size_t i, double t) const {
+    Eigen::Index row = seen_[i];
+    while (row > 0 && recording_.time[row] > t) --row;
+    while (row + 1 < recording_.rows() && recording_.time[row + 1] <= t) ++row;
+    return row;
+  }
+
+  double interpolated(Eigen::Index i, double t) const {
+    const Eigen::Index row = row_before(static_cast<std::size_t>(i), t);
+    if (t <= recording_.time[0]) return recording_.inputs(i, 0);
+    if (row + 1 >= recording_.rows()) return recording_.inputs(i, row);
+    const double share = (t - recording_.time[row]) / (recording_.time[row + 1] - recording_.time[row]);
+    return recording_.inputs(i, row) + share * (recording_.inputs(i, row + 1) - recording_.inputs(i, row));
+  }
+
+  // Integral of a held input from the first row on; before it the first value counts.
+  double integral(std::size_t i, double t) const {
+    const auto k = static_cast<Eigen::Index>(i);
+    const Eigen::Index row = row_before(i, t);
+    return integral_[i][static_cast<std::size_t>(row)] + recording_.inputs(k, row) * (t - recording_.time[row]);
+  }
+
+  const Recording& recording_;
+  std::vector<double> late_;
+  std::vector<bool> linear_;
+  std::vector<std::vector<double>> integral_;
+  std::vector<Eigen::Index> seen_;  // by input: the row it showed at the beginning of the present one
+  Input held_;
+  bool any_special_ = false, steady_ = true;
+};
+
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,43 @@
+// Definitions of surefoot/diagnose/text.hpp.
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/diagnosis.hpp"
+#include "surefoot/diagnose/text.hpp"
+
+namespace surefoot {
+
+SUREFOOT_INLINE std::string in_digits(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+SUREFOOT_INLINE std::string fill_sentence(std::string sentence, const std::string& place,
+                                          const std::vector<FittedValue>& values) {
+  const auto replace = [&sentence](const std::string& key, const std::string& text) {
+    const std::string mark = "{" + key + "}";
+    for (std::size_t at = sentence.find(mark); at != std::string::npos; at = sentence.find(mark, at + text.size())) {
+      sentence.replace(at, mark.size(), text);
+    }
+  };
+  replace("at", place);
+  for (const FittedValue& value : values) replace(value.name, with_unit(value.value, value.unit));
+  return sentence;
+}
+
+SUREFOOT_INLINE std::string in_list(const std::vector<std::string>& items) {
+  std::string text;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i > 0) text += i + 1 == items.size() ? " and " : ", ";
+    text += items[i];
+  }
+  return text;
+}
+
+}  // namespace surefoot

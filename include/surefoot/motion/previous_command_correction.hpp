@@ -1,0 +1,76 @@
+// Linear correction that also sees the order of the cycle before: displacement = A (1, dx, dy, dt)^T + B (dx', dy',
+// dt')^T. A walk whose cycles are measured between two phases still carries out part of the last order there; B says
+// how much of it.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+#include "surefoot/core/vec.hpp"
+#include "surefoot/motion/linear_correction.hpp"
+#include "surefoot/motion/motion_model.hpp"
+#include "surefoot/core/pose2.hpp"
+
+namespace surefoot {
+
+/// The full linear correction with the nine coefficients of the previous order. The parameter vector lists the twelve
+/// of A row by row, then the nine of B row by row.
+class PreviousOrderCorrection {
+ public:
+  static constexpr int parameter_count = 21;
+  static constexpr std::string_view name = "full linear with previous order";
+  using Parameters = Vec<21>;
+  using Previous = Eigen::Matrix3d;  // rows: dx, dy, dt; columns: dx, dy, dt ordered in the cycle before
+
+  /// The walk does what it is told, at once.
+  PreviousOrderCorrection() = default;
+
+  static PreviousOrderCorrection from_parameters(const Parameters& parameters) {
+    PreviousOrderCorrection result;
+    result.present_ = FullLinearCorrection::from_parameters(parameters.head<12>());
+    for (int i = 0; i < 9; ++i) result.previous_(i / 3, i % 3) = parameters[12 + i];
+    return result;
+  }
+
+  Parameters parameters() const {
+    Parameters result;
+    result.head<12>() = present_.parameters();
+    for (int i = 0; i < 9; ++i) result[12 + i] = previous_(i / 3, i % 3);
+    return result;
+  }
+
+  const FullLinearCorrection& present() const { return present_; }
+  const Previous& previous() const { return previous_; }
+
+  /// Displacement of a cycle with these orders after one with the orders `before`, both (x, y, turn) [m, m, rad].
+  Pose2 displacement(const Vec<3>& orders, const Vec<3>& before) const {
+    return Pose2::from_vec(present_.displacement(orders).vec() + previous_ * before);
+  }
+
+  static std::array<ModelParameter, 21> parameter_info() {
+    constexpr std::array<ModelParameter, 9> block{{{"dx per last dx", "1", -1, 1},
+                                                   {"dx per last dy", "1", -1, 1},
+                                                   {"dx per last dt", "m/rad", -0.5, 0.5},
+                                                   {"dy per last dx", "1", -1, 1},
+                                                   {"dy per last dy", "1", -1, 1},
+                                                   {"dy per last dt", "m/rad", -0.5, 0.5},
+                                                   {"dt per last dx", "rad/m", -5, 5},
+                                                   {"dt per last dy", "rad/m", -5, 5},
+                                                   {"dt per last dt", "1", -1, 1}}};
+    std::array<ModelParameter, 21> info{};
+    const auto present = FullLinearCorrection::parameter_info();
+    for (std::size_t i = 0; i < 12; ++i) info[i] = present[i];
+    for (std::size_t i = 0; i < 9; ++i) info[12 + i] = block[i];
+    return info;
+  }
+
+ private:
+  FullLinearCorrection present_;
+  Previous previous_ = Previous::Zero();
+};
+
+static_assert(MotionModel<PreviousOrderCorrection>);
+
+}  // namespace surefoot

@@ -1,0 +1,175 @@
+// CSV files as recordings of a model, and the recordings of others where they are at hand.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/diagnose/equations.hpp"
+#include "apps/diagnose/load_recording.hpp"
+#include "tests/apps/diagnose_models.hpp"
+
+using namespace diagnose_program;
+using diagnose_test::servo_csv;
+using diagnose_test::servo_model;
+using diagnose_test::walk_model;
+using diagnose_test::with;
+
+namespace {
+
+LoadedRecordings load(const std::string& csv, const std::string& model = servo_model) {
+  return recordings_of(parse_csv(csv, "rec.csv"), layout_of(parse_model_file(model, "servo.toml")));
+}
+
+void check_refused(const std::string& csv, const std::string& words, const std::string& model = servo_model) {
+  CAPTURE(words);
+  REQUIRE(!csv.empty());
+  REQUIRE(!model.empty());
+  try {
+    load(csv, model);
+    FAIL("not refused");
+  } catch (const surefoot::DiagnoseError& error) {
+    const std::string what = error.what();
+    CAPTURE(what);
+    CHECK(what.find("rec.csv") == 0);
+    CHECK(what.find(words) != std::string::npos);
+    CHECK(what.find('\n') == std::string::npos);
+  }
+}
+
+std::string recordings_folder() {
+  const char* folder = std::getenv("SUREFOOT_RECORDINGS");
+  return folder != nullptr ? folder : "";
+}
+
+}  // namespace
+
+TEST_CASE("columns become inputs and outputs, and the state starts where it was measured") {
+  const auto loaded = load(servo_csv);
+  REQUIRE(loaded.recordings.size() == 1);
+  const surefoot::Recording& recording = loaded.recordings[0];
+  CHECK(recording.name == "rec.csv");
+  CHECK(recording.rows() == 7);
+  CHECK(recording.inputs(0, 2) == 0.2);
+  CHECK(std::isnan(recording.outputs(0, 2)));
+  CHECK(recording.initial[0] == 0.01);
+  CHECK(recording.initial_scale[0] == 0);
+  CHECK(recording.constants.at("kp") == 5);
+  CHECK(!recording.constants.contains("remark"));
+}
+
+TEST_CASE("a free state starts from its measurement, a free speed from the first differences") {
+  const std::string csv = "t_s,goal_rad,theta_rad\n0,0,1\n0.1,0,1.2\n0.2,0,1.4\n0.3,0,1.6\n0.4,0,1.8\n0.5,0,3\n";
+  std::string model = with(servo_model, "column:theta_rad", "free");
+  model = with(model, "initial = \"0\"", "initial = \"free\"");
+  for (const char* key : {"mass_kg", "length_m", "kp", "vin_V"})
+    model = with(model, "\"meta:" + std::string(key) + "\"", "1.0");
+  const auto loaded = load(csv, model);
+  CHECK(loaded.recordings[0].initial[0] == 1);
+  CHECK(loaded.recordings[0].initial[1] == doctest::Approx(2));
+  CHECK(loaded.recordings[0].initial_scale.minCoeff() > 0);
+}
+
+TEST_CASE("sequences in one file are recordings of their own, and poses after a step belong to the next row") {
+  const auto loaded = load("seq,order_m,turn_rad,x_m,y_m\n4,1,0,1,0\n4,2,0,3,0\n9,3,0,3,0\n", walk_model);
+  REQUIRE(loaded.recordings.size() == 2);
+  CHECK(loaded.recordings[1].name == "rec.csv#2");
+  const surefoot::Recording& first = loaded.recordings[0];
+  REQUIRE(first.rows() == 3);
+  CHECK(std::isnan(first.outputs(0, 0)));
+  CHECK(first.inputs(0, 0) == 1);
+  CHECK(first.outputs(0, 1) == 1);
+  CHECK(first.inputs(0, 1) == 2);
+  CHECK(first.outputs(0, 2) == 3);
+  CHECK(first.time[2] == 2);
+}
+
+TEST_CASE("rows at the beginning can be skipped") {
+  const auto loaded = load(servo_csv, with(servo_model, "time ", "skip_rows = 3\ntime "));
+  CHECK(loaded.recordings[0].rows() == 4);
+  CHECK(loaded.recordings[0].initial[0] == 0.05);
+  check_refused(servo_csv, "only 7 row(s) of numbers, but at least 8 are needed (skip_rows = 6)",
+                with(servo_model, "time ", "skip_rows = 6\ntime "));
+}
+
+TEST_CASE("wrong recordings are refused in one sentence") {
+  check_refused(
+      with(servo_csv, "goal_rad", "goal_deg"),
+      "column 'goal_rad' is missing, which the model reads as an input; the file has t_s, goal_deg, theta_rad");
+  check_refused(with(servo_csv, "theta_rad", "theta"), "column 'theta_rad' is missing");
+  check_refused(with(servo_csv, "0.010,0.2", "0.001,0.2"), "line 9: column 't_s' does not rise, 0.001 follows 0.005");
+  check_refused(with(servo_csv, "0.010,0.2", "0.005,0.2"), "does not rise");
+  check_refused(with(servo_csv, "0.010,0.2", ",0.2"), "line 9: column 't_s' is empty");
+  check_refused(with(servo_csv, "0.010,0.2", "0.010,"), "line 9: column 'goal_rad' is empty; an input must be known");
+  check_refused(with(servo_csv, "0.010,0.2", "0.010,fast"), "line 9: column 'goal_rad' holds \"fast\"");
+  check_refused(with(servo_csv, "# kp: 5\n", ""),
+                "the model wants the constant 'kp', but no first line '# kp: number' is there");
+  check_refused(with(servo_csv, "# kp: 5", "# kp: high"), "its first line says 'high', which is no number");
+  check_refused(servo_csv.substr(0, servo_csv.find("0.005,0.1")), "only 1 row(s) of numbers");
+  check_refused(servo_csv.substr(0, servo_csv.find("0.000,0.0")), "only 0 row(s) of numbers");
+  check_refused("# mass_kg: 0.5\n# length_m: 0.1\n# kp: 5\n# vin_V: 7.4\nt_s,goal_rad,theta_rad\n0,0,\n1,0,nan\n2,0,\n",
+                "column 'theta_rad' holds no number at all");
+  check_refused(servo_csv, "column 'start_rad' is missing, with which the state starts",
+                with(servo_model, "column:theta_rad", "column:start_rad"));
+}
+
+TEST_CASE("a column without a unit is remarked on, unless the model says that it has none") {
+  const std::string csv = with(servo_csv, "goal_rad", "goal_on");
+  CHECK(load(csv, with(servo_model, "\"goal_rad\"", "\"goal_on\"")).remarks.size() == 1);
+  CHECK(load(csv, with(servo_model, "\"goal_rad\"", "{ column = \"goal_on\", unit = \"1\" }")).remarks.empty());
+}
+
+TEST_CASE("a simulator in C++ reads columns called after names and units") {
+  surefoot::SimulatorInfo info;
+  info.inputs = {{"goal", "rad"}, {"v", "m/s"}, {"on", "1"}};
+  info.outputs = {{"theta_rad", "rad"}, {"tau", "N m"}};
+  info.states = {{"theta", "rad"}, {"omega", "rad/s"}};
+  const Layout layout = layout_of(info);
+  CHECK(layout.inputs[0].column == "goal_rad");
+  CHECK(layout.inputs[1].column == "v_m_s");
+  CHECK(layout.inputs[2].column == "on");
+  CHECK(layout.outputs == std::vector<std::string>{"theta_rad", "tau_N_m"});
+  CHECK(layout.starts[0].measured == 0);
+  CHECK(layout.starts[1].speed_of == 0);
+}
+
+TEST_CASE("every model of ours reads the recordings it is for" * doctest::skip(recordings_folder().empty())) {
+  namespace fs = std::filesystem;
+  std::size_t models = 0;
+  for (const auto& entry : fs::directory_iterator(SUREFOOT_SOURCE_DIR "/apps/diagnose/models")) {
+    fs::path folder = fs::path(recordings_folder()) / entry.path().stem();
+    if (fs::exists(folder / "as_recordings")) folder /= "as_recordings";
+    CAPTURE(entry.path().string());
+    REQUIRE(fs::exists(folder));
+    const ModelFile model = read_model_file(entry.path());
+    const Layout layout = layout_of(model);
+    Eigen::VectorXd p(static_cast<Eigen::Index>(model.parameters.size()));
+    for (std::size_t i = 0; i < model.parameters.size(); ++i)
+      p[static_cast<Eigen::Index>(i)] = model.parameters[i].value;
+    std::size_t files = 0;
+    for (const auto& file : fs::directory_iterator(folder)) {
+      if (file.path().extension() != ".csv") continue;
+      ++files;
+      for (const auto& recording : load_recordings(file.path(), layout).recordings) {
+        CAPTURE(recording.name);
+        CHECK(recording.rows() > 20);
+        CHECK(recording.initial.allFinite());
+        const Channels x = recording.initial, u = recording.inputs.col(0);
+        if (layout.ode) {
+          OdeModel bound = OdeModel(model).for_recording(recording);
+          bound.prepare(p);
+          CHECK(bound.derivative(x, u, p).allFinite());
+        } else {
+          MapModel bound = MapModel(model).for_recording(recording);
+          bound.prepare(p);
+          CHECK(bound.next(x, u, p).allFinite());
+        }
+      }
+    }
+    CHECK(files > 0);
+    ++models;
+  }
+  CHECK(models == 11);
+}

@@ -1,0 +1,185 @@
+// Fits: what they recover, what they leave alone, and what their standard errors are worth.
+#include "surefoot/diagnose/estimation/fit.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/selection/candidates.hpp"
+#include "surefoot/diagnose/estimation/calibrate.hpp"
+#include "surefoot/diagnose/effects/catalogue.hpp"
+#include "tests/diagnose/small_simulators.hpp"
+#include "tests/support/servo_pendulum.hpp"
+
+using namespace surefoot::diagnosis;
+
+namespace surefoot {
+namespace {
+
+using toys::LeakyTank;
+using toys::ServoPendulum;
+
+FitProblem problem_of(std::size_t recordings, double sigma) {
+  FitProblem problem;
+  for (std::size_t r = 0; r < recordings; ++r) problem.recordings.push_back(r);
+  problem.weighting.sigma.setConstant(1, sigma);
+  problem.max_iterations = 40;
+  problem.tolerance = 1e-14;
+  return problem;
+}
+
+// Tanks with these parameters [m/s, 1/s] and noise [m] that is correlated by `memory` from row to row.
+std::vector<Recording> tanks(int count, Eigen::Index rows, double gain, double leak, double noise = 0,
+                             double memory = 0, std::uint64_t seed = 1) {
+  std::vector<Recording> recordings;
+  for (int r = 0; r < count; ++r) {
+    Recording recording = toys::tank_recording(r, rows);
+    recording.outputs = simulate_augmented(LeakyTank{}, toys::machine({gain, leak}), recording).outputs;
+    Rng rng(seed, static_cast<std::uint64_t>(r));
+    double off = 0;
+    for (double& level : recording.outputs.reshaped()) {
+      off = memory * off + noise * std::sqrt(1 - memory * memory) * rng.normal();
+      level += off;
+    }
+    recordings.push_back(std::move(recording));
+  }
+  return recordings;
+}
+
+TEST_CASE("the parameters of data without noise are recovered to 1e-5, though two of them nearly trade off") {
+  auto recordings = toys::servo_recordings({}, 3, 1);
+  for (Recording& recording : recordings) {
+    recording.outputs = simulate_augmented(ServoPendulum{}, toys::machine({1.4, 3.9, 0.014}), recording).outputs;
+  }
+  const BoundSimulator bound = bind_simulator(ServoPendulum{}, recordings);
+  const Fit fitted = fit(bound, nominal_hypothesis(bound), problem_of(3, 0.001), serially());
+  CHECK(fitted.ok);
+  CHECK(fitted.loss < 1e-8);
+  CHECK(fitted.hypothesis.parameters[0] == doctest::Approx(1.4).epsilon(1e-5));
+  CHECK(fitted.hypothesis.parameters[1] == doctest::Approx(3.9).epsilon(1e-5));
+  CHECK(fitted.hypothesis.parameters[2] == doctest::Approx(0.014).epsilon(1e-5));
+}
+
+TEST_CASE("an effect's parameters and unknown initial states are recovered together") {
+  auto recordings = tanks(3, 120, 1.7, 0.8);
+  const Effect leak_in{.name = "spring",
+                       .place = Place::state,
+                       .parameters = {{.name = "rate", .measure = {}, .low = -2, .high = 2, .starts = {0.01}}},
+                       .force = [](const EffectContext&, Values p, Values) { return p[0]; }};
+  const Augmented truth = toys::machine({1.7, 0.8}, {{"spring", "level", {}, {}, {0.3}}});
+  for (Recording& recording : recordings) {
+    recording.initial[0] = 0.4;
+    recording.outputs = simulate_augmented(LeakyTank{}, truth, recording, {leak_in}).outputs;
+    recording.initial[0] = 0;
+    recording.initial_scale[0] = 0.1;
+  }
+  const BoundSimulator bound = bind_simulator(LeakyTank{}, recordings);
+  Hypothesis start = nominal_hypothesis(bound);
+  start.effects.push_back(attach(bound.info, {"spring", "level", {}, {}, {0}}, {leak_in}));
+  start.values.push_back(Vec<1>(0.0));
+  const Fit fitted = fit(bound, start, problem_of(3, 0.01), serially());
+  CHECK(fitted.hypothesis.values[0][0] == doctest::Approx(0.3).epsilon(1e-6));
+  CHECK(fitted.hypothesis.parameters[0] == doctest::Approx(1.7).epsilon(1e-6));
+  for (const Eigen::VectorXd& initial : fitted.hypothesis.initial)
+    CHECK(initial[0] == doctest::Approx(0.4).epsilon(1e-6));
+}
+
+TEST_CASE("a fit is never worse than its start, however few its iterations and odd its start") {
+  const BoundSimulator bound = bind_simulator(ServoPendulum{}, toys::servo_recordings(toys::machine({1.4, 3.9, 0.014}), 2, 2));
+  Rng rng(2);
+  for (int k = 0; k < 12; ++k) {
+    Hypothesis start = nominal_hypothesis(bound);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const ParameterInfo& info = bound.info.parameters[i];
+      start.parameters[static_cast<Eigen::Index>(i)] = info.low * std::pow(info.high / info.low, rng.uniform());
+    }
+    FitProblem problem = problem_of(2, 0.001);
+    problem.max_iterations = 0;
+    const double before = fit(bound, start, problem, serially()).loss;
+    problem.max_iterations = 1 + k % 3;
+    const Fit fitted = fit(bound, start, problem, serially());
+    CHECK(fitted.loss <= before);
+    CHECK(fitted.ok == std::isfinite(before));  // some of these machines cannot be integrated in one step per row
+    if (!fitted.ok) continue;
+    const Parallel serial = serially();
+    const detail::FitFunctions functions(bound, fitted.hypothesis, problem, serial);
+    CHECK(mean_loss(functions.residuals(functions.start()), 4) == doctest::Approx(fitted.loss).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("bounds hold, and what is not free stays") {
+  const BoundSimulator bound = bind_simulator(LeakyTank{}, tanks(2, 100, 7, 0.8));  // beyond the bound of 5
+  const Hypothesis nominal = nominal_hypothesis(bound);
+  FitProblem problem = problem_of(2, 0.01);
+  CHECK(fit(bound, nominal, problem, serially()).hypothesis.parameters[0] == doctest::Approx(5));
+  problem.free = Free::initial_only;
+  CHECK(fit(bound, nominal, problem, serially()).hypothesis.parameters == nominal.parameters);
+  BoundSimulator fixed = bound;
+  fixed.info.parameters[0].fixed = true;
+  problem.free = Free::everything;
+  const Fit fitted = fit(fixed, nominal, problem, serially());
+  CHECK(fitted.hypothesis.parameters[0] == 1);
+  CHECK(fitted.hypothesis.parameters[1] != 1);
+
+  Hypothesis leaking = nominal;
+  leaking.effects = attachments(bound, {effects::leak()}, {});
+  REQUIRE(leaking.effects.size() == 1);
+  leaking.values.emplace_back(Eigen::VectorXd::Constant(1, 0.01));
+  problem.free = Free::all_but_effects;
+  const Fit around = fit(bound, leaking, problem, serially());
+  CHECK(around.hypothesis.values[0][0] == 0.01);
+  CHECK(around.hypothesis.parameters != nominal.parameters);
+}
+
+TEST_CASE("the coarsest integration that is good enough is chosen, and a fine one where none is") {
+  const BoundSimulator bound = bind_simulator(LeakyTank{}, tanks(1, 100, 1, 1));
+  const Hypothesis nominal = nominal_hypothesis(bound);
+  const Integration rough = choose_integration(bound, nominal, Eigen::VectorXd::Constant(1, 0.1), {}, 0);
+  CHECK(rough.order == 2);
+  CHECK(rough.step == doctest::Approx(1.5 * 0.05));
+  const Integration fine = choose_integration(bound, nominal, Eigen::VectorXd::Zero(1), {}, 0);
+  CHECK(fine.order == 4);
+  CHECK(fine.step == doctest::Approx(0.05 / 8));
+}
+
+TEST_CASE("a few wild samples hardly move a fit") {
+  auto recordings = tanks(3, 200, 1.7, 0.8, 0.01);
+  for (Recording& recording : recordings) {
+    for (Eigen::Index i = 20; i < 200; i += 50) recording.outputs(0, i) += 3;
+  }
+  const BoundSimulator bound = bind_simulator(LeakyTank{}, recordings);
+  const Fit fitted = fit(bound, nominal_hypothesis(bound), problem_of(3, 0.01), serially());
+  CHECK(fitted.hypothesis.parameters[0] == doctest::Approx(1.7).epsilon(0.02));
+  CHECK(fitted.hypothesis.parameters[1] == doctest::Approx(0.8).epsilon(0.02));
+}
+
+// Share of repetitions in which the truth is within two standard errors.
+double coverage(double memory) {
+  int within = 0;
+  constexpr int repetitions = 100;
+  for (int k = 0; k < repetitions; ++k) {
+    const BoundSimulator bound = bind_simulator(LeakyTank{}, tanks(4, 200, 1.5, 0.7, 0.02, memory, 10 + static_cast<std::uint64_t>(k)));
+    const FitProblem problem = problem_of(4, 0.02);
+    const Fit fitted = fit(bound, nominal_hypothesis(bound), problem, serially());
+    const StandardErrors errors = standard_errors(bound, fitted.hypothesis, problem, serially());
+    REQUIRE(errors.deviation.size() == 2);
+    within += std::abs(fitted.hypothesis.parameters[0] - 1.5) < 2 * errors.deviation[0] ? 1 : 0;
+    within += std::abs(fitted.hypothesis.parameters[1] - 0.7) < 2 * errors.deviation[1] ? 1 : 0;
+  }
+  return within / (2.0 * repetitions);
+}
+
+TEST_CASE("two standard errors cover the truth about as often as they should, also where noise is correlated") {
+  for (const double memory : {0.0, 0.6}) {
+    const double covered = coverage(memory);
+    INFO("memory " << memory << ", covered " << covered);
+    CHECK(covered > 0.85);
+    CHECK(covered < 0.995);
+  }
+}
+
+}  // namespace
+}  // namespace surefoot

@@ -1,0 +1,112 @@
+// Screening: what recordings are refused for, what is taken out of them, and what is said of them.
+#include "surefoot/diagnose/screening.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
+#include "tests/diagnose/small_simulators.hpp"
+
+using namespace surefoot::diagnosis;
+
+namespace surefoot {
+namespace {
+
+using toys::LeakyTank;
+
+const SimulatorInfo info = LeakyTank{}.info();
+
+// A tank with noise of 2 mm and swings of half a metre.
+Recording tank() {
+  Recording recording = toys::tank_recording(1, 400);
+  recording.outputs = simulate_augmented(LeakyTank{}, {}, recording).outputs;
+  Rng rng(1);
+  for (double& level : recording.outputs.reshaped()) level += 0.002 * rng.normal();
+  return recording;
+}
+
+bool mentions(const std::vector<Remark>& remarks, const std::string& text) {
+  return std::any_of(remarks.begin(), remarks.end(),
+                     [&](const Remark& remark) { return remark.text.find(text) != std::string::npos; });
+}
+
+TEST_CASE("wild single samples are taken out, those and no others, and named") {
+  Recording recording = tank();
+  const Eigen::MatrixXd clean = recording.outputs;
+  for (const Eigen::Index row : {50, 51 + 70, 300}) recording.outputs(0, row) += row == 300 ? -3 : 2;
+  const std::vector<Remark> remarks = remove_outliers(info, recording);
+  CHECK(remarks.size() == 3);
+  CHECK(mentions(remarks, "level_m at time 2.5 "));
+  for (Eigen::Index row = 0; row < 400; ++row) {
+    const bool wild = row == 50 || row == 121 || row == 300;
+    CHECK(std::isnan(recording.outputs(0, row)) == wild);
+    if (!wild) CHECK(recording.outputs(0, row) == clean(0, row));
+  }
+}
+
+TEST_CASE("steps, slow swings, noise and short pulses of two rows are not wild") {
+  Recording plain = tank();
+  CHECK(remove_outliers(info, plain).empty());
+  Recording stepping = tank();
+  stepping.outputs.rightCols(150).array() += 1;
+  stepping.outputs.middleCols(60, 2).array() += 1;
+  CHECK(remove_outliers(info, stepping).empty());
+  CHECK(stepping.outputs.allFinite());
+}
+
+TEST_CASE("recordings that do not fit are refused by name, channel and row") {
+  const auto refusal = [](auto&& spoil) {
+    Recording recording = tank();
+    spoil(recording);
+    try {
+      check_recording(info, recording);
+    } catch (const DiagnoseError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(refusal([](Recording&) {}).empty());
+  CHECK(refusal([](Recording& r) { r.time[7] = r.time[6]; }) == "tank 1: time does not rise at row 7");
+  CHECK(refusal([](Recording& r) { r.inputs(0, 9) = std::numeric_limits<double>::quiet_NaN(); }) ==
+        "tank 1: input 'valve' has no value in row 9; inputs must be known throughout");
+  CHECK(refusal([](Recording& r) { r.outputs.setConstant(std::numeric_limits<double>::quiet_NaN()); }) ==
+        "tank 1: no output was ever measured");
+  CHECK(refusal([](Recording& r) { r.outputs.conservativeResize(2, 400); }).find("outputs must have") !=
+        std::string::npos);
+  CHECK(refusal([](Recording& r) { r.inputs.conservativeResize(1, 399); }).find("inputs must have") !=
+        std::string::npos);
+  CHECK(refusal([](Recording& r) { r.initial.setZero(3); }).find("initial state") != std::string::npos);
+  CHECK(refusal([](Recording& r) { r.time.conservativeResize(1); }).find("at least two rows") != std::string::npos);
+}
+
+TEST_CASE("what cannot be seen in the recordings is said, once the inputs of all are known") {
+  Recording still = tank(), positive = tank(), negative = tank();
+  still.inputs.setConstant(0.5);
+  positive.inputs = positive.inputs.cwiseAbs();
+  negative.inputs = -negative.inputs.cwiseAbs();
+  CHECK(mentions(screen(info, {still, still}), "valve never changes:"));
+  CHECK(mentions(screen(info, {still, positive}), "valve never changes its sign"));
+  CHECK_FALSE(mentions(screen(info, {still, positive, negative}), "valve"));
+}
+
+TEST_CASE("sensors that stand still or clip are named with their recording") {
+  Recording frozen = tank(), clipped = tank();
+  frozen.outputs.setConstant(0.3);
+  frozen.name = "frozen";
+  const double ceiling = 0.5 * clipped.outputs.maxCoeff();
+  clipped.outputs = clipped.outputs.cwiseMin(ceiling);
+  const std::vector<Remark> remarks = screen(info, {tank(), frozen, clipped});
+  CHECK(mentions(remarks, "level_m never changes"));
+  CHECK(mentions(remarks, "clipped"));
+  REQUIRE(remarks.size() == 2);
+  CHECK(remarks[0].recording == "frozen");
+  CHECK(screen(info, {tank()}).empty());
+}
+
+}  // namespace
+}  // namespace surefoot

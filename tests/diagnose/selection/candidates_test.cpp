@@ -1,0 +1,85 @@
+// Where effects may attach.
+#include "surefoot/diagnose/selection/candidates.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "surefoot/diagnose/effects/catalogue.hpp"
+#include "tests/diagnose/small_simulators.hpp"
+
+using namespace surefoot::diagnosis;
+
+namespace surefoot {
+namespace {
+
+/// A car in the plane: nothing depends on where it is.
+struct Car {
+  using State = Vec<2>;
+  using Input = Vec<1>;
+  using Output = Vec<2>;
+
+  SimulatorInfo info() const {
+    return {.name = "car",
+            .states = {{"x", "m"}, {"yaw", "rad"}},
+            .inputs = {{"speed", "m/s"}},
+            .outputs = {{"x_m", "m"}, {"yaw_rad", "rad"}},
+            .parameters = {{"turn", "rad/m", 1, 0.2, 5}}};
+  }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& p) const {
+    return {u[0] * std::cos(x[1]), p[0] * u[0]};
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return x; }
+};
+
+std::vector<std::string> places(const BoundSimulator& bound, const Effect& effect) {
+  std::vector<std::string> result;
+  for (const AttachedEffect& one : attachments(bound, {effect}, std::vector<bool>(bound.info.inputs.size(), true))) {
+    result.push_back(one.place);
+  }
+  return result;
+}
+
+// Two stores that empty into each other.
+struct TwoTanks {
+  using State = Vec<2>;
+  using Input = Vec<1>;
+  using Output = Vec<2>;
+
+  SimulatorInfo info() const {
+    return {.name = "two tanks",
+            .states = {{"upper", "m"}, {"lower", "m"}},
+            .inputs = {{"pump", "1"}},
+            .outputs = {{"upper_m", "m"}, {"lower_m", "m"}},
+            .parameters = {{"hole", "1/s", 1, 0.2, 5}}};
+  }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& p) const {
+    return {u[0] - p[0] * x[0], p[0] * (x[0] - x[1])};
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return x; }
+};
+
+TEST_CASE("what spills over spills into any other store") {
+  const Effect spilling = effects::overflow_spill();
+  REQUIRE(spilling.has_overflow_target);
+  const BoundSimulator bound = bind_simulator(TwoTanks{}, {toys::blank_recording(TwoTanks{}.info(), 100, 0.1)});
+  const auto found = attachments(bound, {spilling}, {true});
+  REQUIRE(found.size() == 2);
+  for (const AttachedEffect& one : found) CHECK(one.other == 1 - one.at);
+}
+
+TEST_CASE("a store can leak and overflow, a place and an angle cannot") {
+  const BoundSimulator tank = bind_simulator(toys::LeakyTank{}, {toys::blank_recording(toys::LeakyTank{}.info(), 100, 0.1)});
+  const BoundSimulator car = bind_simulator(Car{}, {toys::blank_recording(Car{}.info(), 100, 0.1)});
+  for (const Effect& effect : {effects::leak(), effects::leak_hole(), effects::overflow()}) {
+    CAPTURE(effect.name);
+    CHECK(places(tank, effect) == std::vector<std::string>{"level"});
+    CHECK(places(car, effect).empty());
+  }
+  CHECK(places(car, effects::constant_rate()) == std::vector<std::string>{"x", "yaw"});
+}
+
+}  // namespace
+}  // namespace surefoot

@@ -1,0 +1,110 @@
+// Proposals: which effects may attach where, and how they are ranked before anything is fitted.
+#include "surefoot/diagnose/selection/propose.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "surefoot/diagnose/estimation/calibrate.hpp"
+#include "surefoot/diagnose/effects/catalogue.hpp"
+#include "tests/diagnose/small_simulators.hpp"
+#include "tests/support/servo_pendulum.hpp"
+
+using namespace surefoot::diagnosis;
+
+namespace surefoot {
+namespace {
+
+using toys::ServoPendulum;
+
+// Two recordings of a servo with these effects, the right parameters, and the sizes of the model's own motion.
+struct Bench {
+  BoundSimulator bound;
+  Hypothesis base;
+  FitProblem problem;
+  std::vector<SimulatedRun> runs;
+};
+Bench bench(const std::vector<NamedEffect>& effects) {
+  Bench b{bind_simulator(ServoPendulum{}, toys::servo_recordings(toys::machine({}, effects), 2, 1)), {}, {}, {}};
+  b.base = nominal_hypothesis(b.bound);
+  b.problem.recordings = {0, 1};
+  b.runs = simulate_all(b.bound, b.base, {0, 1}, {}, serially());
+  b.problem.weighting.sigma = residual_sizes(b.bound, {0, 1}, b.runs);
+  b.bound.sizes = measure_sizes(b.bound, b.base, {0, 1}, b.runs);
+  return b;
+}
+
+std::vector<std::string> labels(const std::vector<AttachedEffect>& attached) {
+  std::vector<std::string> result;
+  for (const AttachedEffect& one : attached) result.push_back(one.label());
+  return result;
+}
+bool has(const std::vector<std::string>& list, const std::string& item) {
+  return std::find(list.begin(), list.end(), item) != list.end();
+}
+
+TEST_CASE("effects attach where they make sense, and nowhere else") {
+  const Bench b = bench({});
+  const auto distinct = distinct_inputs(b.bound, b.base, {0, 1}, b.runs);
+  CHECK(distinct == std::vector<bool>{true, true, true});
+  const auto places = labels(attachments(b.bound, all_effects(), distinct));
+  for (const char* there : {"coulomb_friction at omega", "backlash at omega", "input_delay at goal",
+                            "dead_zone at duty", "sensor_bias at theta_rad", "parameter_drift at armature"}) {
+    CHECK(has(places, there));
+  }
+  for (const char* absent :
+       {"coulomb_friction at theta", "leak at theta", "leak at omega", "input_delay at duty", "body_drift at planar"}) {
+    CHECK_FALSE(has(places, absent));
+  }
+}
+
+TEST_CASE("parameters that are fixed do not drift") {
+  Bench b = bench({});
+  b.bound.info.parameters[2].fixed = true;
+  CHECK_FALSE(has(labels(attachments(b.bound, all_effects(), {true, true, true})), "parameter_drift at armature"));
+}
+
+TEST_CASE("a signal that is a multiple of an input is left to the input, and inputs that never change are left out") {
+  std::vector<Recording> recordings{toys::tank_recording(0, 100), toys::tank_recording(1, 100)};
+  const auto distinct = [](const std::vector<Recording>& of) {
+    const BoundSimulator bound = bind_simulator(toys::LeakyTank{}, of);
+    const Hypothesis base = nominal_hypothesis(bound);
+    return distinct_inputs(bound, base, {0, 1}, simulate_all(bound, base, {0, 1}, {}, serially()));
+  };
+  CHECK(distinct(recordings) == std::vector<bool>{true, false});
+  for (Recording& recording : recordings) recording.inputs.setConstant(0.5);
+  CHECK(distinct(recordings) == std::vector<bool>{false, false});
+}
+
+TEST_CASE("what really is missing ranks high, and starts near its truth") {
+  const Bench b = bench({{"constant_force", "omega", {}, {}, {0.1}}});
+  const auto candidates = attachments(b.bound, all_effects(), distinct_inputs(b.bound, b.base, {0, 1}, b.runs));
+  const auto proposals = propose(b.bound, b.base, b.problem, candidates, serially());
+  REQUIRE(proposals.size() > 20);
+  const auto found = std::find_if(proposals.begin(), proposals.end(), [](const Proposal& proposal) {
+    return proposal.effect.label() == "constant_force at omega";
+  });
+  REQUIRE(found != proposals.end());
+  CHECK(found - proposals.begin() < 6);
+  CHECK(found->start[0] == doctest::Approx(0.1).epsilon(0.15));
+  CHECK(found->gain > 0.9);
+  for (std::size_t i = 1; i < proposals.size(); ++i) CHECK(proposals[i].gain <= proposals[i - 1].gain);
+  for (const Proposal& proposal : proposals) {
+    CHECK(proposal.gain <= 1);
+    CHECK(proposal.distinct <= 1 + 1e-9);
+  }
+}
+
+TEST_CASE("where nothing is missing no proposal explains much") {
+  const Bench b = bench({});
+  const auto candidates = attachments(b.bound, all_effects(), distinct_inputs(b.bound, b.base, {0, 1}, b.runs));
+  for (const Proposal& proposal : propose(b.bound, b.base, b.problem, candidates, serially())) {
+    INFO(proposal.effect.label());
+    CHECK(proposal.gain < 0.1);
+  }
+}
+
+}  // namespace
+}  // namespace surefoot

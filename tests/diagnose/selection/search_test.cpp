@@ -1,0 +1,111 @@
+// The search for effects: what is taken back, and what takes the place of what.
+#include "surefoot/diagnose/selection/search.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "surefoot/diagnose/selection/candidates.hpp"
+#include "surefoot/diagnose/effects/catalogue.hpp"
+#include "tests/diagnose/small_simulators.hpp"
+
+using namespace surefoot::diagnosis;
+
+namespace surefoot {
+namespace {
+
+// Six tanks that these effects act on, with noise of 1 cm, and the search in them.
+struct Bench {
+  BoundSimulator bound;
+  SearchProblem problem;
+  std::vector<AttachedEffect> candidates;
+  SelectionCriteria options;
+  Parallel parallel = serially();
+  detail::Search search{bound, problem, candidates, options, parallel};
+
+  explicit Bench(const std::vector<NamedEffect>& truth) {
+    std::vector<Recording> recordings;
+    Rng rng(1);
+    for (int r = 0; r < 6; ++r) {
+      Recording recording = toys::tank_recording(r, 120);
+      recording.outputs = simulate_augmented(toys::LeakyTank{}, toys::machine({1, 1}, truth), recording).outputs;
+      for (double& level : recording.outputs.reshaped()) level += 0.01 * rng.normal();
+      recordings.push_back(std::move(recording));
+    }
+    bound = bind_simulator(toys::LeakyTank{}, recordings);
+    problem.fit.recordings = problem.screened = {0, 1, 2, 3, 4, 5};
+    problem.fit.weighting.sigma.setConstant(1, 0.01);
+    problem.folds = {{0, 1}, {2, 3}, {4, 5}};
+    const Hypothesis nominal = nominal_hypothesis(bound);
+    const auto runs = simulate_all(bound, nominal, problem.fit.recordings, {}, parallel);
+    bound.sizes = measure_sizes(bound, nominal, problem.fit.recordings, runs);
+    candidates = attachments(bound, {effects::constant_rate(), effects::sensor_drift(), effects::sensor_bias()},
+                             std::vector<bool>(2, true));
+  }
+  Bench(const Bench&) = delete;
+  Bench& operator=(const Bench&) = delete;
+
+  /// A fit with these effects, as it is judged.
+  EvaluatedHypothesis with(const std::vector<std::string>& names) const {
+    Hypothesis start = nominal_hypothesis(bound);
+    for (const std::string& name : names) {
+      const auto of_name = [&](const AttachedEffect& one) { return one.effect->name == name; };
+      start.effects.push_back(*std::find_if(candidates.begin(), candidates.end(), of_name));
+      start.values.emplace_back(Eigen::VectorXd::Constant(1, 0.01));
+    }
+    return detail::judge(bound, fit(bound, start, problem.fit, parallel), problem, parallel);
+  }
+};
+
+std::string names_of(const EvaluatedHypothesis& judged) {
+  std::vector<std::string> names;
+  for (const AttachedEffect& one : judged.hypothesis.effects) names.push_back(one.effect->name);
+  std::sort(names.begin(), names.end());
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+const NamedEffect rate{"constant_rate", "level", {}, {}, {0.2}}, drift{"sensor_drift", "level_m", {}, {}, {0.05}};
+
+TEST_CASE("an effect that another one made idle is dropped") {
+  const Bench bench({rate});
+  EvaluatedHypothesis chosen = bench.with({"sensor_drift", "constant_rate"});
+  detail::drop_idle_effects(bench.search, chosen);
+  CHECK(names_of(chosen) == "constant_rate");
+}
+
+TEST_CASE("two effects that both do something stay") {
+  const Bench bench({rate, drift});
+  EvaluatedHypothesis chosen = bench.with({"sensor_drift", "constant_rate"});
+  detail::drop_idle_effects(bench.search, chosen);
+  CHECK(names_of(chosen) == "constant_rate, sensor_drift");
+}
+
+TEST_CASE("a pair takes the place of one effect that leaves something open") {
+  const Bench bench({rate, drift});
+  Selection selection;
+  selection.nominal = bench.with({});
+  selection.chosen = bench.with({"sensor_bias"});
+  detail::try_pair_instead(bench.search, selection);
+  CHECK(names_of(selection.chosen) == "constant_rate, sensor_drift");
+}
+
+TEST_CASE("an effect that stands where another one does better is replaced, until none does") {
+  const Bench bench({rate, drift});
+  Selection selection;
+  selection.nominal = bench.with({});
+  selection.chosen = bench.with({"constant_rate", "sensor_bias"});
+  int rounds = 0;
+  while (rounds < 5 && detail::compare_with_others(bench.search, selection, true)) ++rounds;
+  CHECK(rounds > 0);
+  CHECK(rounds < 5);
+  CHECK(names_of(selection.chosen) == "constant_rate, sensor_drift");
+  CHECK(selection.evidence.size() == 2);
+}
+
+}  // namespace
+}  // namespace surefoot

@@ -1,0 +1,110 @@
+// What a simulator tells about itself when asked.
+#include "surefoot/diagnose/simulation/structure.hpp"
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "surefoot/diagnose/simulation/bound_simulator.hpp"
+#include "tests/diagnose/small_simulators.hpp"
+#include "tests/support/servo_pendulum.hpp"
+#include "tests/support/walking_robot.hpp"
+
+using namespace surefoot::diagnosis;
+
+namespace surefoot {
+namespace {
+
+template <class S>
+SimulatorStructure facts_of(const S& simulator, const Recording& recording) {
+  const SimulatorInfo info = simulator.info();
+  return find_structure(simulator, info, recording, nominal_parameters(info));
+}
+
+TEST_CASE("the state whose rate is another state is its position, and forces act on that other") {
+  const auto structure = facts_of(toys::SlidingBlock{}, toys::blank_recording(toys::SlidingBlock{}.info(), 5, 0.1));
+  CHECK(structure.position_of == std::vector<int>{-1, 0});
+  CHECK(structure.velocity == std::vector<bool>{false, true});
+  CHECK(structure.output_of == std::vector<int>{0, 1});
+  CHECK(structure.all_states_measured);
+}
+
+TEST_CASE("a level is no velocity, and neither are the states of a map") {
+  const auto tank = facts_of(toys::LeakyTank{}, toys::tank_recording(0, 20));
+  CHECK(tank.velocity == std::vector<bool>{false});
+  CHECK(tank.position_of == std::vector<int>{-1});
+  const auto robot =
+      facts_of(toys::WalkingRobot{}, toys::walk_recordings([](Pose2 moved, Pose2) { return moved; }, false, 1, 1)[0]);
+  CHECK(robot.velocity == std::vector<bool>(3, false));
+  CHECK(robot.output_of == std::vector<int>{0, 1, 2});
+}
+
+TEST_CASE("signals count as driven even where orders far away saturate them") {
+  for (const double goal : {0.0, 0.6, -0.6, -1.5, 3.0}) {
+    Recording recording = toys::blank_recording(toys::ServoPendulum{}.info(), 50, 0.01);
+    recording.inputs.setConstant(goal);
+    const auto structure = facts_of(toys::ServoPendulum{}, recording);
+    CHECK(structure.driven_signal == std::vector<bool>{true, true});
+    CHECK_FALSE(structure.all_states_measured);  // the speed is not
+  }
+}
+
+// A speed in degrees; a force that no input drives; an output that shows the speed times ten.
+struct Odd {
+  using State = Vec<2>;
+  using Input = Vec<1>;
+  using Output = Vec<2>;
+  SimulatorInfo info() const {
+    return {.name = "odd",
+            .states = {{"angle", "deg"}, {"speed", "rad/s"}},
+            .inputs = {{"u", "1"}},
+            .outputs = {{"ten_speeds", "rad/s"}, {"angle", "deg"}},
+            .parameters = {},
+            .signals = {"drag", "thrust"}};
+  }
+  template <class Tap>
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& /*p*/, Tap&& tap) const {
+    return {57.3 * x[1], tap(1, 3 * u[0]) - tap(0, 0.1 * x[1])};
+  }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& p) const {
+    return derivative(x, u, p, NoTap{});
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return {10 * x[1], x[0]}; }
+};
+
+TEST_CASE("nothing is taken for a speed, a reading or a driven signal that is only nearly one") {
+  const auto structure = facts_of(Odd{}, toys::blank_recording(Odd{}.info(), 5, 0.1));
+  CHECK(structure.position_of == std::vector<int>{-1, -1});
+  CHECK(structure.velocity == std::vector<bool>{false, false});
+  CHECK(structure.output_of == std::vector<int>{1, -1});
+  CHECK(structure.driven_signal == std::vector<bool>{false, true});
+}
+
+// A simulator that is another one for each recording.
+struct ByRecording {
+  using State = Vec<1>;
+  using Input = Vec<1>;
+  using Output = Vec<1>;
+  double scale = 0;
+  SimulatorInfo info() const {
+    return {.name = "by recording",
+            .states = {{"x", "1"}},
+            .inputs = {{"u", "1"}},
+            .outputs = {{"y", "1"}},
+            .parameters = {}};
+  }
+  ByRecording for_recording(const Recording& recording) const { return {recording.constants.at("scale")}; }
+  State derivative(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return -x; }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return scale * x; }
+};
+
+TEST_CASE("a simulator is asked as it is for the recording") {
+  Recording recording = toys::blank_recording(ByRecording{}.info(), 5, 0.1);
+  recording.constants["scale"] = 1;
+  CHECK(facts_of(ByRecording{}, recording).all_states_measured);
+  recording.constants["scale"] = 2;
+  CHECK_FALSE(facts_of(ByRecording{}, recording).all_states_measured);
+}
+
+}  // namespace
+}  // namespace surefoot
