@@ -261,7 +261,7 @@ TEST_CASE("a model that yields no numbers is refused") {
 TEST_CASE("a start that was read off a sensor is known as well as that sensor reads") {
   auto recordings = toys::servo_recordings(machine({}), 3, 20);
   for (const std::size_t r : {0U, 1U}) recordings[r].initial[0] = recordings[r].outputs(0, 0);
-  surefoot::BoundSimulator bound = surefoot::bind_simulator(ServoPendulum{}, recordings);
+  surefoot::diagnosis::BoundSimulator bound = surefoot::diagnosis::bind_simulator(ServoPendulum{}, recordings);
   surefoot::diagnosis::free_measured_starts(bound, {0, 1, 2});
   for (const std::size_t r : {0U, 1U}) {
     CHECK(bound.recordings[r].initial_scale[0] == doctest::Approx(0.001).epsilon(0.5));

@@ -9,16 +9,11 @@
 #include <string>
 
 #include "surefoot/core/error.hpp"
+#include "surefoot/core/pose2.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/motion/motion_model.hpp"
-#include "surefoot/core/pose2.hpp"
 
 namespace surefoot {
-
-/// Wrong sequences, models or options handed to the motion area.
-struct MotionError : Error {
-  using Error::Error;
-};
 
 /// The robot starts at the origin, looking along x. Column i is cycle i.
 struct WalkSequence {
