@@ -18,7 +18,7 @@ namespace surefoot {
 
 struct CalibrationOptions {
   ModelFitOptions model = {};
-  Vec<3> noise_scale{0.08, 0.04, 0.4};   // orders that count as speed 1 in the noise [m, m, rad]
+  Vec<3> noise_scale{0.08, 0.04, 0.4};   // commands that count as speed 1 in the noise [m, m, rad]
   Vec<3> first_noise{0.01, 0.01, 0.05};  // first guess of its deviation per cycle [m, m, rad]
   int rounds = 3;                        // of model and noise in turn
 };

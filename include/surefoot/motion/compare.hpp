@@ -28,7 +28,7 @@ struct CompareOptions {
 /// One model, judged. Errors are root mean squares over the sequences, each predicted by a fit to the other folds.
 struct ModelScore {
   std::string name;
-  int parameters = 0;         // 0: the orders as they are
+  int parameters = 0;         // 0: the commands as they are
   double position = 0;        // [m]
   double position_error = 0;  // its standard error [m]
   double heading = 0;         // [rad]; NaN if no heading was measured
@@ -110,12 +110,12 @@ struct AsOrdered {
   static std::array<ModelParameter, 1> parameter_info() { return {{{"unused", "1", 0, 1}}}; }
   static AsOrdered from_parameters(const Vec<1>& /*p*/) { return {}; }
   Vec<1> parameters() const { return Vec<1>::Zero(); }
-  Pose2 displacement(const Vec<3>& orders) const { return Pose2::from_vec(orders); }
+  Pose2 displacement(const Vec<3>& commands) const { return Pose2::from_vec(commands); }
 };
 
 }  // namespace detail
 
-/// The orders as they are, then each model, in the order named: name simpler ones first. The chosen one is the first
+/// The commands as they are, then each model, in the order named: name simpler ones first. The chosen one is the first
 /// that is behind the best by no more than `clearly` standard errors of the difference between the two, or by no more
 /// than what matters. Throws MotionError if there are fewer than two sequences.
 template <MotionModel... Models, Executor E>
@@ -128,7 +128,7 @@ std::vector<ModelScore> compare_models(std::span<const WalkSequence> sequences, 
   for (Eigen::Index i = 0; i < count; ++i) {
     detail::judge_final_pose(detail::AsOrdered{}, sequences[static_cast<std::size_t>(i)], i, errors[0]);
   }
-  std::vector<ModelScore> scores{detail::score("orders as they are", 0, errors[0])};
+  std::vector<ModelScore> scores{detail::score("commands as they are", 0, errors[0])};
   (
       [&] {
         errors.push_back(detail::heldout_errors<Models>(sequences, options, executor, seed));

@@ -1,4 +1,4 @@
-// The concept of a motion model: what a walk cycle (or a control period of wheels) really does with its orders.
+// The concept of a motion model: what a walk cycle (or a control period of wheels) really does with its commands.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct ModelParameter {
   double low = 0, high = 0;  // in that unit
 };
 
-/// A motion model maps the ordered displacement of one cycle (x, y, turn) [m, m, rad] to the displacement that
+/// A motion model maps the commanded displacement of one cycle (x, y, turn) [m, m, rad] to the displacement that
 /// follows from it, in the frame before the cycle. Its parameters form a vector, so that calibration can search them.
 /// The smallest conforming struct:
 ///
@@ -28,18 +28,18 @@ struct ModelParameter {
 ///     static std::array<surefoot::ModelParameter, 1> parameter_info() { return {{{"scale", "1", 0.5, 2.0}}}; }
 ///     static Scale from_parameters(const surefoot::Vec<1>& p) { return {p[0]}; }
 ///     surefoot::Vec<1> parameters() const { return surefoot::Vec<1>(scale); }
-///     surefoot::Pose2 displacement(const surefoot::Vec<3>& orders) const {
-///       return surefoot::Pose2::from_vec(scale * orders);
+///     surefoot::Pose2 displacement(const surefoot::Vec<3>& commands) const {
+///       return surefoot::Pose2::from_vec(scale * commands);
 ///     }
 ///     double scale = 1;
 ///   };
 ///
-/// A walk that is measured between two phases carries part of the last order: a model may ask for it by taking
-/// `displacement(orders, previous)` instead, `previous` being the orders of the cycle before. A default-constructed
+/// A walk that is measured between two phases carries part of the last command: a model may ask for it by taking
+/// `displacement(commands, previous)` instead, `previous` being the commands of the cycle before. A default-constructed
 /// model is the one to start a calibration from: nothing is known of the robot, it does what it is told.
 template <class M>
 concept MotionModel = std::default_initializable<M> &&
-                      requires(const M& model, const Vec<3>& orders, const Vec<M::parameter_count>& parameters) {
+                      requires(const M& model, const Vec<3>& commands, const Vec<M::parameter_count>& parameters) {
                         requires M::parameter_count > 0;
                         {
                           M::parameter_info()
@@ -47,19 +47,19 @@ concept MotionModel = std::default_initializable<M> &&
                         { M::from_parameters(parameters) } -> std::same_as<M>;
                         { model.parameters() } -> std::same_as<Vec<M::parameter_count>>;
                         requires requires {
-                          { model.displacement(orders) } -> std::same_as<Pose2>;
+                          { model.displacement(commands) } -> std::same_as<Pose2>;
                         } || requires {
-                          { model.displacement(orders, orders) } -> std::same_as<Pose2>;
+                          { model.displacement(commands, commands) } -> std::same_as<Pose2>;
                         };
                       };
 
-/// Displacement of a cycle with these orders after one with the orders `previous`, by any model.
+/// Displacement of a cycle with these commands after one with the commands `previous`, by any model.
 template <MotionModel M>
-Pose2 cycle_displacement(const M& model, const Vec<3>& orders, const Vec<3>& previous) {
-  if constexpr (requires { model.displacement(orders, previous); }) {
-    return model.displacement(orders, previous);
+Pose2 cycle_displacement(const M& model, const Vec<3>& commands, const Vec<3>& previous) {
+  if constexpr (requires { model.displacement(commands, previous); }) {
+    return model.displacement(commands, previous);
   } else {
-    return model.displacement(orders);
+    return model.displacement(commands);
   }
 }
 

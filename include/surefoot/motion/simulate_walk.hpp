@@ -15,33 +15,33 @@
 
 namespace surefoot {
 
-/// One walk from the origin with these orders (column = cycle) after the order `before` (x, y, turn) [m, m, rad]; calls
+/// One walk from the origin with these commands (column = cycle) after the command `before` (x, y, turn) [m, m, rad]; calls
 /// visit(cycle, pose) after each cycle. The heading of the poses is wrapped to [-pi, pi).
 template <MotionModel M, NoiseModel N, class Visit>
-void walk(const M& model, const N& noise, const Eigen::Matrix3Xd& orders, const Vec<3>& before, Rng& rng,
+void walk(const M& model, const N& noise, const Eigen::Matrix3Xd& commands, const Vec<3>& before, Rng& rng,
           Visit&& visit) {
   Pose2 pose;
   Vec<3> previous = before;
-  for (Eigen::Index cycle = 0; cycle < orders.cols(); ++cycle) {
-    const Vec<3> order = orders.col(cycle);
-    const Vec<3> moved = cycle_displacement(model, order, previous).vec() + noise.sample(order, previous, rng);
+  for (Eigen::Index cycle = 0; cycle < commands.cols(); ++cycle) {
+    const Vec<3> command = commands.col(cycle);
+    const Vec<3> moved = cycle_displacement(model, command, previous).vec() + noise.sample(command, previous, rng);
     pose = pose * Pose2::from_vec(moved);
-    previous = order;
+    previous = command;
     visit(cycle, pose);
   }
 }
 
-/// A sequence with these orders, every pose still to be measured or only the last; simulate_walk fills it.
-inline WalkSequence planned_sequence(const Eigen::Matrix3Xd& orders, bool every_pose) {
-  WalkSequence sequence{.name = "planned", .orders = orders, .poses = Eigen::Matrix3Xd::Zero(3, orders.cols())};
+/// A sequence with these commands, every pose still to be measured or only the last; simulate_walk fills it.
+inline WalkSequence planned_sequence(const Eigen::Matrix3Xd& commands, bool every_pose) {
+  WalkSequence sequence{.name = "planned", .commands = commands, .poses = Eigen::Matrix3Xd::Zero(3, commands.cols())};
   return every_pose ? sequence : final_pose_only(std::move(sequence));
 }
 
-/// Walks the orders of `like` once and measures what was measured there (where its poses are numbers), with normal
+/// Walks the commands of `like` once and measures what was measured there (where its poses are numbers), with normal
 /// errors of the given accuracy; a heading with a tolerance is read off as the middle of its bin.
 template <MotionModel M, NoiseModel N>
 WalkSequence simulate_walk(const M& model, const N& noise, const PoseAccuracy& accuracy, WalkSequence like, Rng& rng) {
-  walk(model, noise, like.orders, like.order_before, rng, [&](Eigen::Index cycle, const Pose2& pose) {
+  walk(model, noise, like.commands, like.command_before, rng, [&](Eigen::Index cycle, const Pose2& pose) {
     const Vec<3> error{accuracy.position * rng.normal(), accuracy.position * rng.normal(),
                        accuracy.heading * rng.normal()};
     Vec<3> reading = pose.vec() + error;

@@ -1,4 +1,4 @@
-// One recorded sequence: what was ordered in each walk cycle, and where the robot was found, in the end or after every
+// One recorded sequence: what was commanded in each walk cycle, and where the robot was found, in the end or after every
 // cycle.
 #pragma once
 
@@ -23,24 +23,24 @@ struct MotionError : Error {
 /// The robot starts at the origin, looking along x. Column i is cycle i.
 struct WalkSequence {
   std::string name = {};                 // for messages: file, or number of the sequence
-  Eigen::Matrix3Xd orders = {};          // ordered displacement of each cycle (x, y, turn) [m, m, rad]
+  Eigen::Matrix3Xd commands = {};          // commanded displacement of each cycle (x, y, turn) [m, m, rad]
   Eigen::Matrix3Xd poses = {};           // pose after each cycle (x, y, heading) [m, m, rad]; NaN: not measured
-  Vec<3> order_before = Vec<3>::Zero();  // the orders before the first cycle, e.g. walking on the spot
+  Vec<3> command_before = Vec<3>::Zero();  // the commands before the first cycle, e.g. walking on the spot
 
-  Eigen::Index cycles() const { return orders.cols(); }
-  Vec<3> previous_order(Eigen::Index cycle) const { return cycle == 0 ? order_before : Vec<3>(orders.col(cycle - 1)); }
+  Eigen::Index cycles() const { return commands.cols(); }
+  Vec<3> previous_command(Eigen::Index cycle) const { return cycle == 0 ? command_before : Vec<3>(commands.col(cycle - 1)); }
   bool position_measured(Eigen::Index cycle) const {
     return std::isfinite(poses(0, cycle)) && std::isfinite(poses(1, cycle));
   }
   bool heading_measured(Eigen::Index cycle) const { return std::isfinite(poses(2, cycle)); }
 };
 
-/// Throws MotionError, naming the sequence, unless it has cycles, finite orders and a position after its last cycle.
+/// Throws MotionError, naming the sequence, unless it has cycles, finite commands and a position after its last cycle.
 inline void check(const WalkSequence& sequence) {
   const auto fail = [&](const std::string& what) { throw MotionError("sequence " + sequence.name + ": " + what); };
   if (sequence.cycles() == 0) fail("has no cycle");
   if (sequence.poses.cols() != sequence.cycles()) fail("must have one column of poses per cycle");
-  if (!sequence.orders.allFinite() || !sequence.order_before.allFinite()) fail("has an order that is no number");
+  if (!sequence.commands.allFinite() || !sequence.command_before.allFinite()) fail("has a command that is not a number");
   if (!sequence.position_measured(sequence.cycles() - 1)) {
     fail("has no final position; measure where the robot stopped, or leave the sequence out");
   }
@@ -62,11 +62,11 @@ inline WalkSequence final_pose_only(WalkSequence sequence) {
 template <MotionModel M>
 Pose2 predict_final_pose(const M& model, const WalkSequence& sequence) {
   Pose2 pose;
-  Vec<3> previous = sequence.order_before;
-  for (const auto& column : sequence.orders.colwise()) {
-    const Vec<3> orders = column;
-    pose = pose * cycle_displacement(model, orders, previous);
-    previous = orders;
+  Vec<3> previous = sequence.command_before;
+  for (const auto& column : sequence.commands.colwise()) {
+    const Vec<3> commands = column;
+    pose = pose * cycle_displacement(model, commands, previous);
+    previous = commands;
   }
   return pose;
 }

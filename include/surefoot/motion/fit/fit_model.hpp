@@ -94,12 +94,12 @@ class WeightedPoses {
         model,
         [&](std::size_t i, Eigen::Index cycle, const Vec<3>& pose, const Pose2& displacement) {
           if (cycle == 0) slopes.setZero();
-          const Vec<3> orders = sequences_[i].orders.col(cycle), previous = sequences_[i].previous_order(cycle);
+          const Vec<3> commands = sequences_[i].commands.col(cycle), previous = sequences_[i].previous_command(cycle);
           Eigen::Matrix<double, 3, n> by_parameters;
           for (int k = 0; k < n; ++k) {
             const auto j = static_cast<std::size_t>(k);
-            by_parameters.col(k) = (cycle_displacement(above[j], orders, previous).vec() -
-                                    cycle_displacement(below[j], orders, previous).vec()) /
+            by_parameters.col(k) = (cycle_displacement(above[j], commands, previous).vec() -
+                                    cycle_displacement(below[j], commands, previous).vec()) /
                                    (2 * step[k]);
           }
           by_parameters.template topRows<2>() *= shortenings_[i][cycle];
@@ -123,7 +123,7 @@ class WeightedPoses {
     double variance = 0;
     for (Eigen::Index cycle = 0; cycle < sequence.cycles(); ++cycle) {
       result[cycle] = shortening(variance);
-      const double turn = noise.deviation(sequence.orders.col(cycle), sequence.previous_order(cycle))[2];
+      const double turn = noise.deviation(sequence.commands.col(cycle), sequence.previous_command(cycle))[2];
       variance += turn * turn;
       if (weight == weights.end() || weight->cycle != cycle) continue;
       variance = weight->heading_variance;
@@ -138,16 +138,16 @@ class WeightedPoses {
   void each_innovation(const M& model, BeforeCycle&& before_cycle, Measured&& measured) const {
     for (std::size_t i = 0; i < sequences_.size(); ++i) {
       const WalkSequence& sequence = sequences_[i];
-      Vec<3> pose = Vec<3>::Zero(), previous = sequence.order_before;
+      Vec<3> pose = Vec<3>::Zero(), previous = sequence.command_before;
       auto weight = weights_[i].begin();
       for (Eigen::Index cycle = 0; cycle < sequence.cycles(); ++cycle) {
-        const Vec<3> orders = sequence.orders.col(cycle);
-        Pose2 displacement = cycle_displacement(model, orders, previous);
+        const Vec<3> commands = sequence.commands.col(cycle);
+        Pose2 displacement = cycle_displacement(model, commands, previous);
         displacement.x *= shortenings_[i][cycle];
         displacement.y *= shortenings_[i][cycle];
         before_cycle(i, cycle, pose, displacement);
         pose = moved(pose, displacement);
-        previous = orders;
+        previous = commands;
         if (weight == weights_[i].end() || weight->cycle != cycle) continue;
         const Innovation::Values error = pose_error(sequence, cycle, pose, weight->error.size());
         measured(*weight, error);

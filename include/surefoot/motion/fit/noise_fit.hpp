@@ -21,7 +21,7 @@ namespace surefoot {
 
 /// What one cycle did beyond the model.
 struct CycleDeviation {
-  Vec<3> orders, previous;  // of the cycle, and of the one before [m, m, rad]
+  Vec<3> commands, previous;  // of the cycle, and of the one before [m, m, rad]
   Vec<3> value;             // in the frame before the cycle (x, y, turn) [m, m, rad]
 };
 
@@ -34,11 +34,11 @@ std::vector<CycleDeviation> cycle_deviations(const M& model, std::span<const Wal
       const auto known = [&](Eigen::Index i) { return sequence.position_measured(i) && sequence.heading_measured(i); };
       if (!known(cycle) || (cycle > 0 && !known(cycle - 1))) continue;
       const Pose2 from = cycle == 0 ? Pose2{} : Pose2::from_vec(sequence.poses.col(cycle - 1));
-      const Vec<3> orders = sequence.orders.col(cycle), previous = sequence.previous_order(cycle);
+      const Vec<3> commands = sequence.commands.col(cycle), previous = sequence.previous_command(cycle);
       const Vec<3> really = (from.inverse() * Pose2::from_vec(sequence.poses.col(cycle))).vec();
-      Vec<3> value = really - cycle_displacement(model, orders, previous).vec();
+      Vec<3> value = really - cycle_displacement(model, commands, previous).vec();
       value[2] = wrap_angle(value[2]);
-      result.push_back({orders, previous, value});
+      result.push_back({commands, previous, value});
     }
   }
   return result;
@@ -104,8 +104,8 @@ inline ComponentDeviations component(std::span<const CycleDeviation> cycles, Eig
   for (Eigen::Index i = 0; i < count; ++i) {
     const CycleDeviation& cycle = cycles[static_cast<std::size_t>(i)];
     result.size[i] = std::abs(cycle.value[axis]);
-    result.speed[i] = scales.speed(cycle.orders);
-    result.acceleration[i] = scales.acceleration(cycle.orders, cycle.previous);
+    result.speed[i] = scales.speed(cycle.commands);
+    result.acceleration[i] = scales.acceleration(cycle.commands, cycle.previous);
   }
   // Both ends of a cycle are measured; the model is known as well as `parameters` shared by three components allow.
   const double mean_square = result.size.square().mean();
@@ -137,7 +137,7 @@ inline Eigen::Index count_free_terms(NoiseGrowth growth) {
 
 struct NoiseFitOptions {
   PoseAccuracy accuracy = {};
-  Vec<3> scale{0.08, 0.04, 0.4};  // orders that count as speed 1 [m, m, rad]
+  Vec<3> scale{0.08, 0.04, 0.4};  // commands that count as speed 1 [m, m, rad]
 };
 
 /// Log density of each cycle [nats], all components together. `parameters`: how many the motion model has.

@@ -89,15 +89,15 @@ std::vector<Innovation> innovations(const M& model, const MotionNoise& noise, co
                                     const WalkSequence& sequence) {
   constexpr double least_variance = 1e-14;  // [m^2, rad^2]: without any noise the expected pose would be certain
   std::vector<Innovation> result;
-  Vec<3> pose = Vec<3>::Zero(), previous = sequence.order_before;
+  Vec<3> pose = Vec<3>::Zero(), previous = sequence.command_before;
   detail::PoseSpread spread;
   const Vec<3> measured_variance = accuracy.variance().array() + least_variance;
   for (Eigen::Index cycle = 0; cycle < sequence.cycles(); ++cycle) {
-    const Vec<3> orders = sequence.orders.col(cycle);
-    const Pose2 displacement = cycle_displacement(model, orders, previous);
-    const Vec<3> variance = noise.deviation(orders, previous).array().square() + least_variance;
+    const Vec<3> commands = sequence.commands.col(cycle);
+    const Pose2 displacement = cycle_displacement(model, commands, previous);
+    const Vec<3> variance = noise.deviation(commands, previous).array().square() + least_variance;
     spread.move(pose, displacement, variance);
-    previous = orders;
+    previous = commands;
     if (!sequence.position_measured(cycle)) continue;
 
     const Eigen::Index count = sequence.heading_measured(cycle) ? 3 : 2;

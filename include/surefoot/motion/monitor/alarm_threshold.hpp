@@ -68,7 +68,7 @@ inline int safe_rank(int runs, double share, double confidence) {
 
 }  // namespace detail
 
-/// The threshold [nats] for an alarm that starts from this tracker, for sequences with the orders and measured poses of
+/// The threshold [nats] for an alarm that starts from this tracker, for sequences with the commands and measured poses of
 /// `like` (drawn with replacement). In each run the robot's parameters are drawn from what the calibration knows of
 /// them. The same for every executor. Throws MotionError for options that fail the check and sequences that cannot be
 /// used.

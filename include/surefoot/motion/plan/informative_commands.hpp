@@ -1,5 +1,5 @@
 // Chooses the sequences that tell most about a walk from many that were thought up. A final pose adds up 25 cycles of
-// noise and tells little about orders that wander at random and cancel; orders that are held tell several times as
+// noise and tells little about commands that wander at random and cancel; commands that are held tell several times as
 // much.
 #pragma once
 
@@ -25,14 +25,14 @@
 
 namespace surefoot {
 
-/// Sequences that go to a drawn order as fast as the bounds allow, each component being 0 or one of its bounds, and
-/// hold it; now and then (after 12 cycles on average) to another. Arguments, columns and errors as of plan_orders.
-inline std::vector<Eigen::Matrix3Xd> plan_held_orders(const OrderBounds& bounds, int sequences, int cycles,
+/// Sequences that go to a drawn command as fast as the bounds allow, each component being 0 or one of its bounds, and
+/// hold it; now and then (after 12 cycles on average) to another. Arguments, columns and errors as of plan_commands.
+inline std::vector<Eigen::Matrix3Xd> plan_held_commands(const CommandBounds& bounds, int sequences, int cycles,
                                                       std::uint64_t seed) {
-  std::vector<Eigen::Matrix3Xd> plan = plan_orders(bounds, sequences, cycles, seed);
+  std::vector<Eigen::Matrix3Xd> plan = plan_commands(bounds, sequences, cycles, seed);
   for (std::size_t i = 0; i < plan.size(); ++i) {
     Rng rng = Rng(seed, i).stream(1);
-    Vec<3> order = Vec<3>::Zero(), target = Vec<3>::Zero();
+    Vec<3> command = Vec<3>::Zero(), target = Vec<3>::Zero();
     for (Eigen::Index cycle = 0; cycle < plan[i].cols(); ++cycle) {
       if (cycle == 0 || rng.below(12) == 0) {
         for (Eigen::Index k = 0; k < 3; ++k) {
@@ -40,15 +40,15 @@ inline std::vector<Eigen::Matrix3Xd> plan_held_orders(const OrderBounds& bounds,
           target[k] = choice == 0 ? bounds.low[k] : choice == 1 ? 0.0 : bounds.high[k];
         }
       }
-      order += (target - order).cwiseMax(-bounds.acceleration).cwiseMin(bounds.acceleration);
-      plan[i].col(cycle) = order;
+      command += (target - command).cwiseMax(-bounds.acceleration).cwiseMin(bounds.acceleration);
+      plan[i].col(cycle) = command;
     }
   }
   return plan;
 }
 
 struct InformativeOptions {
-  OrderBounds bounds = {};
+  CommandBounds bounds = {};
   int sequences = 25;                                      // to choose
   int cycles = 25;                                         // of each
   bool every_pose = false;                                 // whether all poses will be measured, or the last only
@@ -61,7 +61,7 @@ namespace detail {
 /// Candidates within reach, and their information about the parameters of the tracker.
 template <MotionModel M>
 struct InformativeCandidates {
-  std::vector<Eigen::Matrix3Xd> orders;
+  std::vector<Eigen::Matrix3Xd> commands;
   std::vector<typename MotionTracker<M>::Square> information;
 };
 
@@ -71,25 +71,25 @@ InformativeCandidates<M> informative_candidates(const MotionTracker<M>& tracker,
   if (options.sequences < 1) {
     throw MotionError("InformativeOptions: sequences must be at least 1, got " + std::to_string(options.sequences));
   }
-  std::vector<Eigen::Matrix3Xd> plan = plan_orders(options.bounds, options.candidates, options.cycles, seed);
-  for (Eigen::Matrix3Xd& held : plan_held_orders(options.bounds, options.candidates, options.cycles, seed)) {
+  std::vector<Eigen::Matrix3Xd> plan = plan_commands(options.bounds, options.candidates, options.cycles, seed);
+  for (Eigen::Matrix3Xd& held : plan_held_commands(options.bounds, options.candidates, options.cycles, seed)) {
     plan.push_back(std::move(held));
   }
   InformativeCandidates<M> result;
   const MotionNoise none;
   Rng rng(seed);
-  for (Eigen::Matrix3Xd& orders : plan) {
-    WalkSequence sequence = planned_sequence(orders, options.every_pose);
+  for (Eigen::Matrix3Xd& commands : plan) {
+    WalkSequence sequence = planned_sequence(commands, options.every_pose);
     double farthest = 0;
-    walk(tracker.model, none, orders, sequence.order_before, rng, [&](Eigen::Index cycle, const Pose2& pose) {
+    walk(tracker.model, none, commands, sequence.command_before, rng, [&](Eigen::Index cycle, const Pose2& pose) {
       farthest = std::max(farthest, pose.position().norm());
       if (sequence.position_measured(cycle)) sequence.poses.col(cycle) = pose.vec();
     });
     if (farthest > options.reach) continue;
     result.information.push_back(listen(tracker, sequence).information);
-    result.orders.push_back(std::move(orders));
+    result.commands.push_back(std::move(commands));
   }
-  if (result.orders.empty()) {
+  if (result.commands.empty()) {
     std::ostringstream text;
     text << "InformativeOptions: no candidate stays within the reach of " << options.reach
          << " m; allow more, or fewer cycles";
@@ -114,13 +114,13 @@ std::size_t best_addition(const std::vector<Square>& candidates, const Square& i
 
 }  // namespace detail
 
-/// Orders to calibrate from, one matrix per sequence (as plan_orders): greedy D-optimal design (Fedorov, "Theory of
+/// Commands to calibrate from, one matrix per sequence (as plan_commands): greedy D-optimal design (Fedorov, "Theory of
 /// Optimal Experiments", 1972), one sequence after the other such that the determinant of the information grows most,
 /// from what the tracker knows: for a robot not yet calibrated, one of the default model. The information is worked out
-/// at the tracker's parameters. Throws MotionError for bounds and counts that plan_orders refuses, and if no candidate
+/// at the tracker's parameters. Throws MotionError for bounds and counts that plan_commands refuses, and if no candidate
 /// stays within reach. Cost: one Jacobian of fit_model per candidate, one factorisation per candidate and sequence.
 template <MotionModel M>
-std::vector<Eigen::Matrix3Xd> plan_informative_orders(const MotionTracker<M>& tracker,
+std::vector<Eigen::Matrix3Xd> plan_informative_commands(const MotionTracker<M>& tracker,
                                                       const InformativeOptions& options, std::uint64_t seed) {
   using Square = typename MotionTracker<M>::Square;
   const auto candidates = detail::informative_candidates(tracker, options, seed);
@@ -132,14 +132,14 @@ std::vector<Eigen::Matrix3Xd> plan_informative_orders(const MotionTracker<M>& tr
   for (int s = 0; s < options.sequences; ++s) {
     const std::size_t best = detail::best_addition(candidates.information, information, volume);
     information += candidates.information[best];
-    chosen.push_back(candidates.orders[best]);
+    chosen.push_back(candidates.commands[best]);
   }
   return chosen;
 }
 
-/// Orders that a calibrated robot walks again and again to show that nothing has changed.
+/// Commands that a calibrated robot walks again and again to show that nothing has changed.
 struct CheckPlan {
-  std::vector<Eigen::Matrix3Xd> orders;
+  std::vector<Eigen::Matrix3Xd> commands;
   double seen = 0;  // non-centrality of the change that is hardest to see, over all sequences; an alarm needs some 45
 };
 
@@ -147,10 +147,10 @@ struct CheckPlan {
 /// best: the smallest non-centrality of the test of change_alarm.hpp is made as large as exchanging single sequences
 /// can make it. Errors and cost as above, several times.
 template <MotionModel M>
-CheckPlan plan_check_orders(const MotionTracker<M>& tracker, const Vec<M::parameter_count>& jumps,
+CheckPlan plan_check_commands(const MotionTracker<M>& tracker, const Vec<M::parameter_count>& jumps,
                             const InformativeOptions& options, std::uint64_t seed) {
   using Square = typename MotionTracker<M>::Square;
-  if (!(jumps.array() != 0).any()) throw MotionError("plan_check_orders: jumps must not all be 0");
+  if (!(jumps.array() != 0).any()) throw MotionError("plan_check_commands: jumps must not all be 0");
   const auto candidates = detail::informative_candidates(tracker, options, seed);
   const Square& known = tracker.information;
   const auto seen = [&](const Square& together) {
@@ -175,8 +175,8 @@ CheckPlan plan_check_orders(const MotionTracker<M>& tracker, const Vec<M::parame
       information += candidates.information[one];
     }
   }
-  CheckPlan plan{.orders = {}, .seen = seen(information)};
-  for (const std::size_t one : chosen) plan.orders.push_back(candidates.orders[one]);
+  CheckPlan plan{.commands = {}, .seen = seen(information)};
+  for (const std::size_t one : chosen) plan.commands.push_back(candidates.commands[one]);
   return plan;
 }
 
