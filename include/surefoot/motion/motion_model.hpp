@@ -1,4 +1,5 @@
-// The concept of a motion model: what a walk cycle (or a control period of wheels) really does with its commands.
+// The concept of a motion model: the displacement that really follows from the commands of a walk cycle (or of a
+// control period of wheels).
 #pragma once
 
 #include <array>
@@ -8,19 +9,21 @@
 #include <string_view>
 
 #include "surefoot/core/box.hpp"
-#include "surefoot/core/vec.hpp"
 #include "surefoot/core/pose2.hpp"
+#include "surefoot/core/problem.hpp"
+#include "surefoot/core/vec.hpp"
 
 namespace surefoot {
 
-/// What one parameter of a model is called, and where it may reasonably lie.
+/// Name, unit and reasonable range of one parameter of a model.
 struct ModelParameter {
   std::string_view name, unit;
   double low = 0, high = 0;  // in that unit
 };
 
 /// A motion model maps the commanded displacement of one cycle (x, y, turn) [m, m, rad] to the displacement that
-/// follows from it, in the frame before the cycle. Its parameters form a vector, so that calibration can search them.
+/// follows from it, in the frame before the cycle. A model is its parameters, a vector that calibration can search:
+/// from_parameters(parameters()) moves alike.
 /// The smallest conforming struct:
 ///
 ///   struct Scale {
@@ -52,6 +55,33 @@ concept MotionModel = std::default_initializable<M> &&
                           { model.displacement(commands, commands) } -> std::same_as<Pose2>;
                         };
                       };
+
+/// A compile error of one sentence about the first member that keeps M from being a MotionModel; the compiler quotes the
+/// line with the declaration wanted (see explain_problem in core/problem.hpp).
+template <class M>
+auto explain_motion_model() {
+  if constexpr (!std::default_initializable<M>) {
+    return Incomplete<M>::default_constructor;  // M(): the model of a robot that does what it is told
+  } else if constexpr (!requires { requires M::parameter_count > 0; }) {
+    return Incomplete<M>::parameter_count;  // static constexpr int parameter_count: above 0
+  } else if constexpr (!requires {
+                         {
+                           M::parameter_info()
+                         } -> std::same_as<std::array<ModelParameter, std::size_t{M::parameter_count}>>;
+                       }) {
+    return Incomplete<M>::parameter_info;  // static std::array<surefoot::ModelParameter, parameter_count> of that name
+  } else if constexpr (!requires(const Vec<M::parameter_count>& p) {
+                         { M::from_parameters(p) } -> std::same_as<M>;
+                       }) {
+    return Incomplete<M>::from_parameters;  // static M from_parameters(const surefoot::Vec<parameter_count>&)
+  } else if constexpr (!requires(const M& m) {
+                         { m.parameters() } -> std::same_as<Vec<M::parameter_count>>;
+                       }) {
+    return Incomplete<M>::parameters;  // surefoot::Vec<parameter_count> parameters() const
+  } else {
+    return Incomplete<M>::displacement;  // surefoot::Pose2 displacement(const surefoot::Vec<3>& command) const
+  }
+}
 
 /// Displacement of a cycle with these commands after one with the commands `previous`, by any model.
 template <MotionModel M>
