@@ -32,22 +32,21 @@ const MotionModelType& motion_model_type() {
   static const MotionModelType type = [] {
     const auto info = M::parameter_info();
     const auto box = parameter_box<M>();
-    return MotionModelType{
-        .name = model_name<M>(),
-        .parameter_info = {info.begin(), info.end()},
-        .parameter_box = {Eigen::VectorXd(box.low()), Eigen::VectorXd(box.high())},
-        .default_parameters = M().parameters(),
-        .displace = [](const Eigen::VectorXd& parameters, const Eigen::Matrix3Xd& commands, const Vec<3>& before,
-                       Eigen::Matrix3Xd& displacements) {
-          const M model = M::from_parameters(Vec<M::parameter_count>(parameters));
-          displacements.resize(3, commands.cols());
-          Vec<3> previous = before;
-          for (Eigen::Index cycle = 0; cycle < commands.cols(); ++cycle) {
-            const Vec<3> command = commands.col(cycle);
-            displacements.col(cycle) = cycle_displacement(model, command, previous).vec();
-            previous = command;
-          }
-        }};
+    return MotionModelType{.name = model_name<M>(),
+                           .parameter_info = {info.begin(), info.end()},
+                           .parameter_box = {Eigen::VectorXd(box.low()), Eigen::VectorXd(box.high())},
+                           .default_parameters = M().parameters(),
+                           .displace = [](const Eigen::VectorXd& parameters, const Eigen::Matrix3Xd& commands,
+                                          const Vec<3>& before, Eigen::Matrix3Xd& displacements) {
+                             const M model = M::from_parameters(Vec<M::parameter_count>(parameters));
+                             displacements.resize(3, commands.cols());
+                             Vec<3> previous = before;
+                             for (Eigen::Index cycle = 0; cycle < commands.cols(); ++cycle) {
+                               const Vec<3> command = commands.col(cycle);
+                               displacements.col(cycle) = cycle_displacement(model, command, previous).vec();
+                               previous = command;
+                             }
+                           }};
   }();
   return type;
 }
@@ -76,7 +75,7 @@ class AnyMotionModel {
   Eigen::Index parameter_count() const { return parameters_.size(); }
 
   /// A model of the same type. Throws MotionError for another number of parameters.
-  AnyMotionModel with_parameters(Eigen::VectorXd parameters) const;
+  AnyMotionModel with_parameters(const Eigen::VectorXd& parameters) const;
 
   /// Displacements of all cycles with these commands (column = cycle) after the command `before`, each in the frame
   /// before its cycle (x, y, turn) [m, m, rad].
@@ -89,7 +88,15 @@ class AnyMotionModel {
     type_->displace(parameters_, commands, before, result);
   }
 
+  /// The same with other parameters, as many.
+  void displacements(const Eigen::VectorXd& parameters, const Eigen::Matrix3Xd& commands, const Vec<3>& before,
+                     Eigen::Matrix3Xd& result) const {
+    type_->displace(parameters, commands, before, result);
+  }
+
  private:
+  AnyMotionModel(const detail::MotionModelType* type, const Eigen::VectorXd& parameters)
+      : type_(type), parameters_(parameters) {}
   void require_type(const detail::MotionModelType& type) const;
 
   const detail::MotionModelType* type_;

@@ -10,16 +10,15 @@
 #include <string_view>
 #include <utility>
 
+#include "surefoot/core/pose2.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/motion/motion_model.hpp"
-#include "surefoot/core/pose2.hpp"
 
 namespace surefoot {
 
 /// The correction with 3, 6 or 12 free coefficients. The parameter vector lists the free entries of A row by row.
 template <int Count>
-  requires(Count == 3 || Count == 6 || Count == 12)
-class LinearCorrection {
+requires(Count == 3 || Count == 6 || Count == 12) class LinearCorrection {
  public:
   static constexpr int parameter_count = Count;
   static constexpr std::string_view name = Count == 3 ? "proportional" : Count == 6 ? "simple linear" : "full linear";

@@ -42,32 +42,34 @@ struct ModelParameter {
 /// model is the one to start a calibration from: nothing is known of the robot, it does what it is told.
 template <class M>
 concept MotionModel = std::default_initializable<M> &&
-                      requires(const M& model, const Vec<3>& commands, const Vec<M::parameter_count>& parameters) {
-                        requires M::parameter_count > 0;
-                        {
-                          M::parameter_info()
-                        } -> std::same_as<std::array<ModelParameter, std::size_t{M::parameter_count}>>;
-                        { M::from_parameters(parameters) } -> std::same_as<M>;
-                        { model.parameters() } -> std::same_as<Vec<M::parameter_count>>;
-                        requires requires {
-                          { model.displacement(commands) } -> std::same_as<Pose2>;
-                        } || requires {
-                          { model.displacement(commands, commands) } -> std::same_as<Pose2>;
-                        };
-                      };
+    requires(const M& model, const Vec<3>& commands, const Vec<M::parameter_count>& parameters) {
+  requires M::parameter_count >
+  0;
+  { M::parameter_info() } -> std::same_as<std::array<ModelParameter, std::size_t{M::parameter_count}>>;
+  { M::from_parameters(parameters) } -> std::same_as<M>;
+  { model.parameters() } -> std::same_as<Vec<M::parameter_count>>;
+  requires requires {
+    { model.displacement(commands) } -> std::same_as<Pose2>;
+  } || requires {
+    { model.displacement(commands, commands) } -> std::same_as<Pose2>;
+  };
+};
 
-/// A compile error of one sentence about the first member that keeps M from being a MotionModel; the compiler quotes the
-/// line with the declaration wanted (see explain_problem in core/problem.hpp).
+/// A compile error of one sentence about the first member that keeps M from being a MotionModel; the compiler quotes
+/// the line with the declaration wanted (see explain_problem in core/problem.hpp).
 template <class M>
 auto explain_motion_model() {
   if constexpr (!std::default_initializable<M>) {
     return Incomplete<M>::default_constructor;  // M(): the model of a robot that does what it is told
-  } else if constexpr (!requires { requires M::parameter_count > 0; }) {
+  } else if constexpr (!requires {
+                         requires M::parameter_count >
+                         0;
+                       }) {
     return Incomplete<M>::parameter_count;  // static constexpr int parameter_count: above 0
   } else if constexpr (!requires {
                          {
                            M::parameter_info()
-                         } -> std::same_as<std::array<ModelParameter, std::size_t{M::parameter_count}>>;
+                           } -> std::same_as<std::array<ModelParameter, std::size_t{M::parameter_count}>>;
                        }) {
     return Incomplete<M>::parameter_info;  // static std::array<surefoot::ModelParameter, parameter_count> of that name
   } else if constexpr (!requires(const Vec<M::parameter_count>& p) {

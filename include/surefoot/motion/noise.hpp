@@ -31,17 +31,7 @@ enum class NoiseGrowth : std::uint8_t {
 
 inline std::string_view name_of(NoiseShape shape) { return shape == NoiseShape::uniform ? "uniform" : "gaussian"; }
 
-inline std::string_view name_of(NoiseGrowth growth) {
-  switch (growth) {
-    case NoiseGrowth::constant:
-      return "constant";
-    case NoiseGrowth::with_speed:
-      return "proportional to speed";
-    case NoiseGrowth::with_speed_and_acceleration:
-      return "linear in speed and acceleration";
-  }
-  return "";
-}
+std::string_view name_of(NoiseGrowth growth);
 
 /// Speed is the length of the commanded displacement and acceleration that of its change since the cycle before, each
 /// component counted in units of `scale`. Components (x, y, turn) are independent; the standard deviation of each is
@@ -95,3 +85,7 @@ struct UniformNoise {
 static_assert(NoiseModel<UniformNoise>);
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/motion/noise.ipp"
+#endif

@@ -1,6 +1,6 @@
-// Linear correction that also depends on the command of the cycle before: displacement = A (1, dx, dy, dt)^T + B (dx', dy',
-// dt')^T. A walk whose cycles are measured between two phases still carries out part of the last command there; B says
-// how much of it.
+// Linear correction that also depends on the command of the cycle before: displacement = A (1, dx, dy, dt)^T + B (dx',
+// dy', dt')^T. A walk whose cycles are measured between two phases still carries out part of the last command there; B
+// says how much of it.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,10 +8,10 @@
 #include <cstddef>
 #include <string_view>
 
+#include "surefoot/core/pose2.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/motion/linear_correction.hpp"
 #include "surefoot/motion/motion_model.hpp"
-#include "surefoot/core/pose2.hpp"
 
 namespace surefoot {
 

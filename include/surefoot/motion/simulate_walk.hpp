@@ -14,8 +14,8 @@
 
 namespace surefoot {
 
-/// One walk from the origin with these commands (column = cycle) after the command `before` (x, y, turn) [m, m, rad]; calls
-/// visit(cycle, pose) after each cycle. The heading of the poses is wrapped to [-pi, pi).
+/// One walk from the origin with these commands (column = cycle) after the command `before` (x, y, turn) [m, m, rad];
+/// calls visit(cycle, pose) after each cycle. The heading of the poses is wrapped to [-pi, pi).
 template <NoiseModel N, class Visit>
 void walk(const AnyMotionModel& model, const N& noise, const Eigen::Matrix3Xd& commands, const Vec<3>& before, Rng& rng,
           Visit&& visit) {

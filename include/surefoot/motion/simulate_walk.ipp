@@ -1,13 +1,12 @@
 // Definitions of surefoot/motion/simulate_walk.hpp.
 #pragma once
 
-#include "surefoot/motion/simulate_walk.hpp"
-
 #include <Eigen/Core>
 #include <cmath>
 #include <utility>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/motion/simulate_walk.hpp"
 
 namespace surefoot {
 

@@ -6,24 +6,27 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/core/error.hpp"
 #include "surefoot/core/pose2.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/motion/any_motion_model.hpp"
-#include "surefoot/motion/motion_error.hpp"
 
 namespace surefoot {
 
 /// The robot starts at the origin, looking along x. Column i is cycle i.
 struct WalkSequence {
-  std::string name = {};                 // for messages: file, or number of the sequence
+  std::string name = {};                   // for messages: file, or number of the sequence
   Eigen::Matrix3Xd commands = {};          // commanded displacement of each cycle (x, y, turn) [m, m, rad]
-  Eigen::Matrix3Xd poses = {};           // pose after each cycle (x, y, heading) [m, m, rad]; NaN: not measured
+  Eigen::Matrix3Xd poses = {};             // pose after each cycle (x, y, heading) [m, m, rad]; NaN: not measured
   Vec<3> command_before = Vec<3>::Zero();  // the commands before the first cycle, e.g. walking on the spot
 
   Eigen::Index cycles() const { return commands.cols(); }
-  Vec<3> previous_command(Eigen::Index cycle) const { return cycle == 0 ? command_before : Vec<3>(commands.col(cycle - 1)); }
+  Vec<3> previous_command(Eigen::Index cycle) const {
+    return cycle == 0 ? command_before : Vec<3>(commands.col(cycle - 1));
+  }
   bool position_measured(Eigen::Index cycle) const {
     return std::isfinite(poses(0, cycle)) && std::isfinite(poses(1, cycle));
   }
@@ -56,6 +59,13 @@ void check(const PoseAccuracy& accuracy);
 
 /// The pose after the last cycle, if the robot moves exactly as the model predicts. Cost: one displacement per cycle.
 Pose2 predict_final_pose(const AnyMotionModel& model, const WalkSequence& sequence);
+
+namespace detail {
+
+/// Displacements by the model, by sequence (column = cycle).
+std::vector<Eigen::Matrix3Xd> displacements(const AnyMotionModel& model, std::span<const WalkSequence> sequences);
+
+}  // namespace detail
 
 /// How far a model misses final poses: root mean squares of distances [m] and of angles [rad] (over the sequences whose
 /// heading was measured; NaN without any).

@@ -1,19 +1,19 @@
 // Definitions of surefoot/motion/walk_sequence.hpp.
 #pragma once
 
-#include "surefoot/motion/walk_sequence.hpp"
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/core/error.hpp"
 #include "surefoot/core/pose2.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/motion/any_motion_model.hpp"
-#include "surefoot/motion/motion_error.hpp"
+#include "surefoot/motion/walk_sequence.hpp"
 
 namespace surefoot {
 
@@ -21,7 +21,8 @@ SUREFOOT_INLINE void check(const WalkSequence& sequence) {
   const auto fail = [&](const std::string& what) { throw MotionError("sequence " + sequence.name + ": " + what); };
   if (sequence.cycles() == 0) fail("has no cycle");
   if (sequence.poses.cols() != sequence.cycles()) fail("must have one column of poses per cycle");
-  if (!sequence.commands.allFinite() || !sequence.command_before.allFinite()) fail("has a command that is not a number");
+  if (!sequence.commands.allFinite() || !sequence.command_before.allFinite())
+    fail("has a command that is not a number");
   if (!sequence.position_measured(sequence.cycles() - 1)) {
     fail("has no final position; measure where the robot stopped, or leave the sequence out");
   }
@@ -56,6 +57,15 @@ SUREFOOT_INLINE Pose2 compose(const Eigen::Matrix3Xd& displacements) {
   Pose2 pose;
   for (Eigen::Index i = 0; i < displacements.cols(); ++i) pose = pose * Pose2::from_vec(displacements.col(i));
   return pose;
+}
+
+SUREFOOT_INLINE std::vector<Eigen::Matrix3Xd> displacements(const AnyMotionModel& model,
+                                                            std::span<const WalkSequence> sequences) {
+  std::vector<Eigen::Matrix3Xd> result;
+  for (const WalkSequence& sequence : sequences) {
+    result.push_back(model.displacements(sequence.commands, sequence.command_before));
+  }
+  return result;
 }
 
 }  // namespace detail

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <complex>
 
-#include "surefoot/core/vec.hpp"
 #include "surefoot/core/pose2.hpp"
+#include "surefoot/core/vec.hpp"
 
 namespace surefoot::detail {
 
