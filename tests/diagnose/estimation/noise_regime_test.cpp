@@ -95,7 +95,7 @@ TEST_CASE("whitened final poses have unit variance and no correlation, also thos
       const std::vector<Cell> cells = cells_of(bound.recordings[r]);
       const SimulatedRun run = simulate(bound, truth, r, {});
       const Eigen::VectorXd white =
-          weighed_residuals(bound, r, run, cells, {.sigma = Vec<3>(1, 1, 1), .whitening = whitening});
+          weighted_residuals(bound, r, run, cells, {.sigma = Vec<3>(1, 1, 1), .whitening = whitening});
       const Eigen::VectorXd off = raw_residuals(bound, r, run, cells);
       REQUIRE(white.size() == 3);
       covariance += white * white.transpose() / 150;

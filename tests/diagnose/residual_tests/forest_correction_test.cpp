@@ -123,7 +123,7 @@ TEST_CASE("it is offered where nothing explains a mismatch, and kept only where 
   CHECK(helps.tried);
   CHECK(helps.kept);
   CHECK(helps.gain > 2 * helps.gain_stderr);
-  CHECK(helps.heldout_after < 0.7 * helps.heldout_before);
+  CHECK(helps.held_out_after < 0.7 * helps.held_out_before);
   const ForestResidual noise = offered(block_recordings(0, 0.01), Verdict::unexplained);
   CHECK(noise.tried);
   CHECK_FALSE(noise.kept);
