@@ -165,6 +165,7 @@ class Checks(unittest.TestCase):
 
         code("bool f(double x) { return x > 0 && 0.5 * x < 2; }\n")
         code("double f(double x) { return x / (x + 1e-300); }\n")
+        code("void f() {\n  double sums[3] = {};\n  Vec<3> v;\n}\n")
         code("bool f(double x) {\n  return x > 0.97;\n}\n", (f"{header}:4", "0.97 without a name, in f()"))
         code("bool f(double x) {\n  return x > 0.5;\n}\n", (f"{header}:4", "0.5 without a name"))
         code("bool f(double x, double least = 0.1);\n", (f"{header}:3", "0.1 without a name"))
