@@ -2,7 +2,8 @@
 
 In diagnose/verdict and diagnose/selection a number in the body of a function may be 0, 1 or 2 (also negative), a factor
 of a half, a factor of 100 (a share in percent), a guard against division by zero (1e-300 and smaller), a size in
-brackets, or hexadecimal (the label of a stream of random numbers). Any other stands in a field of a criteria struct or in a constexpr, whose line or the comment above it says why it is what it is.
+brackets, or hexadecimal (the label of a stream of random numbers). Any other stands in a field of a criteria struct or
+in a constexpr, whose line or the comment above it says why it is what it is.
 """
 import sys
 
