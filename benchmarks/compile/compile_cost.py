@@ -7,6 +7,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -86,22 +87,29 @@ def own_command(entry):
     return command[1:] if Path(command[0]).name in ("ccache", "sccache") else command
 
 
-def measure_files(build, pattern):
+def measure_files(build, pattern, jobs):
     """[(file, seconds, MB)] of every translation unit of our own build, the slowest first."""
     database = Path(build) / "compile_commands.json"
     if not database.exists():
         sys.exit(f"{database} is missing: cmake --preset release -B {build}, and build its precompiled headers")
-    result = []
-    with tempfile.TemporaryDirectory() as folder:
-        for entry in json.loads(database.read_text()):
-            name = os.path.relpath(entry["file"], ROOT)
-            if pattern not in name:
-                continue
-            command = own_command(entry)
-            command[command.index("-o") + 1] = str(Path(folder) / "out.o")
-            result.append((name, *measure(command, entry["directory"])))
-            print(f"{name}: {result[-1][1]:.1f} s, {result[-1][2]:.0f} MB", file=sys.stderr)
-    return sorted(result, key=lambda row: -row[1])
+    commands = {}  # of a file that several programs compile alike: one
+    for entry in json.loads(database.read_text()):
+        command = own_command(entry)
+        output = command.index("-o") + 1
+        if pattern in os.path.relpath(entry["file"], ROOT):
+            commands[entry["file"], *command[:output], *command[output + 1:]] = (entry, command, output)
+
+    def measure_file(case):
+        entry, command, output = case
+        name = os.path.relpath(entry["file"], ROOT)
+        with tempfile.TemporaryDirectory() as folder:
+            command[output] = str(Path(folder) / "out.o")
+            seconds, megabytes = measure(command, entry["directory"])
+        print(f"{name}: {seconds:.1f} s, {megabytes:.0f} MB", file=sys.stderr)
+        return name, seconds, megabytes
+
+    with ThreadPoolExecutor(jobs) as pool:
+        return sorted(pool.map(measure_file, commands.values()), key=lambda row: -row[1])
 
 
 def file_table(files):
@@ -116,9 +124,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--build", default="build/release", help="folder of the build, for compile.json and --files")
     parser.add_argument("--repetitions", type=int, default=3, help="of every compilation; medians count (3)")
-    parser.add_argument("--only", nargs="+", choices=PROGRAMS[1:], default=PROGRAMS[1:], help="these programs")
+    parser.add_argument("--only", nargs="*", choices=PROGRAMS[1:], default=PROGRAMS[1:], help="these programs")
     parser.add_argument("--files", nargs="?", const="", metavar="TEXT",
                         help="measure also each file of the build (compile_commands.json) whose name contains TEXT")
+    parser.add_argument("--jobs", type=int, default=2, help="files at a time; programs are compiled one by one (2)")
     options = parser.parse_args()
     compiler = shlex.split(os.environ.get("CXX", "g++"))
 
@@ -133,7 +142,7 @@ def main():
          "ratio_megabytes": values[1] / found["eigen", "headers"][1],
          "ratio_object": values[2] / found["eigen", "headers"][2]} for (program, way), values in found.items()]}
     if options.files is not None:
-        files = measure_files(options.build, options.files)
+        files = measure_files(options.build, options.files, options.jobs)
         print("\n" + "\n".join(file_table(files)))
         report["files"] = [{"file": name, "seconds": seconds, "megabytes": megabytes}
                            for name, seconds, megabytes in files]
