@@ -1,6 +1,6 @@
 """Writes quotes of compiled files and tables of options into the pages, so that they read the same everywhere.
 
-    python3 docs/tools/quotes.py           brings docs/*.md up to date
+    python3 docs/tools/quotes.py           brings README.md and docs/*.md up to date
     python3 docs/tools/quotes.py --check   names the pages that are not, and exits with 1
 
 Between such a comment and the line <!-- end --> stands what it asks for:
@@ -19,7 +19,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import options_table  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-QUOTE = re.compile(r"^(<!-- \[(quote|options|fields)(?:: ([^\]]+))?\]\((?:\.\./)+([^)#]+)\) -->\n)(.*?)^<!-- end -->$", re.M | re.S)
+QUOTE = re.compile(r"^(<!-- \[(quote|options|fields)(?:: ([^\]]+))?\]\((?:\.\./)*([^)#]+)\) -->\n)(.*?)^<!-- end -->$", re.M | re.S)
 LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".c": "c", ".toml": "toml", ".sh": "sh", ".json": "json", ".txt": "cmake"}
 
 
@@ -54,20 +54,20 @@ def fresh(found):
 
 def main(check):
     stale = 0
-    for page in sorted((ROOT / "docs").glob("*.md")):
+    for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
         text = page.read_text(encoding="utf-8")
         begun = len(re.findall(r"^<!-- \[(?:quote|options|fields)", text, re.M))
         if begun != len(QUOTE.findall(text)):
-            raise Fault(f"docs/{page.name}: a quote has no line <!-- end -->, or its comment is not [quote: name](../file)")
+            raise Fault(f"{page.relative_to(ROOT)}: a quote has no line <!-- end -->, or its comment is not [quote: name](../file)")
         now = QUOTE.sub(fresh, text)
         if now == text:
             continue
         stale += 1
         if check:
-            print(f"docs/{page.name} does not quote what is there now: python3 docs/tools/quotes.py", file=sys.stderr)
+            print(f"{page.relative_to(ROOT)} does not quote what is there now: python3 docs/tools/quotes.py", file=sys.stderr)
         else:
             page.write_text(now, encoding="utf-8")
-            print(f"docs/{page.name}")
+            print(page.relative_to(ROOT))
     return 1 if check and stale else 0
 
 
