@@ -1,4 +1,4 @@
-// Fits: what they recover, what they leave alone, and what their standard errors are worth.
+// Fits: what they recover, and what they leave alone.
 #include "surefoot/diagnose/estimation/fit.hpp"
 
 #include <doctest/doctest.h>
@@ -8,15 +8,14 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
-#include "surefoot/diagnose/selection/candidates.hpp"
-#include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/estimation/calibrate.hpp"
+#include "surefoot/diagnose/estimation/choose_integration.hpp"
+#include "surefoot/diagnose/selection/candidates.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 #include "tests/support/servo_pendulum.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 using toys::LeakyTank;
@@ -88,7 +87,8 @@ TEST_CASE("an effect's parameters and unknown initial states are recovered toget
 }
 
 TEST_CASE("a fit is never worse than its start, however few its iterations and odd its start") {
-  const BoundSimulator bound = bind_simulator(ServoPendulum{}, toys::servo_recordings(toys::machine({1.4, 3.9, 0.014}), 2, 2));
+  const BoundSimulator bound =
+      bind_simulator(ServoPendulum{}, toys::servo_recordings(toys::machine({1.4, 3.9, 0.014}), 2, 2));
   Rng rng(2);
   for (int k = 0; k < 12; ++k) {
     Hypothesis start = nominal_hypothesis(bound);
@@ -105,7 +105,7 @@ TEST_CASE("a fit is never worse than its start, however few its iterations and o
     CHECK(fitted.ok == std::isfinite(before));  // some of these machines cannot be integrated in one step per row
     if (!fitted.ok) continue;
     const Parallel serial = serially();
-    const detail::FitFunctions functions(bound, fitted.hypothesis, problem, serial);
+    const FitFunctions functions(bound, fitted.hypothesis, problem, serial);
     CHECK(mean_loss(functions.residuals(functions.start()), 4) == doctest::Approx(fitted.loss).epsilon(1e-6));
   }
 }
@@ -156,30 +156,5 @@ TEST_CASE("a few wild samples hardly move a fit") {
   CHECK(fitted.hypothesis.parameters[1] == doctest::Approx(0.8).epsilon(0.02));
 }
 
-// Share of repetitions in which the truth is within two standard errors.
-double coverage(double memory) {
-  int within = 0;
-  constexpr int repetitions = 100;
-  for (int k = 0; k < repetitions; ++k) {
-    const BoundSimulator bound = bind_simulator(LeakyTank{}, tanks(4, 200, 1.5, 0.7, 0.02, memory, 10 + static_cast<std::uint64_t>(k)));
-    const FitProblem problem = problem_of(4, 0.02);
-    const Fit fitted = fit(bound, nominal_hypothesis(bound), problem, serially());
-    const StandardErrors errors = standard_errors(bound, fitted.hypothesis, problem, serially());
-    REQUIRE(errors.deviation.size() == 2);
-    within += std::abs(fitted.hypothesis.parameters[0] - 1.5) < 2 * errors.deviation[0] ? 1 : 0;
-    within += std::abs(fitted.hypothesis.parameters[1] - 0.7) < 2 * errors.deviation[1] ? 1 : 0;
-  }
-  return within / (2.0 * repetitions);
-}
-
-TEST_CASE("two standard errors cover the truth about as often as they should, also where noise is correlated") {
-  for (const double memory : {0.0, 0.6}) {
-    const double covered = coverage(memory);
-    INFO("memory " << memory << ", covered " << covered);
-    CHECK(covered > 0.85);
-    CHECK(covered < 0.995);
-  }
-}
-
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

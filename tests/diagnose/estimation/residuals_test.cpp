@@ -11,9 +11,7 @@
 #include "tests/diagnose/small_simulators.hpp"
 #include "tests/support/servo_pendulum.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
@@ -94,4 +92,4 @@ TEST_CASE("sizes of residuals are those of the noise, however wild a few of them
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis
