@@ -11,9 +11,9 @@ rooms; in forest and motion the face includes rooms and rooms the face, in any o
   forest     evaluate < c, train < shrink
   motion     fit < monitor < plan
 NAME.ipp is a part of NAME.hpp, which alone includes it, at its end and unless SUREFOOT_COMPILED is defined.
-The header of an area, surefoot/AREA.hpp, includes the face of that area and the headers of the areas that it may use;
-surefoot/surefoot.hpp those of all areas. The library itself includes none of these. Headers of more than 300 lines
-are remarked on.
+The header of an area, surefoot/AREA.hpp, includes nothing but its face, all of it (itself, or through others of it),
+and the headers of the areas that it may use; surefoot/surefoot.hpp those of all areas. The library itself includes none
+of these. Headers of more than 300 lines are remarked on.
 """
 import re
 import sys
@@ -31,15 +31,15 @@ MAY = {
 }
 OPTIONAL = ["mpi"]  # has no header of the area, and is not in surefoot.hpp
 
-# Layers within an area from the bottom up; those of one line stand beside each other. "face" is what is not named.
+# Layers within an area from the bottom up: rooms, and headers of the face that stand between them; those of one line
+# stand beside each other. "face" is what of it is not named.
 LAYERS = {
-    "diagnose": [["recording", "simulator"], ["effects"],
-                 ["options", "residual_model", "diagnosis", "text", "screening"], ["simulation"], ["estimation"],
-                 ["selection", "residual_tests"], ["verdict"], ["face"]],
+    "diagnose": [["recording.hpp", "simulator.hpp"], ["effects"],
+                 ["options.hpp", "residual_model.hpp", "diagnosis.hpp", "text.hpp", "screening.hpp"], ["simulation"],
+                 ["estimation"], ["selection", "residual_tests"], ["verdict"], ["face"]],
     "forest": [["evaluate"], ["c", "train"], ["shrink"]],
     "motion": [["fit"], ["monitor"], ["plan"]],
 }
-SIDE_BY_SIDE = ["recording", "simulator", "options", "residual_model", "diagnosis", "text", "screening"]  # may meet
 
 # Parts of the face that lie in a room, and headers of the folder that are no part of the face.
 FACE_IN_ROOMS = ["surefoot/diagnose/effects/effect.hpp", "surefoot/diagnose/effects/catalogue.hpp",
@@ -72,7 +72,7 @@ def layer_of(header):
     """(height, name) among the layers of its area, or None where no order is set."""
     layers = LAYERS.get(area_of(header), [])
     room = room_of(header)
-    names = [room] if room else [header.split("/")[-1].rsplit(".", 1)[0], "face"]
+    names = [room] if room else [header.split("/")[-1].rsplit(".", 1)[0] + ".hpp", "face"]
     for name in names:
         for height, layer in enumerate(layers):
             if name in layer:
@@ -112,7 +112,7 @@ def wrong_include(header, target):
         return None
     if its[0] > mine[0]:
         return f"{its[1]} lies above {mine[1]}"
-    if its[0] == mine[0] and not (mine[1] in SIDE_BY_SIDE and its[1] in SIDE_BY_SIDE):
+    if its[0] == mine[0] and not (mine[1].endswith(".hpp") and its[1].endswith(".hpp")):  # the face may meet
         return f"{its[1]} lies beside {mine[1]}"
     return None
 
@@ -142,12 +142,24 @@ def in_a_circle(needs):
         left -= free
 
 
+def reached_from(header, files):
+    """All headers that it includes, itself or through others, in a program that uses the compiled library."""
+    reached, open_ends = set(), [header]
+    while open_ends:
+        for _, target, _ in includes(files[open_ends.pop()]):
+            if target in files and target not in reached and not target.endswith(".ipp"):
+                reached.add(target)
+                open_ends.append(target)
+    return reached
+
+
 def expect_includes(header, files, wanted):
     if header not in files:
         return [f"include/{header}:1: is missing"]
-    found = {target for style, target, _ in includes(files[header]) if style == '"'}
-    return ([f"include/{header}:1: does not include {target}" for target in sorted(set(wanted) - found)] +
-            [f"include/{header}:1: may not include {target}" for target in sorted(found - set(wanted))])
+    direct = {target for style, target, _ in includes(files[header]) if style == '"'}
+    return ([f"include/{header}:1: does not include {target}"
+             for target in sorted(set(wanted) - reached_from(header, files))] +
+            [f"include/{header}:1: may not include {target}" for target in sorted(direct - set(wanted))])
 
 
 def check(root):

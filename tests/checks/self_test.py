@@ -8,6 +8,7 @@ import function_length
 import header_openings
 import internal_includes
 import layers
+import named_tests
 import thresholds
 import words
 from cpp_source import declarations
@@ -165,6 +166,7 @@ class Checks(unittest.TestCase):
 
         code("bool f(double x) { return x > 0 && 0.5 * x < 2; }\n")
         code("double f(double x) { return x / (x + 1e-300); }\n")
+        code("void f() {\n  double sums[3] = {};\n  Vec<3> v;\n}\n")
         code("bool f(double x) {\n  return x > 0.97;\n}\n", (f"{header}:4", "0.97 without a name, in f()"))
         code("bool f(double x) {\n  return x > 0.5;\n}\n", (f"{header}:4", "0.5 without a name"))
         code("bool f(double x, double least = 0.1);\n", (f"{header}:3", "0.1 without a name"))
@@ -174,6 +176,14 @@ class Checks(unittest.TestCase):
         code("void f() {\n  constexpr int most = 3;\n}\n", (f"{header}:4", "3 without a reason"))
         code("void f() {\n  constexpr int most = 3;  // more cannot be told apart\n}\n")
         self.expect(thresholds.check, {"include/surefoot/diagnose/estimation/a.hpp": "// A.\nint f() { return 7; }\n"})
+
+    def test_named_tests(self):
+        header = "include/surefoot/diagnose/verdict/a.hpp"
+        self.expect(named_tests.check, {header: "// A.\n"}, (f"{header}:1", "no tests/diagnose/verdict/a_test.cpp"))
+        self.expect(named_tests.check, {header: "// A.\n", "tests/diagnose/verdict/a_test.cpp": "// Tests.\n"})
+        self.expect(named_tests.check, {"include/surefoot/forest/train/a.hpp": "// A.\n"})
+        self.expect(named_tests.check, {"include/surefoot/forest/a.hpp": "// A.\n"},
+                    ("include/surefoot/forest/a.hpp:1", "no tests/forest/a_test.cpp"))
 
     def test_declarations(self):
         found = [(d.kind, d.name, d.first_line, d.last_line) for d in declarations("""

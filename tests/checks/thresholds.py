@@ -1,8 +1,9 @@
 """No threshold without a name and a reason where a diagnosis is decided: thresholds.py REPOSITORY
 
 In diagnose/verdict and diagnose/selection a number in the body of a function may be 0, 1 or 2 (also negative), a factor
-of a half, a factor of 100 (a share in percent), a guard against division by zero (1e-300 and smaller), or hexadecimal
-(the label of a stream of random numbers). Any other stands in a field of a criteria struct or in a constexpr, whose line or the comment above it says why it is what it is.
+of a half, a factor of 100 (a share in percent), a guard against division by zero (1e-300 and smaller), a size in
+brackets, or hexadecimal (the label of a stream of random numbers). Any other stands in a field of a criteria struct or
+in a constexpr, whose line or the comment above it says why it is what it is.
 """
 import sys
 
@@ -24,6 +25,8 @@ def is_plain(code, i):
     around = [code[j].text for j in (i - 1, i + 1) if 0 <= j < len(code)]
     if value in (0, 1, 2) or value <= SMALLEST_THRESHOLD:
         return True
+    if around == ["[", "]"] or (around == ["<", ">"] and code[i - 2].kind == "word"):
+        return True  # a size: double sums[3], Vec<3>
     return value in (0.5, 100) and "*" in around and not {"<", ">", "<=", ">="} & set(around)
 
 

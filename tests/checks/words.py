@@ -11,8 +11,8 @@ from pathlib import Path
 from cpp_source import declarations, finish, headers, tokens
 from layers import area_of, is_face
 
-TEXT_FOLDERS = ["include", "apps", "examples"]
-PAGES = ["README.md", "docs/*.md", "examples/**/*.md", "apps/**/*.md"]
+TEXT_FOLDERS = ["include", "apps", "examples", "benchmarks"]
+PAGES = ["README.md", "docs/*.md", "examples/**/*.md", "apps/**/*.md", "benchmarks/**/*.md"]
 OPTION = re.compile(r"(?<![\w-])--([a-z][a-z0-9-]+)")
 INTERNAL = re.compile("(^|::)(detail|diagnosis)(::|$)")
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/screening.hpp"
 
 using namespace surefoot::diagnosis;
@@ -28,8 +28,8 @@ Investigation prepare(const MakeRig& make, const surefoot::SimulatorInfo& info,
   diagnosis.seed = seed;
   for (surefoot::Recording& recording : recordings) {
     check_recording(info, recording);
-    const auto wild = remove_outliers(info, recording);
-    diagnosis.remarks.insert(diagnosis.remarks.end(), wild.begin(), wild.end());
+    const auto outliers = remove_outliers(info, recording);
+    diagnosis.remarks.insert(diagnosis.remarks.end(), outliers.begin(), outliers.end());
   }
   surefoot::BoundSimulator& bound = result.bound;
   bound = make(std::move(recordings));
