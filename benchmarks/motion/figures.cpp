@@ -13,9 +13,7 @@
 
 #include "surefoot/core/executor.hpp"
 #include "surefoot/motion/calibrate.hpp"
-#include "surefoot/motion/fit/choose_noise.hpp"
 #include "surefoot/motion/linear_correction.hpp"
-#include "surefoot/motion/fit/published_fit.hpp"
 #include "tests/support/walks.hpp"
 
 namespace {

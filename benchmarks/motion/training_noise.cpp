@@ -14,7 +14,6 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rollout.hpp"
 #include "surefoot/motion/calibrate.hpp"
-#include "surefoot/motion/fit/choose_noise.hpp"
 #include "surefoot/motion/linear_correction.hpp"
 #include "surefoot/solve/rfpi.hpp"
 #include "tests/support/walks.hpp"
