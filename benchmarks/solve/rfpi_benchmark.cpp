@@ -31,7 +31,7 @@ struct Trained {
   explicit Trained(const P& p) : problem(p), policy(p, {}) {
     const RfpiOptions options;
     RfpiState<P> state;
-    for (int i = 0; i <= options.blind_iterations; ++i) {
+    for (int i = 0; i <= options.initial_iterations; ++i) {
       state = detail::improve_by_backup(problem, options, state, 20'000, {}, Threads{}, Rng(1, i), {});
     }
     states = state.samples.states;
@@ -100,7 +100,7 @@ void learning(benchmark::State& state, const P& problem, std::initializer_list<i
   for (auto _ : state) {
     for (const int seconds : budgets) {
       RfpiOptions options;
-      options.budget.seconds = seconds;
+      options.budget.counted_seconds = seconds;
       options.horizon = P::horizon;
       const auto result = rfpi(problem, options, Threads{}, 1);
       const std::string at = "_" + std::to_string(seconds) + "s";
