@@ -18,7 +18,6 @@
 #include "catalogue_entries.hpp"
 #include "catalogue_machines.hpp"
 #include "surefoot/diagnose/simulate_augmented.hpp"
-#include "surefoot/diagnose/estimation/hypothesis.hpp"
 #include "surefoot/diagnose/text.hpp"
 
 namespace catalogue {
