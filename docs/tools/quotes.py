@@ -1,6 +1,6 @@
 """Writes quotes of compiled files and tables of options into the pages, so that they read the same everywhere.
 
-    python3 docs/tools/quotes.py           brings docs/*.md up to date
+    python3 docs/tools/quotes.py           brings README.md and docs/*.md up to date
     python3 docs/tools/quotes.py --check   names the pages that are not, and exits with 1
 
 Between such a comment and the line <!-- end --> stands what it asks for:
@@ -9,6 +9,7 @@ Between such a comment and the line <!-- end --> stands what it asks for:
     <!-- [quote](../examples/minimal/main.cpp) -->               the whole file
     <!-- [options: RfpiOptions](../include/surefoot/...) -->     the fields of that struct: name, type, unit, default, meaning
     <!-- [fields: Diagnosis](../include/surefoot/...) -->        the same without defaults
+    <!-- [face: diagnose](../include/surefoot/diagnose) -->      the public headers of that area, and how each opens
 """
 
 import pathlib
@@ -19,7 +20,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import options_table  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-QUOTE = re.compile(r"^(<!-- \[(quote|options|fields)(?:: ([^\]]+))?\]\((?:\.\./)+([^)#]+)\) -->\n)(.*?)^<!-- end -->$", re.M | re.S)
+QUOTE = re.compile(r"^(<!-- \[(quote|options|fields|face)(?:: ([^\]]+))?\]\((?:\.\./)*([^)#]+)\) -->\n)(.*?)^<!-- end -->$", re.M | re.S)
 LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".c": "c", ".toml": "toml", ".sh": "sh", ".json": "json", ".txt": "cmake"}
 
 
@@ -40,13 +41,38 @@ def quoted(path, name):
     return "\n".join(line[indent:] for line in lines).strip("\n")
 
 
+EFFECT_FACE = ["effect.hpp", "catalogue.hpp", "named_effect.hpp"]  # of diagnose/effects; the other headers there are effects
+
+
+def opening(path):
+    """The first sentence of a header."""
+    lines = []
+    for line in path.read_text(encoding="utf-8").splitlines():
+        if not line.startswith("//"):
+            break
+        lines.append(line.removeprefix("//").strip())
+    words = re.sub(r" \([^()]*\d{4}[^()]*\)", "", " ".join(lines))  # without the source of a method
+    sentence = re.match(r"(.*?)[.](\s|$)", words)
+    return (sentence[1] if sentence else words).replace("|", "\\|")
+
+
+def face(folder):
+    headers = sorted(folder.glob("*.hpp"))
+    if (folder / "effects").is_dir():
+        headers += [folder / "effects" / name for name in EFFECT_FACE]
+    rows = [f"| `{header.relative_to(ROOT / 'include')}` | {opening(header)} |" for header in headers]
+    return "\n".join(["| header | what |", "| --- | --- |", *rows])
+
+
 def fresh(found):
     comment, what, name, target, _ = found.groups()
     path = ROOT / target
-    if not path.is_file():
+    if not path.exists():
         raise Fault(f"there is no file {target}, wanted by '{comment.strip()}'")
     if what == "quote":
         text = f"```{LANGUAGES.get(path.suffix, 'text')}\n{quoted(path, name)}\n```"
+    elif what == "face":
+        text = face(path)
     else:
         text = options_table.markdown(path, name, defaults=what == "options")
     return f"{comment}\n{text}\n\n<!-- end -->"
@@ -54,20 +80,20 @@ def fresh(found):
 
 def main(check):
     stale = 0
-    for page in sorted((ROOT / "docs").glob("*.md")):
+    for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
         text = page.read_text(encoding="utf-8")
-        begun = len(re.findall(r"^<!-- \[(?:quote|options|fields)", text, re.M))
+        begun = len(re.findall(r"^<!-- \[(?:quote|options|fields|face)", text, re.M))
         if begun != len(QUOTE.findall(text)):
-            raise Fault(f"docs/{page.name}: a quote has no line <!-- end -->, or its comment is not [quote: name](../file)")
+            raise Fault(f"{page.relative_to(ROOT)}: a quote has no line <!-- end -->, or its comment is not [quote: name](../file)")
         now = QUOTE.sub(fresh, text)
         if now == text:
             continue
         stale += 1
         if check:
-            print(f"docs/{page.name} does not quote what is there now: python3 docs/tools/quotes.py", file=sys.stderr)
+            print(f"{page.relative_to(ROOT)} does not quote what is there now: python3 docs/tools/quotes.py", file=sys.stderr)
         else:
             page.write_text(now, encoding="utf-8")
-            print(f"docs/{page.name}")
+            print(page.relative_to(ROOT))
     return 1 if check and stale else 0
 
 

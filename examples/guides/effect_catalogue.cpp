@@ -166,7 +166,7 @@ class Catalogue {
           << names.size() << " pieces of missing physics that `surefoot-diagnose` knows by name, in " << all.size()
           << " forms. Each picture shows a machine without the effect (grey) and with it (red), and beside it the "
              "residual, before any calibration: parameters of a model can take up a part of it, and noise hides what "
-             "is small. [How a diagnosis decides](diagnose.md#how-it-decides) between them is another page; "
+             "is small. [How a diagnosis decides](how-it-decides.md) between them is another page; "
              "[one of your own](add-an-effect.md) is twenty lines.\n\n"
              "In formulas q is a position, v its speed, F a force, u an input, y a reading, x a state, d the "
              "displacement of a step. Units are those of the machine of the picture; bounds of the search are "

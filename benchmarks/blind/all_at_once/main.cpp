@@ -93,8 +93,8 @@ int run(const S& simulator, const diagnose_program::Layout& layout, const diagno
   LoadedRecordings loaded = load_all(line, layout);
   surefoot::DiagnoseOptions options;
   options.known = known_effects(model, surefoot::all_effects());
-  options.test = test_names(line, loaded.recordings);
-  options.test_share = line.test_share;
+  options.held_out = test_names(line, loaded.recordings);
+  options.held_out_share = line.test_share;
   options.effects = line.effects;
   options.max_effects = line.max_effects;
   prepare_folder(line.out);

@@ -33,10 +33,10 @@ Investigation prepare(const MakeRig& make, const surefoot::SimulatorInfo& info,
   }
   surefoot::BoundSimulator& bound = result.bound;
   bound = make(std::move(recordings));
-  result.split = split_recordings(bound.recordings, options.test, options.test_share, 4, seed);
+  result.split = split_recordings(bound.recordings, options.held_out, options.held_out_share, 4, seed);
   const auto& training = result.split.training;
   for (const std::size_t r : training) diagnosis.fit.push_back(bound.recordings[r].name);
-  for (const std::size_t r : result.split.test) diagnosis.test.push_back(bound.recordings[r].name);
+  for (const std::size_t r : result.split.held_out) diagnosis.held_out.push_back(bound.recordings[r].name);
   diagnosis.select = diagnosis.fit;
 
   result.nominal = nominal_hypothesis(bound);

@@ -1,0 +1,72 @@
+"""Every block of the documentation has a rule, what it is quoted from is compiled, and what it is said to be run by exists.
+
+check_rules.py --build FOLDER [--compile-commands FILE]
+"""
+
+import argparse
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+from blocks import KEYS, ROOT, Fault, all_blocks
+
+
+def ctest_cases(build):
+    listed = subprocess.run(["ctest", "--test-dir", build, "-N"], capture_output=True, text=True, check=True).stdout
+    return set(re.findall(r"^\s*Test\s+#\d+: (\S+)", listed, re.M))
+
+
+def compiled_files(path):
+    if not path or not pathlib.Path(path).is_file():
+        return None
+    commands = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
+    return {str(pathlib.Path(command["file"]).resolve()) for command in commands}
+
+
+def commands_of(block):
+    lines = (line.split(" #")[0].strip().removeprefix("./") for line in block.text.splitlines())
+    return [line for line in lines if line]
+
+
+def faults_of(block, cases, compiled):
+    if block.quoted:
+        path = ROOT / block.quoted
+        if f"outside_{path.parent.name}" in cases:
+            return
+        if compiled is not None and path.suffix == ".cpp" and str(path.resolve()) not in compiled:
+            yield f"{block.where}: quotes {block.quoted}, which nothing compiles"
+        return
+    if block.language not in KEYS:
+        yield f"{block.where}: no test knows blocks of '{block.language}' (tests/docs/blocks.py has those it knows)"
+    elif block.language not in ("sh", "cpp", "c") and not block.rule:
+        yield f"{block.where}: a block of {block.language} needs a comment <!-- test: ... --> above it (tests/docs/blocks.py)"
+    for name in filter(None, re.split(r",\s*", block.rule.get("by", ""))):
+        if "/" in name:
+            text = (ROOT / name).read_text(encoding="utf-8") if (ROOT / name).is_file() else ""
+            if not any(command in text for command in commands_of(block)):
+                yield f"{block.where}: {name} runs nothing of this block"
+        elif not name.endswith("?") and name not in cases:
+            yield f"{block.where}: there is no CTest case {name}"
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--build", required=True)
+    parser.add_argument("--compile-commands")
+    options = parser.parse_args()
+    blocks = all_blocks()
+    cases, compiled = ctest_cases(options.build), compiled_files(options.compile_commands)
+    faults = [fault for block in blocks for fault in faults_of(block, cases, compiled)]
+    counts = {language: sum(block.language == language for block in blocks) for language in KEYS}
+    print(", ".join(f"{count} {language}" for language, count in counts.items()))
+    print("\n".join(faults), file=sys.stderr)
+    return 1 if faults or not blocks else 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except Fault as fault:
+        sys.exit(str(fault))
