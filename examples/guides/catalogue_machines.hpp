@@ -83,7 +83,7 @@ struct Tanks {
 };
 static_assert(surefoot::Simulator<Tanks>);
 
-/// Goes where each order says.
+/// Goes where each command says.
 struct Walker {
   using State = Vec<3>;
   using Input = Vec<3>;
