@@ -26,11 +26,11 @@ struct Component {
   std::vector<std::string_view> names;
 };
 
-const std::array<Component, 3>& order_components() {
+const std::array<Component, 3>& command_components() {
   static const std::array<Component, 3> components{{
-      {"the order forward", "order_dx_m", false, {"order_dx", "order_x", "order_forward", "dx", "forward"}},
-      {"the order to the left", "order_dy_m", false, {"order_dy", "order_y", "order_lateral", "dy", "lateral"}},
-      {"the order to turn",
+      {"the command forward", "order_dx_m", false, {"order_dx", "order_x", "order_forward", "dx", "forward"}},
+      {"the command to the left", "order_dy_m", false, {"order_dy", "order_y", "order_lateral", "dy", "lateral"}},
+      {"the command to turn",
        "order_dtheta_rad",
        true,
        {"order_dtheta", "order_dt", "order_theta", "order_turn", "dtheta", "turn", "dyaw"}},
@@ -139,16 +139,16 @@ Columns recognise_columns(const Csv& csv, const ColumnNames& named, bool poses_n
   Columns columns;
   for (std::size_t i = 0; i < 3; ++i) {
     if (!named.wheels.empty()) break;
-    const Component& component = order_components()[i];
-    if (!named.orders.empty()) {
-      columns.orders[i] = named_column(csv, named.orders[i], component);
+    const Component& component = command_components()[i];
+    if (!named.commands.empty()) {
+      columns.commands[i] = named_column(csv, named.commands[i], component);
       continue;
     }
     const auto found = recognised_column(csv, component);
-    if (!found) fail_missing(csv, component, "--orders X,Y,TURN, or for wheels --wheels LEFT,RIGHT");
-    columns.orders[i] = *found;
+    if (!found) fail_missing(csv, component, "--commands X,Y,TURN, or for wheels --wheels LEFT,RIGHT");
+    columns.commands[i] = *found;
   }
-  if (!named.wheels.empty()) columns.orders = wheel_columns(csv, named.wheels);
+  if (!named.wheels.empty()) columns.commands = wheel_columns(csv, named.wheels);
   for (std::size_t i = 0; i < 3; ++i) {
     const Component& component = pose_components()[i];
     if (i < named.pose.size()) {

@@ -1,4 +1,4 @@
-// Which columns of a CSV hold orders and poses, and in what units.
+// Which columns of a CSV hold commands and poses, and in what units.
 #pragma once
 
 #include <array>
@@ -17,16 +17,16 @@ struct Column {
 };
 
 struct Columns {
-  std::array<Column, 3> orders;               // x, y, turn; of wheels: left, right, time
+  std::array<Column, 3> commands;               // x, y, turn; of wheels: left, right, time
   std::array<std::optional<Column>, 3> pose;  // x, y, heading; the heading may be missing
 };
 
 /// What the user says about columns; empty where they are to be recognised.
 struct ColumnNames {
-  std::vector<std::string> orders, pose, wheels;
+  std::vector<std::string> commands, pose, wheels;
 };
 
-/// Throws surefoot::MotionError that names file and column. A file of orders alone has no poses.
+/// Throws surefoot::MotionError that names file and column. A file of commands alone has no poses.
 Columns recognise_columns(const diagnose_program::Csv& csv, const ColumnNames& named, bool poses_needed);
 
 /// The unit's factor to metres ("cm") or radians ("deg"), or nothing for a column whose name ends in no such unit.

@@ -54,7 +54,7 @@ std::vector<std::size_t> spread_counts(std::size_t most) {
   return counts;
 }
 
-void print(const std::vector<CountedCurve>& curves, double as_ordered) {
+void print(const std::vector<CountedCurve>& curves, double as_commanded) {
   std::printf("Mean error of final positions [m] on sequences left out, by the number fitted to:\n\n%-6s", "");
   for (const CountedCurve& curve : curves) std::printf(" %26.26s", curve.curve.model.c_str());
   std::printf("\n");
@@ -66,7 +66,7 @@ void print(const std::vector<CountedCurve>& curves, double as_ordered) {
     }
     std::printf("\n");
   }
-  std::printf("%-6s %26.3f  with the orders as they are\n\n%s\n", "any", as_ordered, which_model(curves).c_str());
+  std::printf("%-6s %26.3f  with the commands as they are\n\n%s\n", "any", as_commanded, which_model(curves).c_str());
 }
 
 void run(const Options& options) {
@@ -94,11 +94,11 @@ void run(const Options& options) {
       });
     }
   });
-  const double as_ordered =
+  const double as_commanded =
       final_pose_error(surefoot::detail::AsOrdered{}, std::span<const surefoot::WalkSequence>(loaded.sequences))
           .position;
-  print(curves, as_ordered);
-  write_curve_files(options.out, curves, as_ordered, work);
+  print(curves, as_commanded);
+  write_curve_files(options.out, curves, as_commanded, work);
 }
 
 }  // namespace

@@ -48,13 +48,13 @@ nlohmann::ordered_json coefficients(const CountedCurve& one) {
   });
 }
 
-std::string json(const std::vector<CountedCurve>& curves, double as_ordered,
+std::string json(const std::vector<CountedCurve>& curves, double as_commanded,
                  const surefoot::LearningCurveOptions& options) {
   nlohmann::ordered_json json{{"schema", "surefoot.learning_curve/1"},
                               {"validation", options.validation},
                               {"repetitions", options.repetitions},
                               {"sequences", curves[0].curve.counts},
-                              {"as_ordered_m", as_ordered},
+                              {"as_ordered_m", as_commanded},
                               {"advice", which_model(curves)},
                               {"models", nlohmann::ordered_json::array()}};
   for (const CountedCurve& one : curves) {
@@ -70,9 +70,9 @@ std::string json(const std::vector<CountedCurve>& curves, double as_ordered,
   return json.dump(1) + "\n";
 }
 
-void draw_curve(const std::filesystem::path& base, const std::vector<CountedCurve>& curves, double as_ordered) {
+void draw_curve(const std::filesystem::path& base, const std::vector<CountedCurve>& curves, double as_commanded) {
   std::ostringstream data, commands;
-  double most = as_ordered, least = as_ordered;
+  double most = as_commanded, least = as_commanded;
   for (const CountedCurve& one : curves) {
     for (std::size_t i = 0; i < one.curve.counts.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
@@ -87,8 +87,8 @@ void draw_curve(const std::filesystem::path& base, const std::vector<CountedCurv
               "set grid lc rgb '#e6e6e6' lt 1\nset key top right\nset logscale x\n"
               "set xtics (1, 2, 3, 5, 7, 10, 15, 20, 30, 40, 60, 80, 120, 200, 400)\nset xrange ["
            << curves[0].curve.counts.front() << ':' << curves[0].curve.counts.back() << "]\nset yrange [" << 0.6 * least
-           << ':' << most << "]\nplot " << as_ordered
-           << " with lines dt 2 lw 1.5 lc rgb '#000000' title 'orders as they are'";
+           << ':' << most << "]\nplot " << as_commanded
+           << " with lines dt 2 lw 1.5 lc rgb '#000000' title 'commands as they are'";
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const char* colour = colours[static_cast<std::size_t>(curves[i].kind)];
     commands << ", data index " << i
@@ -151,14 +151,14 @@ std::string which_model(const std::vector<CountedCurve>& curves) {
   return sentence + text;
 }
 
-void write_curve_files(const std::filesystem::path& folder, const std::vector<CountedCurve>& curves, double as_ordered,
+void write_curve_files(const std::filesystem::path& folder, const std::vector<CountedCurve>& curves, double as_commanded,
                        const surefoot::LearningCurveOptions& options) {
-  draw_curve(folder / "curve", curves, as_ordered);
+  draw_curve(folder / "curve", curves, as_commanded);
   for (const CountedCurve& one : curves) {
     if (one.kind == ModelKind::full) draw_coefficients(folder / "coefficients", one.curve);
   }
   example::write_text(folder / "curve.csv", csv(curves));
-  example::write_text(folder / "curve.json", json(curves, as_ordered, options));
+  example::write_text(folder / "curve.json", json(curves, as_commanded, options));
 }
 
 }  // namespace calibrate_program

@@ -43,11 +43,11 @@ std::string row(const std::string& output, const std::vector<std::string>& known
     if (has(name)) sum += (sum.empty() ? "" : " + ") + name + factor;
   };
   add(output + "_offset", wheels ? "/period" : "");
-  for (const char* order : {"dx", "dy", "dt"}) {
-    if (wheels && order[1] == 'y') continue;  // they cannot be told to go sideways
-    const std::string o = "o" + std::string(order).substr(1);
-    add(output + "_per_" + order, "*" + o);
-    add(output + "_per_last_" + order, wheels ? "*" + o : "*last_" + o);
+  for (const char* command : {"dx", "dy", "dt"}) {
+    if (wheels && command[1] == 'y') continue;  // they cannot be told to go sideways
+    const std::string o = "o" + std::string(command).substr(1);
+    add(output + "_per_" + command, "*" + o);
+    add(output + "_per_last_" + command, wheels ? "*" + o : "*last_" + o);
   }
   return sum.empty() ? "0" : sum;
 }
@@ -105,22 +105,22 @@ void write_states(std::ostream& out, const FileLayout& layout, const std::array<
 std::string heading(const FileLayout& layout) { return times("th", pose_states(layout)[2].column.factor); }
 
 void write_walk(std::ostream& out, const std::vector<std::string>& known, bool previous, const FileLayout& layout) {
-  constexpr std::array<const char*, 3> inputs{"order_forward", "order_lateral", "order_turn"}, orders{"ox", "oy", "ot"};
+  constexpr std::array<const char*, 3> inputs{"order_forward", "order_lateral", "order_turn"}, commands{"ox", "oy", "ot"};
   out << "kind   = \"map\"\n";
   if (layout.many)
     out << "sequence = \"seq\"\nmeasured = \"after step\"  # the pose of a row is that at its cycle's end\n";
   out << "\n[inputs]\n";
-  for (std::size_t i = 0; i < 3; ++i) out << inputs[i] << " = " << quoted(layout.columns.orders[i].name) << "\n";
-  out << "\n[let]  # the order of a cycle [m, m, rad], and what comes of it\n";
+  for (std::size_t i = 0; i < 3; ++i) out << inputs[i] << " = " << quoted(layout.columns.commands[i].name) << "\n";
+  out << "\n[let]  # the command of a cycle [m, m, rad], and what comes of it\n";
   for (std::size_t i = 0; i < 3; ++i) {
-    out << orders[i] << " = " << quoted(times(inputs[i], layout.steps_per_cycle * layout.columns.orders[i].factor))
+    out << commands[i] << " = " << quoted(times(inputs[i], layout.steps_per_cycle * layout.columns.commands[i].factor))
         << "\n";
   }
   for (const char* moved : {"dx", "dy", "dt"}) out << moved << " = " << quoted(row(moved, known, false)) << "\n";
   out << "facing = " << quoted(heading(layout)) << "\n";
   std::string last;
   for (std::size_t i = 0; i < 3 && previous; ++i) {
-    last += "last_" + std::string(orders[i]) + " = { next = \"" + orders[i] + "\", initial = 0, unit = \"" +
+    last += "last_" + std::string(commands[i]) + " = { next = \"" + commands[i] + "\", initial = 0, unit = \"" +
             (i < 2 ? "m" : "rad") + "\" }\n";
   }
   write_states(out, layout, {"dx*cos(facing) - dy*sin(facing)", "dx*sin(facing) + dy*cos(facing)", "dt"}, "next", last);
@@ -136,9 +136,9 @@ void write_planar(std::ostream& out, const FileLayout& layout) {
 
 void write_wheels(std::ostream& out, const std::vector<std::string>& known, const FileLayout& layout,
                   const LoadOptions& options) {
-  const auto& columns = layout.columns.orders;
+  const auto& columns = layout.columns.commands;
   out << "kind   = \"ode\"\ntime   = \"t_s\"\n\n[inputs]\nleft  = " << quoted(columns[0].name)
-      << "\nright = " << quoted(columns[1].name) << "\n\n[let]  # speeds as ordered, and what comes of them\n"
+      << "\nright = " << quoted(columns[1].name) << "\n\n[let]  # speeds as commanded, and what comes of them\n"
       << "ox = " << quoted(times("(left + right)/2", columns[0].factor))
       << "\not = " << quoted(times("(right - left)/base", columns[0].factor)) << "\n";
   constexpr std::array<const char*, 3> names{"forward", "lateral", "turning"}, rows{"dx", "dy", "dt"};
@@ -163,7 +163,7 @@ std::string diagnose_model(const MotionFile& file, const std::vector<bool>& dete
     if (wheels) {
       write_wheels(out, symbols<M>(), layout, options);
     } else {
-      write_walk(out, symbols<M>(), file.kind == ModelKind::previous_order, layout);
+      write_walk(out, symbols<M>(), file.kind == ModelKind::previous_command, layout);
     }
     write_parameters<M>(out, file, determined, wheels);
   });

@@ -9,8 +9,8 @@
 
 namespace calibrate_program {
 
-/// A model file (TOML, "surefoot.model/1") for recordings laid out like these. Coefficients that the orders do not
-/// determine are fixed. Wheels make an ode, whose previous order is the present one.
+/// A model file (TOML, "surefoot.model/1") for recordings laid out like these. Coefficients that the commands do not
+/// determine are fixed. Wheels make an ode, whose previous command is the present one.
 std::string diagnose_model(const MotionFile& file, const std::vector<bool>& determined, const FileLayout& layout,
                            const LoadOptions& options);
 

@@ -14,7 +14,7 @@ namespace {
 using Sequences = std::span<const surefoot::WalkSequence>;
 
 /// Measured x, y, and from there to the predicted position, one line per sequence.
-std::string block(const surefoot::PreviousOrderCorrection& model, Sequences sequences) {
+std::string block(const surefoot::PreviousCommandCorrection& model, Sequences sequences) {
   std::ostringstream out;
   for (const surefoot::WalkSequence& sequence : sequences) {
     const auto measured = sequence.poses.col(sequence.cycles() - 1);
@@ -26,13 +26,13 @@ std::string block(const surefoot::PreviousOrderCorrection& model, Sequences sequ
 }
 
 /// Both panels show the same square.
-std::string ranges(const surefoot::PreviousOrderCorrection& model, Sequences sequences) {
+std::string ranges(const surefoot::PreviousCommandCorrection& model, Sequences sequences) {
   surefoot::Vec<2> low = surefoot::Vec<2>::Zero(), high = low;
   for (const surefoot::WalkSequence& sequence : sequences) {
     for (const surefoot::Vec<2>& point :
          {surefoot::Vec<2>(sequence.poses.col(sequence.cycles() - 1).head<2>()),
           predict_final_pose(model, sequence).position(),
-          predict_final_pose(surefoot::PreviousOrderCorrection(), sequence).position()}) {
+          predict_final_pose(surefoot::PreviousCommandCorrection(), sequence).position()}) {
       low = low.cwiseMin(point);
       high = high.cwiseMax(point);
     }
@@ -60,16 +60,16 @@ std::string panel(const std::string& title, double error, int index) {
 
 }  // namespace
 
-void draw_final_poses(const std::filesystem::path& base, const surefoot::PreviousOrderCorrection& model,
+void draw_final_poses(const std::filesystem::path& base, const surefoot::PreviousCommandCorrection& model,
                       Sequences sequences, bool kept_aside) {
-  const surefoot::PreviousOrderCorrection nominal;
+  const surefoot::PreviousCommandCorrection nominal;
   std::string commands = "set multiplot layout 1,2 title 'Final positions of " + std::to_string(sequences.size()) +
                          (kept_aside ? " sequences kept aside" : " sequences, fitted to") +
                          " (root mean square error above)'\n"
                          "set size ratio -1\nset grid lc rgb '#e6e6e6' lt 1\n"
                          "set key below\nset xlabel 'left of the start [m]'\nset ylabel 'ahead of it [m]'\n" +
                          ranges(model, sequences);
-  commands += panel("orders as they are", final_pose_error(nominal, sequences).position, 0);
+  commands += panel("commands as they are", final_pose_error(nominal, sequences).position, 0);
   commands += panel("corrected", final_pose_error(model, sequences).position, 1);
   example::draw(base, commands + "unset multiplot\n", block(nominal, sequences) + block(model, sequences), 1100, 640);
 }

@@ -9,9 +9,9 @@
 
 namespace calibrate_program {
 
-/// Draws BASE.svg and BASE.png: left by the orders as they are, right by the model; a line joins what belongs together.
+/// Draws BASE.svg and BASE.png: left by the commands as they are, right by the model; a line joins what belongs together.
 /// `kept_aside`: the sequences were not fitted to. Throws example::UsageError if gnuplot is missing.
-void draw_final_poses(const std::filesystem::path& base, const surefoot::PreviousOrderCorrection& model,
+void draw_final_poses(const std::filesystem::path& base, const surefoot::PreviousCommandCorrection& model,
                       std::span<const surefoot::WalkSequence> sequences, bool kept_aside);
 
 }  // namespace calibrate_program

@@ -18,7 +18,7 @@ namespace {
 constexpr const char* formats = R"(Files that are read:
   many sequences in one file: columns seq, cycle, order_dx_m, order_dy_m, order_dtheta_rad, and at the end of each
   row's cycle x_m, y_m, theta_rad (empty: not measured). Each sequence starts at the origin, looking along x;
-  one sequence per file (no column seq): the orders of a row lead from its pose to that of the next row;
+  one sequence per file (no column seq): the commands of a row lead from its pose to that of the next row;
   two wheels: one sequence per file with t_s, --wheels LEFT,RIGHT and --wheel-base M.
 x is forward, y to the left, angles counterclockwise; columns in _cm and _deg are converted.
 Writes motion.json, motion.toml (for surefoot-diagnose) and final_poses.svg and .png.)";

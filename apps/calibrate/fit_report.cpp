@@ -30,7 +30,7 @@ std::string coefficients(const FittedWalk& fitted) {
     const std::string name = std::string(info.name) + (info.unit == "1" ? "" : " [" + std::string(info.unit) + "]");
     add(text, "%-24s %12.4g %12.2g %12.4g%s\n", name.c_str(), file.parameters[i], std::sqrt(file.covariance(i, i)),
         fitted.by_other_method[i],
-        fitted.determined[static_cast<std::size_t>(i)] ? "" : "  not determined by these orders");
+        fitted.determined[static_cast<std::size_t>(i)] ? "" : "  not determined by these commands");
     ++i;
   }
   return text;
@@ -47,7 +47,7 @@ std::string noise(const FittedWalk& fitted) {
   switch (chosen.growth) {
     case surefoot::NoiseGrowth::constant:
       term(noise.constant);
-      text += " whatever the order.\n";
+      text += " whatever the command.\n";
       break;
     case surefoot::NoiseGrowth::with_speed:
       term(noise.per_speed);
@@ -97,7 +97,7 @@ std::string fit_report(const FittedWalk& fitted) {
   add(text, "%zu sequences. Root mean square errors on those left out of the fit:\n\n", file.sequences);
   text += judged_table(file.heldout);
   if (file.heldout.front().chosen) {
-    text += "No model predicts better than the orders as they are.\n";
+    text += "No model predicts better than the commands as they are.\n";
   }
   if (!file.test.empty()) {
     text += "\nErrors on the sequences kept aside, fitted on all others:\n\n" + judged_table(file.test);

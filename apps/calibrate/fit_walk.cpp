@@ -24,7 +24,7 @@ std::vector<JudgedModel> compare(Sequences sequences, const PredictorOptions& op
   surefoot::CompareOptions compare;
   compare.predictor = options;
   const auto scores = surefoot::compare_models<surefoot::ProportionalCorrection, surefoot::SimpleLinearCorrection,
-                                               surefoot::FullLinearCorrection, surefoot::PreviousOrderCorrection>(
+                                               surefoot::FullLinearCorrection, surefoot::PreviousCommandCorrection>(
       sequences, compare, executor, settings.seed);
   std::vector<JudgedModel> judged;
   for (const surefoot::ModelScore& score : scores) {
@@ -62,7 +62,7 @@ M published_model(Sequences sequences, const PredictorOptions& options, const Fi
 /// Errors of all models on sequences that were kept aside.
 std::vector<JudgedModel> judge_on_test(Sequences sequences, Sequences test, const PredictorOptions& options,
                                        const FitSettings& settings, const StoppableThreads& executor) {
-  std::vector<JudgedModel> judged{judge(surefoot::detail::AsOrdered{}, "orders as they are", 0, test)};
+  std::vector<JudgedModel> judged{judge(surefoot::detail::AsOrdered{}, "commands as they are", 0, test)};
   for (const ModelKind kind : all_models) {
     with_model(kind, [&]<surefoot::MotionModel M>() {
       const M model = options.method == FitMethod::published
@@ -114,10 +114,10 @@ bool headings_of_clock(Sequences sequences) {
   return measured >= 3;
 }
 
-surefoot::Vec<3> order_scale(Sequences sequences) {
+surefoot::Vec<3> command_scale(Sequences sequences) {
   surefoot::Vec<3> scale = surefoot::Vec<3>::Zero();
   for (const WalkSequence& sequence : sequences) {
-    scale = scale.cwiseMax(sequence.orders.cwiseAbs().rowwise().maxCoeff());
+    scale = scale.cwiseMax(sequence.commands.cwiseAbs().rowwise().maxCoeff());
   }
   if (scale[0] == 0) scale[0] = scale[1] > 0 ? scale[1] : 0.08;
   if (scale[1] == 0) scale[1] = scale[0];
@@ -144,7 +144,7 @@ PredictorOptions predictor_options(Sequences sequences, const FitSettings& setti
   const double tolerance = settings.heading_tolerance.value_or(headings_of_clock(sequences) ? hour / 2 : 0);
   options.calibration.model.accuracy = {
       .position = settings.position_accuracy, .heading = settings.heading_accuracy, .heading_tolerance = tolerance};
-  options.calibration.noise_scale = order_scale(sequences);
+  options.calibration.noise_scale = command_scale(sequences);
   options.calibration.first_noise = options.calibration.noise_scale / 8;
   if (settings.heading_tolerance) options.published.heading_tolerance = *settings.heading_tolerance;
   return options;

@@ -31,7 +31,7 @@ struct FittedWalk {
   MotionFile file;
   surefoot::NoiseChoice noise;
   Eigen::VectorXd by_other_method;  // the parameters
-  std::vector<bool> determined;     // whether the orders tell the parameter
+  std::vector<bool> determined;     // whether the commands tell the parameter
   std::vector<std::string> absurd;  // sentences about sequences that end where no model puts them
   bool headings_of_clock = false;   // recognised as such
 };
@@ -47,8 +47,8 @@ FittedWalk fit_walk(std::span<const surefoot::WalkSequence> sequences, std::span
 /// True if every heading is a multiple of 30 degrees: read off a clock.
 bool headings_of_clock(std::span<const surefoot::WalkSequence> sequences);
 
-/// Largest order of each component [m, m, rad]: what counts as full speed.
-surefoot::Vec<3> order_scale(std::span<const surefoot::WalkSequence> sequences);
+/// Largest command of each component [m, m, rad]: what counts as full speed.
+surefoot::Vec<3> command_scale(std::span<const surefoot::WalkSequence> sequences);
 
 /// How many coordinates of poses were measured.
 std::size_t count_readings(std::span<const surefoot::WalkSequence> sequences);

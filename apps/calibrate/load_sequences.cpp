@@ -18,7 +18,7 @@ using surefoot::MotionError;
 using surefoot::Pose2;
 using surefoot::WalkSequence;
 
-constexpr double largest = 1e4;  // what no order and no pose of a walk exceeds [m, rad]
+constexpr double largest = 1e4;  // what no command and no pose of a walk exceeds [m, rad]
 
 struct Rows {
   std::size_t from = 0, to = 0;
@@ -82,33 +82,33 @@ void check_cycles(const Csv& csv, const Rows& rows) {
 }
 
 /// Column by column: x, y, turn [m, m, rad] of a whole cycle, row by row.
-class OrderReader {
+class CommandReader {
  public:
-  OrderReader(const Csv& csv, const FileLayout& layout, const LoadOptions& options)
+  CommandReader(const Csv& csv, const FileLayout& layout, const LoadOptions& options)
       : csv_(csv), layout_(layout), options_(options) {
     for (std::size_t i = 0; i < 3; ++i)
-      columns_[i] = &numbers(csv, layout.columns.orders[i].name, "which holds orders");
+      columns_[i] = &numbers(csv, layout.columns.commands[i].name, "which holds commands");
   }
 
-  surefoot::Vec<3> order(std::size_t row) const {
-    const surefoot::Vec<3> read = options_.columns.wheels.empty() ? walk_order(row) : wheel_order(row);
+  surefoot::Vec<3> command(std::size_t row) const {
+    const surefoot::Vec<3> read = options_.columns.wheels.empty() ? walk_command(row) : wheel_command(row);
     if (!(read.cwiseAbs().maxCoeff() <= largest)) {
-      fail(csv_, row, "an order of more than " + number_text(largest) + " m or rad; check the numbers and their units");
+      fail(csv_, row, "a command of more than " + number_text(largest) + " m or rad; check the numbers and their units");
     }
     return read;
   }
 
  private:
   double value(std::size_t i, std::size_t row) const {
-    const Column& column = layout_.columns.orders[i];
-    return column.factor * value_at(csv_, *columns_[i], column.name, row, "every cycle needs its order");
+    const Column& column = layout_.columns.commands[i];
+    return column.factor * value_at(csv_, *columns_[i], column.name, row, "every cycle needs its command");
   }
 
-  surefoot::Vec<3> walk_order(std::size_t row) const {
+  surefoot::Vec<3> walk_command(std::size_t row) const {
     return layout_.steps_per_cycle * surefoot::Vec<3>(value(0, row), value(1, row), value(2, row));
   }
 
-  surefoot::Vec<3> wheel_order(std::size_t row) const {
+  surefoot::Vec<3> wheel_command(std::size_t row) const {
     const double now = value(2, row), next = value(2, row + 1), left = value(0, row), right = value(1, row);
     if (!(next > now)) {
       fail(csv_, row + 1,
@@ -172,13 +172,13 @@ double steps_of(const Csv& csv, const LoadOptions& options) {
                     "' must give a number above 0, at most 1000");
 }
 
-WalkSequence read_sequence(const Csv& csv, const Rows& rows, const OrderReader& orders, FileLayout& layout) {
+WalkSequence read_sequence(const Csv& csv, const Rows& rows, const CommandReader& commands, FileLayout& layout) {
   WalkSequence sequence;
   const Eigen::Matrix3Xd poses = read_poses(csv, layout.columns, rows);
   const std::size_t cycles = layout.many ? rows.count() : rows.count() - 1;
-  sequence.orders.resize(3, static_cast<Eigen::Index>(cycles));
+  sequence.commands.resize(3, static_cast<Eigen::Index>(cycles));
   for (std::size_t i = 0; i < cycles; ++i) {
-    sequence.orders.col(static_cast<Eigen::Index>(i)) = orders.order(rows.from + i);
+    sequence.commands.col(static_cast<Eigen::Index>(i)) = commands.command(rows.from + i);
   }
   sequence.poses = layout.many ? poses : seen_from_start(csv, rows, poses, layout.measured_start);
   return sequence;
@@ -197,10 +197,10 @@ LoadedSequences sequences_of(const Csv& csv, const LoadOptions& options) {
     throw MotionError(csv.file + ": only " + std::to_string(csv.rows()) + " row(s) of numbers, but at least " +
                       std::to_string(least) + " are needed");
   }
-  const OrderReader orders(csv, layout, options);
+  const CommandReader commands(csv, layout, options);
   for (const Rows& rows : stretches(csv, layout.many)) {
     check_cycles(csv, rows);
-    WalkSequence sequence = read_sequence(csv, rows, orders, layout);
+    WalkSequence sequence = read_sequence(csv, rows, commands, layout);
     sequence.name = csv.file;
     if (layout.many) sequence.name = number_text(numbers(csv, "seq", "")[rows.from]) + " of " + csv.file;
     if (!options.columns.wheels.empty()) {

@@ -18,7 +18,7 @@ struct LoadOptions {
   double usual_steps = 1;      // if they say nothing
   double wheel_base = 0;       // [m], with wheels
   bool final_only = false;
-  bool poses_needed = true;  // a file of orders alone is fine otherwise
+  bool poses_needed = true;  // a file of commands alone is fine otherwise
 };
 
 /// How the files were read: what a model file for the same files must say.

@@ -1,4 +1,4 @@
-// surefoot-calibrate: a motion model from orders and a tape measure, with its noise.
+// surefoot-calibrate: a motion model from commands and a tape measure, with its noise.
 #include <CLI/CLI.hpp>
 
 #include "../common/run_program.hpp"
@@ -8,14 +8,14 @@ namespace {
 
 constexpr const char* usage = R"(Example: plan an experiment, walk it, measure where the robot ends, calibrate.
   surefoot-calibrate plan --out walk
-  surefoot-calibrate sheet --orders walk/orders.csv --sheet walk/sheet.csv --out walk/walks.csv
+  surefoot-calibrate sheet --commands walk/commands.csv --sheet walk/sheet.csv --out walk/walks.csv
   surefoot-calibrate fit --out walk/fitted walk/walks.csv
 `surefoot-calibrate fit --help` tells which files it reads.)";
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program{"A motion model from orders and measured poses, with its noise", "surefoot-calibrate"};
+  CLI::App program{"A motion model from commands and measured poses, with its noise", "surefoot-calibrate"};
   program.require_subcommand(1);
   program.footer(usage);
   calibrate_program::add_plan(program);

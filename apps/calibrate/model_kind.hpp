@@ -13,10 +13,10 @@
 namespace calibrate_program {
 
 /// From few coefficients to many.
-enum class ModelKind : std::uint8_t { proportional, simple, full, previous_order };
+enum class ModelKind : std::uint8_t { proportional, simple, full, previous_command };
 
 inline constexpr std::array<ModelKind, 4> all_models{ModelKind::proportional, ModelKind::simple, ModelKind::full,
-                                                     ModelKind::previous_order};
+                                                     ModelKind::previous_command};
 
 inline constexpr std::string_view name_of(ModelKind kind) {
   constexpr std::array<std::string_view, 4> names{"proportional", "simple", "full", "previous-order"};
@@ -40,20 +40,20 @@ auto with_model(ModelKind kind, Work&& work) {
       return work.template operator()<surefoot::SimpleLinearCorrection>();
     case ModelKind::full:
       return work.template operator()<surefoot::FullLinearCorrection>();
-    case ModelKind::previous_order:
+    case ModelKind::previous_command:
       break;
   }
-  return work.template operator()<surefoot::PreviousOrderCorrection>();
+  return work.template operator()<surefoot::PreviousCommandCorrection>();
 }
 
 /// Any of the models as the largest of them.
 template <int Count>
-surefoot::PreviousOrderCorrection embedded(const surefoot::LinearCorrection<Count>& model) {
+surefoot::PreviousCommandCorrection embedded(const surefoot::LinearCorrection<Count>& model) {
   surefoot::Vec<21> parameters = surefoot::Vec<21>::Zero();
   for (Eigen::Index row = 0; row < 3; ++row) parameters.segment<4>(4 * row) = model.matrix().row(row);
-  return surefoot::PreviousOrderCorrection::from_parameters(parameters);
+  return surefoot::PreviousCommandCorrection::from_parameters(parameters);
 }
 
-inline surefoot::PreviousOrderCorrection embedded(const surefoot::PreviousOrderCorrection& model) { return model; }
+inline surefoot::PreviousCommandCorrection embedded(const surefoot::PreviousCommandCorrection& model) { return model; }
 
 }  // namespace calibrate_program

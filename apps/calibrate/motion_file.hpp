@@ -24,7 +24,7 @@ namespace calibrate_program {
 /// Errors of final poses of sequences that a model was not fitted to.
 struct JudgedModel {
   std::string model;
-  int parameters = 0;           // 0: the orders as they are
+  int parameters = 0;           // 0: the commands as they are
   double position = 0;          // root mean square [m]
   double position_error = NAN;  // its standard error [m]; NaN: not known
   double heading = NAN;         // root mean square [rad]; NaN: not measured
@@ -33,13 +33,13 @@ struct JudgedModel {
 
 struct MotionFile {
   ModelKind kind = ModelKind::full;
-  surefoot::PreviousOrderCorrection model;  // any kind; coefficients it does not have are 0
+  surefoot::PreviousCommandCorrection model;  // any kind; coefficients it does not have are 0
   Eigen::VectorXd parameters;               // of the kind's own vector
   Eigen::MatrixXd covariance;               // of those
   surefoot::MotionNoise noise;
   bool noise_shape_known = false;
   surefoot::PoseAccuracy accuracy;  // of the poses it was calibrated from
-  double steps_per_cycle = 1;       // a perfect robot moves by this times its order in a cycle
+  double steps_per_cycle = 1;       // a perfect robot moves by this times its command in a cycle
   std::string method;               // "published", "likelihood" or "update"
   std::size_t sequences = 0;        // calibrated from
   std::size_t readings = 0;         // coordinates measured in them
@@ -234,15 +234,15 @@ inline std::string motion_file_text(const MotionFile& file) {
   Json json{{"schema", "surefoot.motion/1"},
             {"model", name_of(file.kind)},
             {"meaning",
-             "displacement of a cycle (dx forward [m], dy left [m], dt counterclockwise [rad]) from the order of the "
+             "displacement of a cycle (dx forward [m], dy left [m], dt counterclockwise [rad]) from the command of the "
              "cycle and of the last one, each times steps_per_cycle"},
             {"steps_per_cycle", file.steps_per_cycle}};
   json["parameters"] = with_model(file.kind, [&]<surefoot::MotionModel M>() {
     return detail::parameters_to_json<M>(file.parameters, file.covariance);
   });
   json["noise"] = {{"meaning",
-                    "standard deviation of dx, dy, dt in a cycle [m, m, rad]: constant + per_speed * |order / scale| + "
-                    "per_acceleration * |change of order / scale|"},
+                    "standard deviation of dx, dy, dt in a cycle [m, m, rad]: constant + per_speed * |command / scale| + "
+                    "per_acceleration * |change of command / scale|"},
                    {"shape", surefoot::name_of(file.noise.shape)},
                    {"shape_known", file.noise_shape_known},
                    {"constant", detail::to_json(file.noise.constant)},

@@ -1,4 +1,4 @@
-// `plan`: the orders of an experiment, and the sheet to note where the robot ended.
+// `plan`: the commands of an experiment, and the sheet to note where the robot ended.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -27,8 +27,8 @@ struct Options {
   std::filesystem::path motion, out;
 };
 
-surefoot::OrderBounds bounds_of(const Options& options) {
-  surefoot::OrderBounds bounds;
+surefoot::CommandBounds bounds_of(const Options& options) {
+  surefoot::CommandBounds bounds;
   const auto set = [](const std::vector<double>& given, surefoot::Vec<3>& bound) {
     for (std::size_t i = 0; i < given.size(); ++i) bound[static_cast<Eigen::Index>(i)] = given[i];
   };
@@ -39,35 +39,35 @@ surefoot::OrderBounds bounds_of(const Options& options) {
 }
 
 std::vector<Eigen::Matrix3Xd> plan_of(const Options& options, const MotionFile& robot) {
-  const surefoot::OrderBounds bounds = bounds_of(options);
+  const surefoot::CommandBounds bounds = bounds_of(options);
   if (options.kind == "wandering") {
-    return surefoot::plan_orders(bounds, options.sequences, options.cycles, options.seed);
+    return surefoot::plan_commands(bounds, options.sequences, options.cycles, options.seed);
   }
   check(bounds);
   surefoot::MotionTracker<surefoot::FullLinearCorrection> tracker;
   tracker.noise = robot.noise;
   if (!options.motion.empty()) tracker.model = robot.model.present();
-  return surefoot::plan_informative_orders(
+  return surefoot::plan_informative_commands(
       tracker, {.bounds = bounds, .sequences = options.sequences, .cycles = options.cycles}, options.seed);
 }
 
 void run(const Options& options) {
   const MotionFile robot = robot_of(options.motion);
-  const std::vector<Eigen::Matrix3Xd> orders = plan_of(options, robot);
-  const surefoot::PreviousOrderCorrection model =
-      options.motion.empty() ? surefoot::PreviousOrderCorrection() : robot.model;
+  const std::vector<Eigen::Matrix3Xd> commands = plan_of(options, robot);
+  const surefoot::PreviousCommandCorrection model =
+      options.motion.empty() ? surefoot::PreviousCommandCorrection() : robot.model;
   constexpr int runs = 40;
-  const surefoot::Box<2> space = surefoot::space_needed(model, robot.noise, std::span(orders), runs, options.seed);
-  example::write_text(options.out / "orders.csv", orders_csv(orders, options.steps_per_cycle));
-  example::write_text(options.out / "sheet.csv", blank_sheet_csv(orders.size()));
-  example::write_text(options.out / "sheet.html", sheet_page(orders, space));
+  const surefoot::Box<2> space = surefoot::space_needed(model, robot.noise, std::span(commands), runs, options.seed);
+  example::write_text(options.out / "commands.csv", commands_csv(commands, options.steps_per_cycle));
+  example::write_text(options.out / "sheet.csv", blank_sheet_csv(commands.size()));
+  example::write_text(options.out / "sheet.html", sheet_page(commands, space));
   std::printf(
       "%d sequences of %d cycles. In 99 %% of walks %s stays within %.1f m ahead of the start, %.1f m behind "
       "it,\n%.1f m to its left and %.1f m to its right.\n",
       options.sequences, options.cycles, options.motion.empty() ? "a robot that does what it is told" : "the robot",
       space.high()[0], -space.low()[0], space.high()[1], -space.low()[1]);
   std::printf(
-      "In %s: orders.csv (give the robot one sequence after the other), sheet.html (print and fill in), "
+      "In %s: commands.csv (give the robot one sequence after the other), sheet.html (print and fill in), "
       "sheet.csv (or fill in this).\n",
       options.out.c_str());
 }
@@ -90,18 +90,18 @@ void add_plan(CLI::App& program) {
       ->check(CLI::IsMember({"wandering", "informative"}))
       ->capture_default_str();
   command
-      ->add_option("--steps-per-cycle", options->steps_per_cycle, "the file holds orders per step, this many a cycle")
+      ->add_option("--steps-per-cycle", options->steps_per_cycle, "the file holds commands per step, this many a cycle")
       ->check(CLI::Range(1e-3, 1e3))
       ->capture_default_str();
   const auto bounds = [&](const char* name, std::vector<double>& values, const char* what) {
     command->add_option(name, values, what)->delimiter(',')->expected(3);
   };
-  bounds("--low", options->low, "least order of a cycle X,Y,TURN [m,m,rad]; default -0.04,-0.04,-0.4");
-  bounds("--high", options->high, "largest order of a cycle; default 0.08,0.04,0.4");
+  bounds("--low", options->low, "least command of a cycle X,Y,TURN [m,m,rad]; default -0.04,-0.04,-0.4");
+  bounds("--high", options->high, "largest command of a cycle; default 0.08,0.04,0.4");
   bounds("--acceleration", options->acceleration, "largest change from cycle to cycle; default 0.04,0.02,0.3");
   command->add_option("--motion", options->motion, "motion.json of the robot, to say what space it needs")
       ->check(CLI::ExistingFile);
-  command->add_option("--seed", options->seed, "same seed, same orders")->capture_default_str();
+  command->add_option("--seed", options->seed, "same seed, same commands")->capture_default_str();
   command->add_option("--out", options->out, "folder for the plan, made if needed")->required();
   command->callback([options] { run(*options); });
 }

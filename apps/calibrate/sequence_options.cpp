@@ -15,16 +15,16 @@ void add_reading_options(CLI::App& command, SequenceOptions& options) {
   command.add_option("files", options.files, "recordings (CSV)")->required();
   command
       .add_option("--steps-per-cycle", options.load.steps_per_cycle,
-                  "a perfect robot moves by this times its order in a cycle; default: what a first line "
+                  "a perfect robot moves by this times its command in a cycle; default: what a first line "
                   "`# steps_per_cycle: N` says, else 1")
       ->check(CLI::Range(1e-3, 1e3));
-  command.add_option("--orders", columns.orders, "columns of the orders X,Y,TURN, if they are not recognised")
+  command.add_option("--commands", columns.commands, "columns of the commands X,Y,TURN, if they are not recognised")
       ->delimiter(',')
       ->expected(3);
   command.add_option("--pose", columns.pose, "columns of the pose X,Y,HEADING (or X,Y), if they are not recognised")
       ->delimiter(',')
       ->expected(2, 3);
-  command.add_option("--wheels", columns.wheels, "columns of the speeds of two wheels LEFT,RIGHT, instead of orders")
+  command.add_option("--wheels", columns.wheels, "columns of the speeds of two wheels LEFT,RIGHT, instead of commands")
       ->delimiter(',')
       ->expected(2);
   command.add_option("--wheel-base", options.load.wheel_base, "[m] between the wheels")->check(CLI::Range(1e-3, 1e3));
@@ -68,7 +68,7 @@ void check(const SequenceOptions& options) {
   if (!wheels && options.load.wheel_base > 0) {
     throw UsageError("--wheel-base is for wheels; name the columns of their speeds by --wheels LEFT,RIGHT");
   }
-  if (wheels && !options.load.columns.orders.empty()) throw UsageError("--orders and --wheels exclude each other");
+  if (wheels && !options.load.columns.commands.empty()) throw UsageError("--commands and --wheels exclude each other");
   if (wheels && options.load.steps_per_cycle > 0) throw UsageError("--steps-per-cycle is not for --wheels");
 }
 

@@ -71,7 +71,7 @@ std::map<double, surefoot::Vec<3>> poses_of(const Csv& sheet, const std::map<dou
       throw MotionError(sheet.file + ", line " + std::to_string(sheet.lines[row]) + ": " + what);
     };
     const std::string name = "sequence " + number_text(number[row]);
-    if (!known.contains(number[row])) fail(name + " is not among the orders; copy its number from there");
+    if (!known.contains(number[row])) fail(name + " is not among the commands; copy its number from there");
     const double x_here = *length_factor(x.name) * (*x.values)[row], y_here = *length_factor(y.name) * (*y.values)[row];
     if (std::isnan(x_here) != std::isnan(y_here)) fail(name + " has only one of x and y; fill in both or none");
     const surefoot::Vec<3> pose(x_here, y_here, heading ? heading_of(sheet, row, *heading) : std::nan(""));
@@ -82,22 +82,22 @@ std::map<double, surefoot::Vec<3>> poses_of(const Csv& sheet, const std::map<dou
 
 }  // namespace
 
-MergedSheet merge_sheet(const Csv& orders, const Csv& sheet) {
+MergedSheet merge_sheet(const Csv& commands, const Csv& sheet) {
   LoadOptions options;
   options.poses_needed = false;
-  const FileLayout layout = sequences_of(orders, options).layout;  // throws if the orders are no good
-  if (!layout.many) throw MotionError(orders.file + ": column 'seq' is missing; give the orders.csv that `plan` wrote");
-  const std::vector<double>& number = numbers(orders, "seq", "");
+  const FileLayout layout = sequences_of(commands, options).layout;  // throws if the commands are no good
+  if (!layout.many) throw MotionError(commands.file + ": column 'seq' is missing; give the commands.csv that `plan` wrote");
+  const std::vector<double>& number = numbers(commands, "seq", "");
   std::map<double, std::size_t> last_row;
-  for (std::size_t row = 0; row < orders.rows(); ++row) last_row[number[row]] = row;
+  for (std::size_t row = 0; row < commands.rows(); ++row) last_row[number[row]] = row;
   const auto poses = poses_of(sheet, last_row);
   MergedSheet merged;
-  for (const auto& [key, text] : orders.meta) merged.walks += "# " + key + ": " + text + "\n";
+  for (const auto& [key, text] : commands.meta) merged.walks += "# " + key + ": " + text + "\n";
   merged.walks += "seq,cycle";
-  for (const Column& column : layout.columns.orders) merged.walks += "," + column.name;
+  for (const Column& column : layout.columns.commands) merged.walks += "," + column.name;
   merged.walks += ",x_m,y_m,theta_rad\n";
   int cycle = 0;
-  for (std::size_t row = 0; row < orders.rows(); ++row) {
+  for (std::size_t row = 0; row < commands.rows(); ++row) {
     cycle = row > 0 && number[row] == number[row - 1] ? cycle + 1 : 0;
     const auto pose = poses.find(number[row]);
     const bool measured = pose != poses.end() && std::isfinite(pose->second[0]);
@@ -105,8 +105,8 @@ MergedSheet merge_sheet(const Csv& orders, const Csv& sheet) {
     if (last) ++(measured ? merged.sequences : merged.skipped);
     if (!measured) continue;
     merged.walks += number_text(number[row]) + "," + std::to_string(cycle);
-    for (const Column& column : layout.columns.orders) {
-      merged.walks += "," + number_text(numbers(orders, column.name, "")[row]);
+    for (const Column& column : layout.columns.commands) {
+      merged.walks += "," + number_text(numbers(commands, column.name, "")[row]);
     }
     for (const double value : pose->second)
       merged.walks += "," + (last ? number_text(std::round(1e6 * value) / 1e6) : std::string());
@@ -121,12 +121,12 @@ MergedSheet merge_sheet(const Csv& orders, const Csv& sheet) {
 namespace {
 
 struct Options {
-  std::filesystem::path orders, sheet, out;
+  std::filesystem::path commands, sheet, out;
 };
 
 void run(const Options& options) {
   const MergedSheet merged =
-      merge_sheet(diagnose_program::read_csv(options.orders), diagnose_program::read_csv(options.sheet));
+      merge_sheet(diagnose_program::read_csv(options.commands), diagnose_program::read_csv(options.sheet));
   if (merged.skipped > 0) {
     std::cerr << "warning: " << merged.skipped << " of " << merged.skipped + merged.sequences
               << " sequences have no position in the sheet and are left out\n";
@@ -140,7 +140,7 @@ void run(const Options& options) {
 void add_sheet(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("sheet", "Turn a sheet that was filled in into recordings");
-  command->add_option("--orders", options->orders, "orders.csv of the plan")->required();
+  command->add_option("--commands", options->commands, "commands.csv of the plan")->required();
   command
       ->add_option("--sheet", options->sheet,
                    "sheet.csv, filled in: seq, x_cm, y_cm (or x_m, y_m), heading_clock (or heading_deg, heading_rad)")

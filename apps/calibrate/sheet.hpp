@@ -13,8 +13,8 @@ struct MergedSheet {
   std::size_t sequences = 0, skipped = 0;
 };
 
-/// Puts the poses of the sheet behind the last orders of each sequence; sequences without a position are left out.
+/// Puts the poses of the sheet behind the last commands of each sequence; sequences without a position are left out.
 /// Throws surefoot::MotionError that names file, line and column.
-MergedSheet merge_sheet(const diagnose_program::Csv& orders, const diagnose_program::Csv& sheet);
+MergedSheet merge_sheet(const diagnose_program::Csv& commands, const diagnose_program::Csv& sheet);
 
 }  // namespace calibrate_program

@@ -51,7 +51,7 @@ std::string frame() {
 
 }  // namespace
 
-std::string sheet_page(std::span<const Eigen::Matrix3Xd> orders, const surefoot::Box<2>& space) {
+std::string sheet_page(std::span<const Eigen::Matrix3Xd> commands, const surefoot::Box<2>& space) {
   std::string page = top + frame();
   char text[700];
   std::snprintf(
@@ -61,8 +61,8 @@ std::string sheet_page(std::span<const Eigen::Matrix3Xd> orders, const surefoot:
       space.high()[0], -space.low()[0], space.high()[1], -space.low()[1]);
   page += text;
   page +=
-      "<li>For each sequence put the robot on the cross, let it walk on the spot, then give it the orders of the "
-      "sequence (orders.csv) and stop.</li>"
+      "<li>For each sequence put the robot on the cross, let it walk on the spot, then give it the commands of the "
+      "sequence (commands.csv) and stop.</li>"
       "<li>Measure where the point between its feet is, seen from the cross: x ahead and y to the left in cm; negative "
       "behind and to the right.</li>"
       "<li>Note where it looks as the nearest hour of a clock on the floor whose 12 is ahead: 3 is to the right, 9 to "
@@ -70,8 +70,8 @@ std::string sheet_page(std::span<const Eigen::Matrix3Xd> orders, const surefoot:
       "<li>Did it fall or bump into something? Leave the row empty.</li></ol></div>\n"
       "<table><thead><tr><th>No.</th><th>cycles</th><th>x [cm]</th><th>y [cm]</th><th>heading [hour]</th>"
       "<th>remarks</th></tr></thead><tbody>\n";
-  for (std::size_t i = 0; i < orders.size(); ++i) {
-    page += "<tr><td>" + std::to_string(i + 1) + "</td><td>" + std::to_string(orders[i].cols()) +
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    page += "<tr><td>" + std::to_string(i + 1) + "</td><td>" + std::to_string(commands[i].cols()) +
             "</td><td></td><td></td><td></td><td></td></tr>\n";
   }
   return page +

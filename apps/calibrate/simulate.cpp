@@ -32,11 +32,11 @@ void run(const Options& options) {
                                         .heading = options.heading_accuracy,
                                         .heading_tolerance = options.heading_tolerance * std::numbers::pi / 180};
   std::vector<surefoot::WalkSequence> sequences;
-  for (const Eigen::Matrix3Xd& orders :
-       surefoot::plan_orders(surefoot::OrderBounds(), options.sequences, options.cycles, options.seed)) {
+  for (const Eigen::Matrix3Xd& commands :
+       surefoot::plan_commands(surefoot::CommandBounds(), options.sequences, options.cycles, options.seed)) {
     surefoot::Rng rng = surefoot::Rng(options.seed, sequences.size()).stream(2);
     sequences.push_back(simulate_walk(robot.model, robot.noise, accuracy,
-                                      surefoot::planned_sequence(orders, !options.final_only), rng));
+                                      surefoot::planned_sequence(commands, !options.final_only), rng));
   }
   example::write_text(options.out, walks_csv(sequences, robot.steps_per_cycle));
   std::printf("%s: %d sequences of %d cycles\n", options.out.c_str(), options.sequences, options.cycles);
@@ -54,7 +54,7 @@ void add_simulate(CLI::App& program) {
   command->add_option("--cycles", options->cycles, "of each sequence")
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "of orders and noise")->capture_default_str();
+  command->add_option("--seed", options->seed, "of commands and noise")->capture_default_str();
   command->add_option("--motion", options->motion, "motion.json of the robot; default: the robot of the paper");
   command->add_flag("--final-only", options->final_only, "the final pose of each sequence alone");
   command->add_option("--position-accuracy", options->position_accuracy, "[m] of a measured position")

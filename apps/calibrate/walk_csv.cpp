@@ -14,10 +14,10 @@ std::string head(double steps_per_cycle) {
 /// To a thousandth of a millimetre, for people who look at the file.
 std::string rounded(double value) { return number_text(std::round(1e6 * value) / 1e6); }
 
-std::string order_cells(std::size_t sequence, Eigen::Index cycle, const surefoot::Vec<3>& order,
+std::string command_cells(std::size_t sequence, Eigen::Index cycle, const surefoot::Vec<3>& command,
                         double steps_per_cycle) {
   std::string line = std::to_string(sequence) + "," + std::to_string(cycle);
-  for (const double value : order) line += "," + rounded(value / steps_per_cycle);
+  for (const double value : command) line += "," + rounded(value / steps_per_cycle);
   return line;
 }
 
@@ -30,11 +30,11 @@ std::string number_text(double value) {
   return {buffer.data(), end};
 }
 
-std::string orders_csv(std::span<const Eigen::Matrix3Xd> orders, double steps_per_cycle) {
+std::string commands_csv(std::span<const Eigen::Matrix3Xd> commands, double steps_per_cycle) {
   std::string text = head(steps_per_cycle) + "\n";
-  for (std::size_t s = 0; s < orders.size(); ++s) {
-    for (Eigen::Index cycle = 0; cycle < orders[s].cols(); ++cycle) {
-      text += order_cells(s + 1, cycle, orders[s].col(cycle), steps_per_cycle) + "\n";
+  for (std::size_t s = 0; s < commands.size(); ++s) {
+    for (Eigen::Index cycle = 0; cycle < commands[s].cols(); ++cycle) {
+      text += command_cells(s + 1, cycle, commands[s].col(cycle), steps_per_cycle) + "\n";
     }
   }
   return text;
@@ -44,7 +44,7 @@ std::string walks_csv(std::span<const surefoot::WalkSequence> sequences, double 
   std::string text = head(steps_per_cycle) + ",x_m,y_m,theta_rad\n";
   for (std::size_t s = 0; s < sequences.size(); ++s) {
     for (Eigen::Index cycle = 0; cycle < sequences[s].cycles(); ++cycle) {
-      text += order_cells(s + 1, cycle, sequences[s].orders.col(cycle), steps_per_cycle);
+      text += command_cells(s + 1, cycle, sequences[s].commands.col(cycle), steps_per_cycle);
       for (const double value : sequences[s].poses.col(cycle)) text += "," + rounded(value);
       text += "\n";
     }

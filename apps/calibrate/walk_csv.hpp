@@ -12,8 +12,8 @@ namespace calibrate_program {
 /// The shortest text that is read back as the same number; nothing for NaN.
 std::string number_text(double value);
 
-/// seq, cycle, orders; a first line says what orders are multiplied with.
-std::string orders_csv(std::span<const Eigen::Matrix3Xd> orders, double steps_per_cycle);
+/// seq, cycle, commands; a first line says what commands are multiplied with.
+std::string commands_csv(std::span<const Eigen::Matrix3Xd> commands, double steps_per_cycle);
 
 /// The same with poses. Sequences are numbered from 1.
 std::string walks_csv(std::span<const surefoot::WalkSequence> sequences, double steps_per_cycle);

@@ -34,11 +34,13 @@ std::string verdict_part(const Diagnosis& d) {
   if (!d.sentence.empty()) html += "<p class=\"lead\">" + escaped(d.sentence) + "</p>\n";
   html += "</header>\n<div class=\"tiles\">\n";
   const bool effects = !d.effects.empty();
-  html += tile(rounded(d.test_before), effects ? "error before, calibrated model" : "error of the calibrated model");
-  if (effects) html += tile(rounded(d.test_after), "error after, with the effects");
-  if (std::isfinite(d.test_forest)) html += tile(rounded(d.test_forest), "error of a forest instead of effects");
+  html +=
+      tile(rounded(d.held_out_before), effects ? "error before, calibrated model" : "error of the calibrated model");
+  if (effects) html += tile(rounded(d.held_out_after), "error after, with the effects");
+  if (std::isfinite(d.held_out_forest))
+    html += tile(rounded(d.held_out_forest), "error of a forest instead of effects");
   if (std::isfinite(d.noise_floor)) html += tile(rounded(d.noise_floor), "noise floor");
-  html += tile(std::to_string(d.test.size()), "recordings kept aside for these figures");
+  html += tile(std::to_string(d.held_out.size()), "recordings kept aside for these figures");
   return html +
          "</div>\n<p class=\"note\">Errors are those of whole simulations of recordings that were used neither to fit "
          "nor to choose (they may only veto), in units of the noise, or of the spread of the output where the noise is "
@@ -88,7 +90,7 @@ std::string what_part(const Diagnosis& d) {
             "</p>\n<table>\n";
     for (const auto& fit : effect.parameters) html += row({fit.name, with_interval(fit)});
     html += "</table>\n" +
-            element("p", "Takes away " + percent(effect.evidence.heldout_gain) + " of the error (standard error " +
+            element("p", "Takes away " + percent(effect.evidence.gain) + " of the error (standard error " +
                              percent(effect.evidence.gain_stderr) + "), " + p_text(effect.evidence.p_value) +
                              "; chosen in " + percent(effect.evidence.confidence) + " of the repetitions.") +
             "</div>\n";
@@ -148,8 +150,8 @@ std::string ranking_part(const Diagnosis& d) {
   for (const auto& effect : d.effects) chosen.emplace_back(effect.name, effect.attached_to);
   std::vector<Entry> entries;
   for (const auto& one : d.alternatives) {
-    entries.push_back(
-        {effects_text(one.effects), "other", one.indistinguishable ? "cannot be told apart" : "", one.heldout_rmse});
+    entries.push_back({effects_text(one.effects), "other", one.indistinguishable ? "cannot be told apart" : "",
+                       one.cross_validated_rmse});
   }
   double worst = 0;
   for (const Entry& entry : entries) worst = std::isfinite(entry.error) ? std::max(worst, entry.error) : worst;
@@ -183,8 +185,8 @@ std::string next_part(const Diagnosis& d) {
 std::string forest_part(const surefoot::ForestResidual& forest) {
   if (!forest.tried) return "";
   std::string html = "<h2>A forest in place of physics</h2>\n";
-  const std::string figures = "On the recordings kept aside the error is " + rounded(forest.heldout_after) +
-                              " with it and " + rounded(forest.heldout_before) + " without.";
+  const std::string figures = "On the recordings kept aside the error is " + rounded(forest.held_out_after) +
+                              " with it and " + rounded(forest.held_out_before) + " without.";
   if (!forest.kept) {
     return html + paragraph(
                       "A forest that corrects the simulated outputs by what it learned from the residuals does "
@@ -248,7 +250,7 @@ std::string list_of(const std::vector<std::string>& names) {
 std::string remarks_part(const Diagnosis& d) {
   std::string html = "<h2>The recordings</h2>\n";
   html += paragraph("To fit: " + list_of(d.fit) + ".") + paragraph("To choose: " + list_of(d.select) + ".") +
-          paragraph("Kept aside: " + list_of(d.test) + ".");
+          paragraph("Kept aside: " + list_of(d.held_out) + ".");
   constexpr std::size_t most = 40;
   if (!d.remarks.empty()) html += "<ul>\n";
   for (std::size_t i = 0; i < std::min(most, d.remarks.size()); ++i) {

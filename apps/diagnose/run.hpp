@@ -24,15 +24,15 @@ int run(const S& simulator, const Layout& layout, const CommandLine& line, const
   LoadedRecordings loaded = load_all(line, layout);
   surefoot::DiagnoseOptions options;
   if (model != nullptr) options.known = known_effects(*model, surefoot::all_effects());
-  options.test = test_names(line, loaded.recordings);
-  options.test_share = line.test_share;
+  options.held_out = test_names(line, loaded.recordings);
+  options.held_out_share = line.test_share;
   options.effects = line.effects;
   options.max_effects = line.max_effects;
-  options.max_seconds = line.budget;
+  if (line.budget > 0) options.max_seconds = line.budget;
   prepare_folder(line.out);
   example::Interrupt interrupt;
   Progress progress(line.quiet);
-  options.progress = [&progress](std::string_view stage, double share, std::string_view best) {
+  options.on_progress = [&progress](std::string_view stage, double share, std::string_view best) {
     progress.show(stage, share, best);
   };
   surefoot::Diagnosis diagnosis = surefoot::diagnose(simulator, loaded.recordings, options,

@@ -21,7 +21,7 @@ std::string summary(const surefoot::Diagnosis& d, const std::filesystem::path& o
   for (const auto& effect : d.effects) {
     text << "  effect  " << effect.name << " at " << effect.attached_to;
     for (const auto& fit : effect.parameters) text << ", " << fit.name << " " << with_interval(fit);
-    text << "; gain " << percent(effect.evidence.heldout_gain) << " +- " << percent(effect.evidence.gain_stderr)
+    text << "; gain " << percent(effect.evidence.gain) << " +- " << percent(effect.evidence.gain_stderr)
          << ", confidence " << percent(effect.evidence.confidence) << '\n';
   }
   std::string changed;
@@ -31,14 +31,14 @@ std::string summary(const surefoot::Diagnosis& d, const std::filesystem::path& o
                (parameter.at_bound ? " (at its bound)" : "");
   }
   if (!changed.empty()) text << "  calibrated  " << changed << '\n';
-  if (!d.test.empty()) {
-    text << "  on " << d.test.size() << " recording(s) kept aside: error " << rounded(d.test_before);
-    if (!d.effects.empty()) text << " before, " << rounded(d.test_after) << " after";
-    text << "; forest " << rounded(d.test_forest) << ", noise floor " << rounded(d.noise_floor) << '\n';
+  if (!d.held_out.empty()) {
+    text << "  on " << d.held_out.size() << " recording(s) kept aside: error " << rounded(d.held_out_before);
+    if (!d.effects.empty()) text << " before, " << rounded(d.held_out_after) << " after";
+    text << "; forest " << rounded(d.held_out_forest) << ", noise floor " << rounded(d.noise_floor) << '\n';
   }
   if (d.forest_residual.kept) {
     text << "  offered  " << residual_file << ", a forest that corrects what is simulated: error "
-         << rounded(d.forest_residual.heldout_after) << " instead of " << rounded(d.forest_residual.heldout_before)
+         << rounded(d.forest_residual.held_out_after) << " instead of " << rounded(d.forest_residual.held_out_before)
          << '\n';
   }
   std::string noise;

@@ -68,7 +68,7 @@ Json effects_json(const std::vector<surefoot::FoundEffect>& effects) {
     if (!effect.form.empty()) one["form"] = effect.form;
     if (!effect.other.empty()) one["with"] = effect.other;
     one["parameters"] = fitted_json(effect.parameters);
-    one["evidence"] = {{"heldout_gain", number(effect.evidence.heldout_gain)},
+    one["evidence"] = {{"heldout_gain", number(effect.evidence.gain)},
                        {"gain_stderr", number(effect.evidence.gain_stderr)},
                        {"p_value", number(effect.evidence.p_value)},
                        {"confidence", number(effect.evidence.confidence)}};
@@ -85,7 +85,7 @@ Json alternatives_json(const Diagnosis& diagnosis) {
       effects.push_back({{"name", name}, {"attached_to", attached_to}});
     }
     list.push_back({{"effects", effects},
-                    {"heldout_rmse", number(alternative.heldout_rmse)},
+                    {"heldout_rmse", number(alternative.cross_validated_rmse)},
                     {"indistinguishable", alternative.indistinguishable}});
   }
   return list;
@@ -96,14 +96,15 @@ Json fit_json(const Diagnosis& diagnosis) {
   for (const auto& one : diagnosis.per_recording) {
     recordings.push_back({{"recording", one.recording}, {"before", number(one.before)}, {"after", number(one.after)}});
   }
-  return {{"train", {{"rmse_before", number(diagnosis.train_before)}, {"rmse_after", number(diagnosis.train_after)}}},
-          {"heldout",
-           {{"rmse_before", number(diagnosis.test_before)},
-            {"rmse_after", number(diagnosis.test_after)},
-            {"rmse_forest", number(diagnosis.test_forest)},
-            {"noise_floor", number(diagnosis.noise_floor)},
-            {"ratio_ci95", Json::array({number(diagnosis.gain_low), number(diagnosis.gain_high)})},
-            {"per_recording", recordings}}}};
+  return {
+      {"train", {{"rmse_before", number(diagnosis.training_before)}, {"rmse_after", number(diagnosis.training_after)}}},
+      {"heldout",
+       {{"rmse_before", number(diagnosis.held_out_before)},
+        {"rmse_after", number(diagnosis.held_out_after)},
+        {"rmse_forest", number(diagnosis.held_out_forest)},
+        {"noise_floor", number(diagnosis.noise_floor)},
+        {"ratio_ci95", Json::array({number(diagnosis.gain_low), number(diagnosis.gain_high)})},
+        {"per_recording", recordings}}}};
 }
 
 Json limits_json(const Diagnosis& diagnosis) {
@@ -132,8 +133,8 @@ Json noise_json(const Diagnosis& diagnosis) {
 
 Json forest_json(const surefoot::ForestResidual& forest) {
   Json json = {{"kept", forest.kept},
-               {"heldout_rmse", number(forest.heldout_after)},
-               {"heldout_rmse_without", number(forest.heldout_before)}};
+               {"heldout_rmse", number(forest.held_out_after)},
+               {"heldout_rmse_without", number(forest.held_out_before)}};
   if (forest.tried) json["gain"] = number(forest.gain);
   if (forest.tried) json["gain_stderr"] = number(forest.gain_stderr);
   if (forest.kept) json["file"] = residual_file;
@@ -163,28 +164,29 @@ std::string verdict_text(surefoot::Verdict verdict) {
 }
 
 std::string diagnosis_json(const Diagnosis& diagnosis) {
-  const Json json = {{"schema", "surefoot.diagnosis/1"},
-                     {"model", diagnosis.model},
-                     {"complete", diagnosis.complete},
-                     {"verdict", verdict_text(diagnosis.verdict)},
-                     {"sentence", diagnosis.sentence},
-                     {"recordings", {{"fit", diagnosis.fit}, {"select", diagnosis.select}, {"test", diagnosis.test}}},
-                     {"parameters", parameters_json(diagnosis.parameters)},
-                     {"augmented_parameters", parameters_json(diagnosis.augmented_parameters)},
-                     {"correlated", diagnosis.correlated},
-                     {"noise", noise_json(diagnosis)},
-                     {"noise_sentence", diagnosis.noise_sentence},
-                     {"mismatch", mismatch_json(diagnosis)},
-                     {"effects", effects_json(diagnosis.effects)},
-                     {"known_effects", effects_json(diagnosis.known_effects)},
-                     {"alternatives", alternatives_json(diagnosis)},
-                     {"limits", limits_json(diagnosis)},
-                     {"next_experiment", diagnosis.next_experiment},
-                     {"fit", fit_json(diagnosis)},
-                     {"forest_residual", forest_json(diagnosis.forest_residual)},
-                     {"remarks", remarks_json(diagnosis)},
-                     {"seconds", number(diagnosis.seconds)},
-                     {"seed", diagnosis.seed}};
+  const Json json = {
+      {"schema", "surefoot.diagnosis/1"},
+      {"model", diagnosis.model},
+      {"complete", diagnosis.complete},
+      {"verdict", verdict_text(diagnosis.verdict)},
+      {"sentence", diagnosis.sentence},
+      {"recordings", {{"fit", diagnosis.fit}, {"select", diagnosis.select}, {"test", diagnosis.held_out}}},
+      {"parameters", parameters_json(diagnosis.parameters)},
+      {"augmented_parameters", parameters_json(diagnosis.augmented_parameters)},
+      {"correlated", diagnosis.correlated},
+      {"noise", noise_json(diagnosis)},
+      {"noise_sentence", diagnosis.noise_sentence},
+      {"mismatch", mismatch_json(diagnosis)},
+      {"effects", effects_json(diagnosis.effects)},
+      {"known_effects", effects_json(diagnosis.known_effects)},
+      {"alternatives", alternatives_json(diagnosis)},
+      {"limits", limits_json(diagnosis)},
+      {"next_experiment", diagnosis.next_experiment},
+      {"fit", fit_json(diagnosis)},
+      {"forest_residual", forest_json(diagnosis.forest_residual)},
+      {"remarks", remarks_json(diagnosis)},
+      {"seconds", number(diagnosis.seconds)},
+      {"seed", diagnosis.seed}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";  // names of files may be no UTF-8
 }
 

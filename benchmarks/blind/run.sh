@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The concealed proof: machines with physics that their model files leave out; what does surefoot-diagnose find?
+# The blind benchmark: machines with physics that their model files leave out; what does surefoot-diagnose find?
 #   benchmarks/blind/run.sh [--cases N] [--seed S] [--families LIST] [--jobs N]
 # Without --seed a new one is drawn from the clock. Interrupt it at any time; the same --cases and --seed resume it.
 # Results go to $SUREFOOT_RESULTS_DIR/concealed_<seed>, by default under results; the build to $SUREFOOT_BUILD_DIR, by

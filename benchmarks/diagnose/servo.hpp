@@ -1,4 +1,5 @@
-// What the benchmarks of this folder share: the servo pendulum in C++, as recordings, and as the text of a model file.
+// Common parts of the benchmarks of this folder: the servo pendulum in C++, as recordings, and as the text of a model
+// file.
 #pragma once
 
 #include <cmath>

@@ -13,9 +13,8 @@
 
 #include "surefoot/core/executor.hpp"
 #include "surefoot/motion/calibrate.hpp"
-#include "surefoot/motion/fit/choose_noise.hpp"
+#include "surefoot/motion/compare.hpp"
 #include "surefoot/motion/linear_correction.hpp"
-#include "surefoot/motion/fit/published_fit.hpp"
 #include "tests/support/walks.hpp"
 
 namespace {
@@ -50,7 +49,7 @@ void predictions(int repetitions, std::uint64_t seed) {
   const double truth = final_pose_error(toys::paper_walk(), all).position;
   std::printf("predictions: held-out error of final positions [m], %d calibrations from 25 final poses each\n",
               repetitions);
-  std::printf("  orders as they are %.3f, true walk %.3f\n", final_pose_error(FullLinearCorrection(), all).position,
+  std::printf("  commands as they are %.3f, true walk %.3f\n", final_pose_error(FullLinearCorrection(), all).position,
               truth);
   surefoot::CalibrationOptions options;
   options.model.accuracy = {.position = 0.005, .heading = 0.02, .heading_tolerance = bin / 2};

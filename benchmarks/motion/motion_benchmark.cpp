@@ -35,7 +35,7 @@ void likelihood(benchmark::State& state) {
 }
 BENCHMARK(likelihood<surefoot::ProportionalCorrection>)->Unit(benchmark::kMillisecond);
 BENCHMARK(likelihood<surefoot::FullLinearCorrection>)->Unit(benchmark::kMillisecond);
-BENCHMARK(likelihood<surefoot::PreviousOrderCorrection>)->Unit(benchmark::kMillisecond);
+BENCHMARK(likelihood<surefoot::PreviousCommandCorrection>)->Unit(benchmark::kMillisecond);
 
 template <surefoot::MotionModel M>
 void likelihood_with_noise(benchmark::State& state) {
@@ -51,6 +51,6 @@ void published(benchmark::State& state) {
 }
 BENCHMARK(published<surefoot::ProportionalCorrection>)->Unit(benchmark::kMillisecond);
 BENCHMARK(published<surefoot::FullLinearCorrection>)->Unit(benchmark::kMillisecond);
-BENCHMARK(published<surefoot::PreviousOrderCorrection>)->Unit(benchmark::kMillisecond);
+BENCHMARK(published<surefoot::PreviousCommandCorrection>)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -1,5 +1,5 @@
 // What it is worth to know the noise of a walk. The robot: the published walk, its noise proportional to its speed and
-// as large as the published one at half of full speed. It is calibrated from 60 sequences of random orders; then two
+// as large as the published one at half of full speed. It is calibrated from 60 sequences of random commands; then two
 // policies are trained for the calibrated walk, one with the calibrated noise, one with the constant noise that was
 // published, and both play on the robot.
 //   training_noise [SEED [BUDGET]]    BUDGET: of each training, seconds of one nominal core (60)
@@ -14,7 +14,6 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rollout.hpp"
 #include "surefoot/motion/calibrate.hpp"
-#include "surefoot/motion/fit/choose_noise.hpp"
 #include "surefoot/motion/linear_correction.hpp"
 #include "surefoot/solve/rfpi.hpp"
 #include "tests/support/walks.hpp"

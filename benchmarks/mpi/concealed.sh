@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The concealed proof on many processes, one case after the other in each; then benchmarks/blind/run.sh scores them.
+# The blind benchmark on many processes, one case after the other in each; then benchmarks/blind/run.sh scores them.
 #   benchmarks/mpi/concealed.sh --seed S [--processes N] [--cases N] [--families LIST]
 # Case k is process k modulo N's. Cases that have a result are left out, so that the same command resumes. All processes
 # must see the same results folder. MPI options (machines, binding) go into $SUREFOOT_MPIRUN, by default "mpirun".

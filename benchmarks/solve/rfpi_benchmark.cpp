@@ -10,8 +10,10 @@
 
 #include "examples/sigmaban/approach/approach.hpp"
 #include "surefoot/core/rollout.hpp"
+#include "surefoot/forest/extra_trees.hpp"
 #include "surefoot/solve/lookahead.hpp"
 #include "surefoot/solve/rfpi.hpp"
+#include "surefoot/solve/visited_states.hpp"
 #include "tests/support/pendulum.hpp"
 
 namespace {
@@ -20,23 +22,33 @@ using namespace surefoot;  // NOLINT(google-build-using-namespace): a program, n
 using sigmaban::Approach;
 using toy::Pendulum;
 
-// States where a policy is used, and forests as large as those of a training of some seconds.
+constexpr double discount = 0.98;
+
+// A policy after a training of some seconds, states that it visits, and a forest of about what they are worth to it.
 template <Problem P>
 struct Trained {
-  P problem;
-  std::vector<typename P::State> states;
-  ForestPolicy<P> policy;
-  typename RfpiState<P>::LinearValue value;
+  using ValueForest = Forest<feature_dim<P>(), 1, LinearLeaf>;
 
-  explicit Trained(const P& p) : problem(p), policy(p, {}) {
-    const RfpiOptions options;
-    RfpiState<P> state;
-    for (int i = 0; i <= options.blind_iterations; ++i) {
-      state = detail::improve_by_backup(problem, options, state, 20'000, {}, Threads{}, Rng(1, i), {});
+  P problem;
+  ForestPolicy<P> policy;
+  std::vector<typename P::State> states;
+  ValueForest value;
+
+  explicit Trained(const P& p)
+      : problem(p), policy(rfpi(p, {.budget = {.seconds = 5}, .horizon = P::horizon}, Threads{}, 1).policy) {
+    states = visited_states(
+        problem, [&](auto some) { return policy.act(some); }, 20'000 / P::horizon, P::horizon, 0.3, Threads{}, Rng(2));
+    Dataset<feature_dim<P>(), 1> samples;
+    const auto count = static_cast<Eigen::Index>(states.size());
+    samples.inputs.resize(feature_dim<P>(), count);
+    samples.outputs.resize(1, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const auto& at = states[static_cast<std::size_t>(i)];
+      samples.inputs.col(i) = features(problem, at).template cast<float>();
+      samples.outputs(0, i) =
+          run_return(problem, policy, at, P::horizon, discount, Rng(3, static_cast<std::uint64_t>(i)));
     }
-    states = state.samples.states;
-    value = state.value;
-    policy = ForestPolicy<P>(p, state.policy);
+    value = train_extra_trees<LinearLeaf>(samples, RfpiOptions().value_forest, Threads{}, 1);
   }
 };
 
@@ -53,7 +65,7 @@ template <Problem P>
 void lookaheads(benchmark::State& state, const P& problem) {
   const auto& t = trained(problem);
   const LookaheadOptions options;
-  Lookahead<P, typename RfpiState<P>::LinearValue> look(t.problem, t.value, 0.98, options);
+  Lookahead<P, typename Trained<P>::ValueForest> look(t.problem, t.value, discount, options);
   std::size_t i = 0;
   for (auto _ : state) {
     const auto& at = t.states[i % t.states.size()];

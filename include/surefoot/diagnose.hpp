@@ -1,4 +1,4 @@
-// All of surefoot/diagnose, and what it stands on: what a simulator leaves out.
+// The face of surefoot/diagnose, and the areas that it stands on: diagnosis of what a simulator leaves out.
 #pragma once
 
 #include "surefoot/core.hpp"
@@ -15,5 +15,4 @@
 #include "surefoot/diagnose/simulator.hpp"
 #include "surefoot/diagnose/text.hpp"
 #include "surefoot/forest.hpp"
-#include "surefoot/motion.hpp"
 #include "surefoot/optimize.hpp"

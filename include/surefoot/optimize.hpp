@@ -1,20 +1,8 @@
-// All of surefoot/optimize, and what it stands on: CMA-ES and least squares.
+// The face of surefoot/optimize, and what it stands on: CMA-ES and least squares.
 #pragma once
 
 #include "surefoot/core.hpp"
 #include "surefoot/optimize/cma_es.hpp"
-#include "surefoot/optimize/cma_es_constants.hpp"
 #include "surefoot/optimize/cma_es_core.hpp"
-#include "surefoot/optimize/cma_es_loop.hpp"
-#include "surefoot/optimize/cma_es_options.hpp"
-#include "surefoot/optimize/cma_es_search.hpp"
 #include "surefoot/optimize/cma_es_serialize.hpp"
-#include "surefoot/optimize/cma_es_state.hpp"
-#include "surefoot/optimize/cma_es_stop.hpp"
 #include "surefoot/optimize/least_squares.hpp"
-#include "surefoot/optimize/numeric_jacobian.hpp"
-#include "surefoot/optimize/objective.hpp"
-#include "surefoot/optimize/rank_noise.hpp"
-#include "surefoot/optimize/restarts.hpp"
-#include "surefoot/optimize/robust_loss.hpp"
-#include "surefoot/optimize/search_space.hpp"

@@ -1,5 +1,5 @@
-// Everything surefoot has, for users; only what needs MPI is left out. The header of an area, surefoot/solve.hpp say,
-// compiles much faster. The library's own headers include none of these.
+// The face of all areas, for users, but for what needs MPI. The header of an area, surefoot/solve.hpp say, compiles much
+// faster. The library's own headers include none of these.
 #pragma once
 
 #include "surefoot/core.hpp"

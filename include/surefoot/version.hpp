@@ -1,4 +1,4 @@
-// Which version of surefoot this is. Semantic versioning 2.0; CHANGELOG.md says what that covers.
+// Version of surefoot. Semantic versioning 2.0; CHANGELOG.md says what that covers.
 //
 //   #if SUREFOOT_VERSION >= 10200  // 1.2.0 or later
 #pragma once

@@ -49,12 +49,12 @@ std::string with(std::string text, const std::string& what, const std::string& i
 
 }  // namespace
 
-TEST_CASE("many sequences in one file: orders times steps per cycle, poses at the end of their cycle") {
+TEST_CASE("many sequences in one file: commands times steps per cycle, poses at the end of their cycle") {
   const LoadedSequences loaded = load(many);
   REQUIRE(loaded.sequences.size() == 2);
   CHECK(loaded.sequences[0].name == "3 of walk.csv");
-  CHECK(loaded.sequences[0].orders(0, 0) == 0.02);
-  CHECK(loaded.sequences[0].orders(2, 0) == 0.2);
+  CHECK(loaded.sequences[0].commands(0, 0) == 0.02);
+  CHECK(loaded.sequences[0].commands(2, 0) == 0.2);
   CHECK(std::isnan(loaded.sequences[0].poses(0, 0)));
   CHECK(loaded.sequences[0].poses.col(1) == surefoot::Vec<3>(1, 2, 0.5));
   CHECK(loaded.sequences[1].name == "7 of walk.csv");
@@ -71,7 +71,7 @@ TEST_CASE("a sequence without a final position is left out, with a warning that 
 TEST_CASE("the option of steps per cycle goes before the first line of the file") {
   LoadOptions options;
   options.steps_per_cycle = 1;
-  CHECK(load(many, options).sequences[0].orders(0, 0) == 0.01);
+  CHECK(load(many, options).sequences[0].commands(0, 0) == 0.01);
 }
 
 TEST_CASE("with final poses only the others are forgotten") {
@@ -83,7 +83,7 @@ TEST_CASE("with final poses only the others are forgotten") {
 }
 
 TEST_CASE(
-    "one sequence per file: orders lead to the next row, poses are seen from the first, other units are converted") {
+    "one sequence per file: commands lead to the next row, poses are seen from the first, other units are converted") {
   const LoadedSequences loaded = load(
       "dx_cm,dy_cm,turn_deg,x_m,y_cm,yaw_deg\n10,0,90,1,100,90\n20,5,0,,,\n,,,1,150,180\n"
       "\n");
@@ -91,8 +91,8 @@ TEST_CASE(
   const surefoot::WalkSequence& sequence = loaded.sequences[0];
   CHECK(sequence.name == "walk.csv");
   REQUIRE(sequence.cycles() == 2);
-  CHECK(sequence.orders(0, 1) == doctest::Approx(0.2));
-  CHECK(sequence.orders(2, 0) == doctest::Approx(std::numbers::pi / 2));
+  CHECK(sequence.commands(0, 1) == doctest::Approx(0.2));
+  CHECK(sequence.commands(2, 0) == doctest::Approx(std::numbers::pi / 2));
   CHECK(sequence.poses(0, 1) == doctest::Approx(0.5));  // half a metre along y is straight ahead
   CHECK(sequence.poses(1, 1) == doctest::Approx(0).epsilon(1e-9));
   CHECK(sequence.poses(2, 1) == doctest::Approx(std::numbers::pi / 2));
@@ -108,22 +108,22 @@ TEST_CASE("a recording whose first pose is empty starts at the origin") {
 
 TEST_CASE("columns may be named by the user") {
   LoadOptions options;
-  options.columns.orders = {"a_m", "b_m", "c_deg"};
+  options.columns.commands = {"a_m", "b_m", "c_deg"};
   options.columns.pose = {"px_m", "py_m"};
   const LoadedSequences loaded = load("seq,a_m,b_m,c_deg,px_m,py_m\n1,1,2,180,3,4\n", options);
-  CHECK(loaded.sequences[0].orders(2, 0) == doctest::Approx(std::numbers::pi));
+  CHECK(loaded.sequences[0].commands(2, 0) == doctest::Approx(std::numbers::pi));
   CHECK(loaded.sequences[0].poses(0, 0) == 3);
 }
 
-TEST_CASE("speeds of wheels make orders, each held until the next row") {
+TEST_CASE("speeds of wheels make commands, each held until the next row") {
   const auto loaded =
       load("t_s,v_left_m_s,v_right_m_s,x_m,y_m,yaw_rad\n0,0.1,0.3,0,0,0\n0.5,0.2,0.2,,,\n1.5,,,1,1,0\n", wheels());
   const surefoot::WalkSequence& sequence = loaded.sequences[0];
   REQUIRE(sequence.cycles() == 2);
-  CHECK(sequence.orders(0, 0) == doctest::Approx(0.1));
-  CHECK(sequence.orders(1, 0) == 0);
-  CHECK(sequence.orders(2, 0) == doctest::Approx(0.5));
-  CHECK(sequence.orders(0, 1) == doctest::Approx(0.2));
+  CHECK(sequence.commands(0, 0) == doctest::Approx(0.1));
+  CHECK(sequence.commands(1, 0) == 0);
+  CHECK(sequence.commands(2, 0) == doctest::Approx(0.5));
+  CHECK(sequence.commands(0, 1) == doctest::Approx(0.2));
   CHECK(loaded.layout.period == doctest::Approx(0.75));
 }
 
@@ -134,9 +134,9 @@ TEST_CASE("what cannot be read is refused in one sentence that names the place")
   check_refused("dx_m,dy_m,turn_rad,x_m,y_m\n1,0,0,1,1\n", "at least 2");
   check_refused("1,2,3\n4,5,6\n", "line 1: there is no header row");
   check_refused(head + "1,0,0,0\n", "line 2: the row has 4 cells");
-  check_refused(head + "1,0,nan,0,0,1,1,0\n", "line 2: column 'dx_m' is empty; every cycle needs its order");
+  check_refused(head + "1,0,nan,0,0,1,1,0\n", "line 2: column 'dx_m' is empty; every cycle needs its command");
   check_refused(head + "1,0,one,0,0,1,1,0\n", "line 2: column 'dx_m' holds \"one\"");
-  check_refused(head + "1,0,1e9,0,0,1,1,0\n", "line 2: an order of more than");
+  check_refused(head + "1,0,1e9,0,0,1,1,0\n", "line 2: a command of more than");
   check_refused(head + "1,0,0,0,0,1e9,1,0\n", "line 2: column 'x_m' holds more than");
   check_refused(head + "1,1,0,0,0,1,1,0\n1,1,0,0,0,1,1,0\n", "line 3: cycle 1 follows cycle 1");
   check_refused(head + "1,1,0,0,0,1,1,0\n1,3,0,0,0,1,1,0\n", "line 3: cycle 3 follows cycle 1");
@@ -144,17 +144,17 @@ TEST_CASE("what cannot be read is refused in one sentence that names the place")
   check_refused(head + ",0,0,0,0,1,1,0\n", "line 2: column 'seq' is empty");
   check_refused(head + "1,0,0,0,0,1,1,0\n2,0,0,0,0,1,1,0\n1,1,0,0,0,1,1,0\n", "line 4: sequence 1 was already over");
   check_refused("seq,dx,dy_m,turn_rad,x_m,y_m\n1,0,0,0,1,1\n",
-                "column 'dx' (the order forward) does not end in a unit");
+                "column 'dx' (the command forward) does not end in a unit");
   check_refused("seq,dx_m,dy_m,turn_rad,x,y_m\n1,0,0,0,1,1\n",
                 "column 'x' (the position forward) does not end in a unit");
-  check_refused("seq,speed_m,dy_m,turn_rad,x_m,y_m\n1,0,0,0,1,1\n", "no column was recognised as the order forward");
+  check_refused("seq,speed_m,dy_m,turn_rad,x_m,y_m\n1,0,0,0,1,1\n", "no column was recognised as the command forward");
   check_refused("seq,dx_m,dy_m,turn_rad,x_m\n1,0,0,0,1\n", "no column was recognised as the position to the left");
   check_refused("dx_m,dy_m,turn_rad,x_m,y_m,theta_rad\n1,0,0,1,1,\n1,0,0,1,1,0\n",
                 "line 2: the first row holds part of a pose");
   check_refused(with(many, "cycle: 2", "cycle: two"), "'steps_per_cycle: two' must give a number");
   check_refused(with(many, "cycle: 2", "cycle: -1"), "must give a number");
   LoadOptions named;
-  named.columns.orders = {"ordr_dx_m", "order_dy_m", "order_dtheta_rad"};
+  named.columns.commands = {"ordr_dx_m", "order_dy_m", "order_dtheta_rad"};
   check_refused(many, "did you mean 'order_dx_m'?", named);
 }
 

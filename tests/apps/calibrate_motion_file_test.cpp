@@ -57,10 +57,10 @@ TEST_CASE("every model is written and read, and moves as before") {
       file.covariance = 0.01 * Eigen::MatrixXd::Identity(M::parameter_count, M::parameter_count);
       const MotionFile again = parse_motion_file(motion_file_text(file), "motion.json");
       CHECK(again.kind == kind);
-      const surefoot::Vec<3> orders(0.05, -0.02, 0.1), previous(0.01, 0.02, 0.3);
-      CHECK(again.model.displacement(orders, previous)
+      const surefoot::Vec<3> commands(0.05, -0.02, 0.1), previous(0.01, 0.02, 0.3);
+      CHECK(again.model.displacement(commands, previous)
                 .vec()
-                .isApprox(cycle_displacement(model, orders, previous).vec(), 1e-12));
+                .isApprox(cycle_displacement(model, commands, previous).vec(), 1e-12));
     });
   }
 }

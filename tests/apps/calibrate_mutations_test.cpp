@@ -53,8 +53,8 @@ TEST_CASE("ten thousand damaged recordings are read or refused in one sentence")
 }
 
 TEST_CASE("two thousand damaged sheets are merged or refused in one sentence") {
-  const std::string orders = orders_csv(surefoot::plan_orders(surefoot::OrderBounds(), 3, 2, 1), 1);
-  const auto parsed = diagnose_program::parse_csv(orders, "orders.csv");
+  const std::string commands = commands_csv(surefoot::plan_commands(surefoot::CommandBounds(), 3, 2, 1), 1);
+  const auto parsed = diagnose_program::parse_csv(commands, "commands.csv");
   check_counts(try_damaged("seq,x_cm,y_cm,heading_clock\n1,100,-20,3\n2,,,\n3,50,10,12\n", 2000, 23,
                            [&](const std::string& text) {
                              const auto merged = merge_sheet(parsed, diagnose_program::parse_csv(text, "sheet.csv"));

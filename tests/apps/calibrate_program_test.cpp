@@ -66,17 +66,17 @@ TEST_CASE("plan, fill in, sheet, fit, update: from nothing to a model that is ke
   REQUIRE_MESSAGE(plan.code == 0, plan.output);
   CHECK(contains(plan.output, "m ahead of the start"));
   CHECK(contains(text_of(folder.file("plan/sheet.html")), "<td>20</td>"));
-  LoadOptions orders;
-  orders.poses_needed = false;
-  auto walks = sequences_of(diagnose_program::read_csv(folder.file("plan/orders.csv")), orders).sequences;
+  LoadOptions commands;
+  commands.poses_needed = false;
+  auto walks = sequences_of(diagnose_program::read_csv(folder.file("plan/commands.csv")), commands).sequences;
   REQUIRE(walks.size() == 20);
   const MotionFile robot = paper_robot();
   for (std::size_t i = 0; i < walks.size(); ++i) {
     surefoot::Rng rng(1, i);
-    walks[i] = simulate_walk(robot.model, robot.noise, {}, surefoot::planned_sequence(walks[i].orders, false), rng);
+    walks[i] = simulate_walk(robot.model, robot.noise, {}, surefoot::planned_sequence(walks[i].commands, false), rng);
   }
   write(folder.file("sheet.csv"), filled_in(walks));
-  const Outcome sheet = calibrate("sheet --orders " + folder.file("plan/orders.csv") + " --sheet " +
+  const Outcome sheet = calibrate("sheet --commands " + folder.file("plan/commands.csv") + " --sheet " +
                                   folder.file("sheet.csv") + " --out " + folder.file("walks.csv"));
   REQUIRE_MESSAGE(sheet.code == 0, sheet.output);
   CHECK(contains(sheet.output, "2 of 20 sequences have no position"));
@@ -111,7 +111,7 @@ TEST_CASE("one file per sequence is fitted and gives a model file for surefoot-d
     csv << "dx_m,dy_m,turn_rad,x_m,y_m,yaw_rad\n";
     for (Eigen::Index row = 0; row <= walks[i].cycles(); ++row) {
       if (row < walks[i].cycles()) {
-        csv << walks[i].orders(0, row) << ',' << walks[i].orders(1, row) << ',' << walks[i].orders(2, row);
+        csv << walks[i].commands(0, row) << ',' << walks[i].commands(1, row) << ',' << walks[i].commands(2, row);
       } else {
         csv << ",,";
       }
@@ -199,7 +199,7 @@ TEST_CASE("wrong options and files end with 2 and one sentence") {
   refused("fit --model cubic" + out + folder.file("one.csv"), "--model");
   refused("curve" + out + folder.file("one.csv"), "only 1 sequence has a final position");
   refused("update --motion " + folder.file("one.csv") + out + folder.file("one.csv"), "this is not JSON");
-  refused("plan --low 1,1,1" + out, "OrderBounds: low of dx");
+  refused("plan --low 1,1,1" + out, "CommandBounds: low of dx");
   CHECK(!std::filesystem::exists(folder.file("out/motion.json")));
 }
 

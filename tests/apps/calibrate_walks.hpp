@@ -15,10 +15,10 @@ namespace calibrate_test {
 inline std::vector<surefoot::WalkSequence> paper_walks(int count, int cycles, bool every_pose, std::uint64_t seed = 1) {
   const calibrate_program::MotionFile robot = calibrate_program::paper_robot();
   std::vector<surefoot::WalkSequence> walks;
-  for (const auto& orders : surefoot::plan_orders(surefoot::OrderBounds(), count, cycles, seed)) {
+  for (const auto& commands : surefoot::plan_commands(surefoot::CommandBounds(), count, cycles, seed)) {
     surefoot::Rng rng(seed, walks.size(), 7);
     walks.push_back(simulate_walk(robot.model, robot.noise, surefoot::PoseAccuracy(),
-                                  surefoot::planned_sequence(orders, every_pose), rng));
+                                  surefoot::planned_sequence(commands, every_pose), rng));
     walks.back().name = std::to_string(walks.size());
   }
   return walks;
@@ -39,7 +39,7 @@ inline calibrate_program::MotionFile rich_file() {
   file.sequences = 25;
   file.readings = 75;
   file.seed = 4;
-  file.heldout = {{.model = "orders as they are", .position = 0.39, .position_error = 0.04, .heading = 0.3},
+  file.heldout = {{.model = "commands as they are", .position = 0.39, .position_error = 0.04, .heading = 0.3},
                   {.model = "full linear", .parameters = 12, .position = 0.26, .chosen = true}};
   file.test = {{.model = "full linear", .parameters = 12, .position = 0.27}};
   return file;

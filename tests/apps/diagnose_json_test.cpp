@@ -71,7 +71,7 @@ TEST_CASE("the JSON holds every key of the schema with the values of the diagnos
 
 TEST_CASE("numbers that are not finite are null, and names that are no UTF-8 do not break the JSON") {
   surefoot::Diagnosis diagnosis = some_diagnosis();
-  diagnosis.test_forest = std::numeric_limits<double>::quiet_NaN();
+  diagnosis.held_out_forest = std::numeric_limits<double>::quiet_NaN();
   diagnosis.parameters[0].fit.low = -std::numeric_limits<double>::infinity();
   diagnosis.model = "caf\xE9";
   const json result = json::parse(diagnose_program::diagnosis_json(diagnosis));

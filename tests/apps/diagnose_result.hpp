@@ -36,7 +36,7 @@ inline surefoot::Diagnosis some_diagnosis() {
   d.sentence = "The model leaves out dry friction of 0.121 N m at omega; with it the error falls to a tenth.";
   d.fit = {"rec_3.csv", "rec_4.csv"};
   d.select = {"rec_5_with_a_name_that_is_much_longer_than_one_would_wish_for_in_a_narrow_window.csv"};
-  d.test = {"rec_1.csv", "rec_2.csv"};
+  d.held_out = {"rec_1.csv", "rec_2.csv"};
   d.remarks = {{"rec_3.csv", "row 12: a single wild sample of theta_rad, left out"}};
   d.parameters = {{{"kt", "N m/A", 1.48, 1.45, 1.51}, 1.6}, {{"R", "ohm", 15, 14.8, 15}, 3.6, true}};
   d.augmented_parameters = d.parameters;
@@ -63,11 +63,11 @@ inline surefoot::Diagnosis some_diagnosis() {
                     {{{"viscous_friction", "omega"}, {"first_order_lag", "goal"}}, 0.02, false}};
   d.limits = {{"backlash", "theta", {"half_width", "rad", 0.002, 0.001, 0.003}}};
   d.next_experiment = "a slow ramp";
-  d.train_before = 0.050;
-  d.train_after = 0.0040;
-  d.test_before = 0.052;
-  d.test_after = 0.0041;
-  d.test_forest = 0.011;
+  d.training_before = 0.050;
+  d.training_after = 0.0040;
+  d.held_out_before = 0.052;
+  d.held_out_after = 0.0041;
+  d.held_out_forest = 0.011;
   d.noise_floor = 0.0012;
   d.gain_low = 0.06;
   d.gain_high = 0.1;

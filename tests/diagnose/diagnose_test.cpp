@@ -52,7 +52,7 @@ TEST_CASE("a wrong parameter is not missing physics") {
   CHECK(diagnosis.effects.empty());
   CHECK_FALSE(diagnosis.limits.empty());
   CHECK(diagnosis.parameters[0].fit.value == doctest::Approx(1.4).epsilon(0.01));
-  CHECK(diagnosis.test_after == diagnosis.test_before);
+  CHECK(diagnosis.held_out_after == diagnosis.held_out_before);
 }
 
 TEST_CASE("a model with the right parameters is adequate") {
@@ -73,9 +73,9 @@ TEST_CASE("dry friction is found, measured and told from what resembles it") {
   CHECK(effect.attached_to == "omega");
   CHECK(effect.parameters.front().unit == "N m");
   CHECK(effect.parameters.front().value == doctest::Approx(0.15).epsilon(0.05));
-  CHECK(effect.evidence.heldout_gain > 0.3);
+  CHECK(effect.evidence.gain > 0.3);
   CHECK(effect.evidence.p_value < 0.01);
-  CHECK(diagnosis.test_after < 0.7 * diagnosis.test_before);
+  CHECK(diagnosis.held_out_after < 0.7 * diagnosis.held_out_before);
   CHECK(diagnosis.sentence.find("dry friction") != std::string::npos);
 }
 
@@ -197,12 +197,12 @@ TEST_CASE("one long recording is cut into parts, of which some judge") {
   const auto recordings =
       toys::servo_recordings(machine({{.name = "coulomb_friction", .attached_to = "omega", .values = {0.15}}}), 1, 15);
   const Diagnosis diagnosis = diagnose(ServoPendulum{}, recordings, {}, surefoot::Threads{}, 15);
-  CHECK(diagnosis.fit.size() + diagnosis.test.size() == 5);
-  CHECK_FALSE(diagnosis.test.empty());
+  CHECK(diagnosis.fit.size() + diagnosis.held_out.size() == 5);
+  CHECK_FALSE(diagnosis.held_out.empty());
   CHECK(diagnosis.verdict == Verdict::missing_physics);
   REQUIRE_FALSE(diagnosis.effects.empty());
   CHECK(diagnosis.effects.front().name == "coulomb_friction");
-  CHECK(diagnosis.test_after < 0.7 * diagnosis.test_before);
+  CHECK(diagnosis.held_out_after < 0.7 * diagnosis.held_out_before);
 }
 
 TEST_CASE("one short recording is refused") {
@@ -238,10 +238,10 @@ TEST_CASE("effects that make it worse on the test recordings are dropped, and it
   recordings[5] = smooth[5];
   recordings[6] = smooth[6];
   DiagnoseOptions options;
-  options.test = {"recording 5", "recording 6"};
+  options.held_out = {"recording 5", "recording 6"};
   const Diagnosis diagnosis = diagnose(ServoPendulum{}, recordings, options, surefoot::Threads{}, 18);
   CHECK(diagnosis.effects.empty());
-  CHECK(diagnosis.test_after >= diagnosis.test_before);
+  CHECK(diagnosis.held_out_after >= diagnosis.held_out_before);
   CHECK(std::any_of(diagnosis.remarks.begin(), diagnosis.remarks.end(), [](const surefoot::Remark& remark) {
     return remark.text.find("did not lower the error on the test recordings") != std::string::npos;
   }));
@@ -261,7 +261,7 @@ TEST_CASE("a model that yields no numbers is refused") {
 TEST_CASE("a start that was read off a sensor is known as well as that sensor reads") {
   auto recordings = toys::servo_recordings(machine({}), 3, 20);
   for (const std::size_t r : {0U, 1U}) recordings[r].initial[0] = recordings[r].outputs(0, 0);
-  surefoot::BoundSimulator bound = surefoot::bind_simulator(ServoPendulum{}, recordings);
+  surefoot::diagnosis::BoundSimulator bound = surefoot::diagnosis::bind_simulator(ServoPendulum{}, recordings);
   surefoot::diagnosis::free_measured_starts(bound, {0, 1, 2});
   for (const std::size_t r : {0U, 1U}) {
     CHECK(bound.recordings[r].initial_scale[0] == doctest::Approx(0.001).epsilon(0.5));

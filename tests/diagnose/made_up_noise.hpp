@@ -12,11 +12,11 @@
 namespace toys {
 
 /// Noise of an output that swings at up to 3 units per second.
-inline surefoot::NoiseSeries noise_series(const surefoot::ResidualNoise& model, Eigen::Index rows, double interval,
-                                          std::uint64_t seed) {
+inline surefoot::diagnosis::NoiseSeries noise_series(const surefoot::diagnosis::ResidualNoise& model, Eigen::Index rows,
+                                                     double interval, std::uint64_t seed) {
   surefoot::Rng rng(seed, 0x6e6fu);
-  surefoot::NoiseSeries series{Eigen::VectorXd::LinSpaced(rows, 0, interval * static_cast<double>(rows - 1)),
-                               Eigen::VectorXd(rows), Eigen::VectorXd(rows)};
+  surefoot::diagnosis::NoiseSeries series{Eigen::VectorXd::LinSpaced(rows, 0, interval * static_cast<double>(rows - 1)),
+                                          Eigen::VectorXd(rows), Eigen::VectorXd(rows)};
   const double kept = model.time > 0 ? std::exp(-interval / model.time) : 0;
   double slow = rng.normal();
   for (Eigen::Index i = 0; i < rows; ++i) {
@@ -28,9 +28,10 @@ inline surefoot::NoiseSeries noise_series(const surefoot::ResidualNoise& model, 
   return series;
 }
 
-inline std::vector<surefoot::NoiseSeries> noise_recordings(const surefoot::ResidualNoise& model, int count,
-                                                           Eigen::Index rows, double interval, std::uint64_t seed) {
-  std::vector<surefoot::NoiseSeries> series;
+inline std::vector<surefoot::diagnosis::NoiseSeries> noise_recordings(const surefoot::diagnosis::ResidualNoise& model,
+                                                                      int count, Eigen::Index rows, double interval,
+                                                                      std::uint64_t seed) {
+  std::vector<surefoot::diagnosis::NoiseSeries> series;
   for (int i = 0; i < count; ++i) {
     series.push_back(noise_series(model, rows, interval, 1000 * seed + static_cast<std::uint64_t>(i)));
   }

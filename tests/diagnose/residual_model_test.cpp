@@ -9,8 +9,6 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/forest/extra_trees.hpp"
 
-using namespace surefoot::diagnosis;
-
 namespace surefoot {
 namespace {
 

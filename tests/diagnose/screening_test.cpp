@@ -12,8 +12,6 @@
 #include "surefoot/core/rng.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
-using namespace surefoot::diagnosis;
-
 namespace surefoot {
 namespace {
 

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-using namespace surefoot::diagnosis;
-
 namespace surefoot {
 namespace {
 

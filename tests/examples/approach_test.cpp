@@ -143,13 +143,13 @@ TEST_CASE("ANHA is HA with a fifth of the lateral steps and half of the lateral 
 }
 
 TEST_CASE("a calibrated walk and noise take the place of the published ones") {
-  using Calibrated = sigmaban::ApproachWith<surefoot::PreviousOrderCorrection, surefoot::MotionNoise>;
+  using Calibrated = sigmaban::ApproachWith<surefoot::PreviousCommandCorrection, surefoot::MotionNoise>;
   static_assert(surefoot::Problem<Calibrated>);
   Calibrated problem = Calibrated::ha();
   problem.constants.turn_first = false;
-  surefoot::Vec<21> coefficients = surefoot::PreviousOrderCorrection().parameters();
+  surefoot::Vec<21> coefficients = surefoot::PreviousCommandCorrection().parameters();
   coefficients[12] = 0.5;  // half of the last forward order is carried out as well
-  problem.walk = surefoot::PreviousOrderCorrection::from_parameters(coefficients);
+  problem.walk = surefoot::PreviousCommandCorrection::from_parameters(coefficients);
   surefoot::Rng rng(1);
   const auto start = state(0.8, 0, 0, 0.04, 0, 0.2);
   const auto after = problem.step(start, {0, 0, 0}, rng).next;

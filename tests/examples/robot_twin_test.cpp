@@ -27,12 +27,12 @@ WalkingTwinOptions with(double TwinSwitches::* member, double value) {
   return options;
 }
 
-/// Mean displacement of a cycle while one order per step is repeated.
-Vec<3> mean_cycle(const WalkingTwinOptions& options, const Vec<3>& order, int cycles = 8) {
+/// Mean displacement of a cycle while one command per step is repeated.
+Vec<3> mean_cycle(const WalkingTwinOptions& options, const Vec<3>& command, int cycles = 8) {
   WalkingTwin robot(options);
-  robot.cycle(order);
+  robot.cycle(command);
   Vec<3> sum = Vec<3>::Zero();
-  for (int i = 0; i < cycles; ++i) sum += robot.cycle(order).vec();
+  for (int i = 0; i < cycles; ++i) sum += robot.cycle(command).vec();
   CHECK(!robot.fallen());
   return sum / cycles;
 }
@@ -53,7 +53,7 @@ double lag(const WalkingTwinOptions& options) {
 
 const std::vector<TwinSequence>& random_walks() {
   static const std::vector<TwinSequence> walks =
-      record_sequences({}, surefoot::plan_orders(surefoot::OrderBounds(), 8, 25, 3), 3, surefoot::Threads());
+      record_sequences({}, surefoot::plan_commands(surefoot::CommandBounds(), 8, 25, 3), 3, surefoot::Threads());
   return walks;
 }
 
@@ -110,7 +110,7 @@ TEST_CASE("the twin walks as it is told, but for its gains") {
   CHECK(mean_cycle({}, {0, 0, 0}).norm() < 0.02);
 }
 
-TEST_CASE("random orders: no falls, gains near those of the recordings") {
+TEST_CASE("random commands: no falls, gains near those of the recordings") {
   int falls = 0;
   for (const TwinSequence& sequence : random_walks()) falls += sequence.fell ? 1 : 0;
   CHECK(falls == 0);
@@ -142,7 +142,7 @@ TEST_CASE("a shorter leg hangs in the air while the other stands") {
   CHECK(std::abs(twin.soles()[1].z()) < 1e-9);
 }
 
-TEST_CASE("orders take effect after the delay") {
+TEST_CASE("commands take effect after the delay") {
   WalkingTwin robot(with(&TwinSwitches::order_delay, 2));
   const Vec<3> ahead(0.04, 0, 0);
   double early = robot.cycle(ahead).x;
@@ -185,7 +185,7 @@ TEST_CASE("switches by name: a usual value, a given one, and what is no switch")
   CHECK_THROWS_AS(Twin({}, with(&TwinSwitches::battery_drop, 13).switches), TwinError);
 }
 
-TEST_CASE("parameters and orders that cannot be are refused") {
+TEST_CASE("parameters and commands that cannot be are refused") {
   TwinParameters heavy;
   heavy.shin.mass = -1;
   CHECK_THROWS_AS(Twin{heavy}, TwinError);
@@ -194,7 +194,7 @@ TEST_CASE("parameters and orders that cannot be are refused") {
   CHECK_THROWS_AS(robot.cycle({0.5, 0, 0}), TwinError);
 }
 
-TEST_CASE("recordings are read back by calibration: orders per cycle, poses at the end of each") {
+TEST_CASE("recordings are read back by calibration: commands per cycle, poses at the end of each") {
   const auto& walks = random_walks();
   const auto csv = diagnose_program::parse_csv(sequences_csv(walks), "twin.csv");
   calibrate_program::LoadOptions per_step;
@@ -203,7 +203,7 @@ TEST_CASE("recordings are read back by calibration: orders per cycle, poses at t
   REQUIRE(loaded.sequences.size() == walks.size());
   for (std::size_t i = 0; i < walks.size(); ++i) {
     const surefoot::WalkSequence expected = walk_sequence(walks[i]);
-    CHECK((loaded.sequences[i].orders - expected.orders).cwiseAbs().maxCoeff() <= 1.01e-6);
+    CHECK((loaded.sequences[i].commands - expected.commands).cwiseAbs().maxCoeff() <= 1.01e-6);
     CHECK((loaded.sequences[i].poses - expected.poses).cwiseAbs().maxCoeff() <= 0.51e-6);
   }
   CHECK(sequences_csv({}) ==
@@ -211,7 +211,7 @@ TEST_CASE("recordings are read back by calibration: orders per cycle, poses at t
 }
 
 TEST_CASE("the same bits on one thread and on two; repeats differ by their noise alone") {
-  const std::vector<Eigen::Matrix3Xd> same(3, surefoot::plan_orders(surefoot::OrderBounds(), 1, 4, 9).front());
+  const std::vector<Eigen::Matrix3Xd> same(3, surefoot::plan_commands(surefoot::CommandBounds(), 1, 4, 9).front());
   WalkingTwinOptions noisy;
   noisy.target_noise = 0.005;
   const auto one = record_sequences(noisy, same, 1, surefoot::Serial());
@@ -249,7 +249,7 @@ TEST_CASE("the program records, and says what it cannot do") {
   const auto recorded =
       approach_program::run_command(program + "record --sequences 2 --cycles 3 --seed 4 --out " + folder.file("a.csv"));
   CHECK(recorded.code == 0);
-  const auto again = approach_program::run_command(program + "record --threads 1 --orders " + folder.file("a.csv") +
+  const auto again = approach_program::run_command(program + "record --threads 1 --commands " + folder.file("a.csv") +
                                                    " --out " + folder.file("b.csv"));
   CHECK(again.code == 0);
   const auto csv = diagnose_program::read_csv(folder.file("b.csv"));

@@ -70,10 +70,10 @@ void write_search() {
 
 void write_walks() {
   using namespace calibrate_program;
-  const auto orders = surefoot::plan_orders(surefoot::OrderBounds(), /*sequences*/ 3, /*cycles*/ 2, /*seed*/ 1);
+  const auto commands = surefoot::plan_commands(surefoot::CommandBounds(), /*sequences*/ 3, /*cycles*/ 2, /*seed*/ 1);
   const MotionFile robot = paper_robot();
   std::vector<surefoot::WalkSequence> walks;
-  for (const auto& one : orders) {
+  for (const auto& one : commands) {
     surefoot::Rng rng(1, walks.size());
     walks.push_back(simulate_walk(robot.model, robot.noise, surefoot::PoseAccuracy(),
                                   surefoot::planned_sequence(one, /*every_pose*/ true), rng));
@@ -84,7 +84,7 @@ void write_walks() {
   write("walks/named.csv", "a_cm,b_m,c_deg,x_m,y_m\n1,0.01,2,0,0\n2,0,0,0.1,0.05\n");
   write("walks/wheels.csv",
         "t_s,v_left_m_s,v_right_m_s,x_m,y_m,yaw_rad\n0,0.1,0.3,1,2,3\n0.5,0.2,0.2,,,\n1.5,0,0,1,1,0\n");
-  write("sheet/orders.csv", orders_csv(orders, 1));
+  write("sheet/commands.csv", commands_csv(commands, 1));
   write("sheet/sheet.csv", "seq,x_cm,y_cm,heading_clock\n1,100,-20,3\n2,,,\n3,50,10,12\n");
   write("sheet/metres.csv", "seq,x_m,y_m,heading_deg\n1,1,-0.2,90\n3,0.5,0.1,\n");
 }

@@ -28,13 +28,13 @@ TEST_CASE("standard errors say how far coefficients are off, with poses after ev
 TEST_CASE("25 final poses predict nearly as well as the true walk") {
   const auto judges = toys::final_poses(toys::walks(toys::paper_walk(), toys::paper_noise(), 500, 1));
   const std::span<const surefoot::WalkSequence> all(judges);
-  const double ordered = final_pose_error(FullLinearCorrection(), all).position;
+  const double commanded = final_pose_error(FullLinearCorrection(), all).position;
   const double truth = final_pose_error(toys::paper_walk(), all).position;
   double sum = 0;
   for (std::uint64_t seed = 0; seed < 9; ++seed) {
     const auto walks = toys::final_poses(toys::walks(toys::paper_walk(), toys::paper_noise(), 25, 200 + seed));
     sum += final_pose_error(surefoot::calibrate<FullLinearCorrection>(walks).model, all).position / 9;
   }
-  CHECK(truth < 0.5 * ordered);
+  CHECK(truth < 0.5 * commanded);
   CHECK(sum < 1.15 * truth);
 }

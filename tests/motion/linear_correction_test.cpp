@@ -16,7 +16,7 @@ using surefoot::Vec;
 
 // What every motion model owes its users; a new one joins the list.
 TEST_CASE_TEMPLATE("a motion model", Model, ProportionalCorrection, SimpleLinearCorrection, FullLinearCorrection,
-                   surefoot::PreviousOrderCorrection, toys::QuadraticCorrection) {
+                   surefoot::PreviousCommandCorrection, toys::QuadraticCorrection) {
   static_assert(surefoot::MotionModel<Model>);
   const surefoot::Box<Model::parameter_count> box = surefoot::parameter_box<Model>();
   surefoot::Rng rng(1);
@@ -25,7 +25,7 @@ TEST_CASE_TEMPLATE("a motion model", Model, ProportionalCorrection, SimpleLinear
     const auto parameters = box.sample(rng);
     CHECK(Model::from_parameters(parameters).parameters() == parameters);
   }
-  SUBCASE("obeys its orders by default, which lies in its ranges") {
+  SUBCASE("obeys its commands by default, which lies in its ranges") {
     CHECK(surefoot::cycle_displacement(Model(), {0.1, -0.2, 0.3}, {0.5, 0.5, 0.5}).vec() == Vec<3>{0.1, -0.2, 0.3});
     CHECK(box.contains(Model().parameters()));
   }

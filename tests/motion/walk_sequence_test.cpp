@@ -16,8 +16,8 @@ namespace {
 
 WalkSequence two_cycles() {
   WalkSequence sequence{.name = "kitchen"};
-  sequence.orders.resize(3, 2);
-  sequence.orders << 1, 1, 0, 0, std::numbers::pi / 2, 0;
+  sequence.commands.resize(3, 2);
+  sequence.commands << 1, 1, 0, 0, std::numbers::pi / 2, 0;
   sequence.poses.setConstant(3, 2, std::nan(""));
   sequence.poses.col(1) << 1, 1, std::numbers::pi / 2;
   return sequence;
@@ -60,8 +60,8 @@ TEST_CASE("a sequence that cannot be used is named") {
   CHECK(message(sequence) ==
         "sequence kitchen: has no final position; measure where the robot stopped, or leave the sequence out");
   sequence = two_cycles();
-  sequence.orders(2, 0) = std::nan("");
-  CHECK(message(sequence) == "sequence kitchen: has an order that is no number");
+  sequence.commands(2, 0) = std::nan("");
+  CHECK(message(sequence) == "sequence kitchen: has a command that is not a number");
   CHECK(message(WalkSequence{.name = "kitchen"}) == "sequence kitchen: has no cycle");
   CHECK_THROWS_WITH_AS(surefoot::check(std::span<const WalkSequence>()), "there is no sequence to calibrate from",
                        MotionError);

@@ -62,7 +62,7 @@ TEST_CASE("a stop request ends the search, between or within generations") {
   std::stop_source stop;
   int generations = 0;
   const auto result = cma_es(toy::sphere, VectorXd::Ones(3), 0.5,
-                             {.observer =
+                             {.on_progress =
                                   [&](const CmaEsSearch&) {
                                     if (++generations == 5) stop.request_stop();
                                   }},

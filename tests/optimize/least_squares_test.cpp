@@ -101,8 +101,8 @@ TEST_CASE("with a box the solution is the best point inside, and held parameters
   CHECK(fit.x[1] == -0.4);
   // With the slope held, the offset is a mean.
   CHECK(fit.x[0] == doctest::Approx((line.seen + 0.4 * line.inputs.col(1)).mean()));
-  CHECK(fit.held[1]);
-  CHECK_FALSE(fit.held[0]);
+  CHECK(fit.active_bound[1]);
+  CHECK_FALSE(fit.active_bound[0]);
   CHECK(fit.covariance(1, 1) == 0);
   CHECK(fit.covariance(0, 0) == doctest::Approx(fit.deviation * fit.deviation / 50));
 }

@@ -11,25 +11,27 @@
 namespace toys {
 
 struct FittedWalk {
-  surefoot::BoundSimulator rig;
-  surefoot::RecordingSplit split;
-  surefoot::FitProblem problem;
-  surefoot::Hypothesis hypothesis;
+  surefoot::diagnosis::BoundSimulator bound;
+  surefoot::diagnosis::RecordingSplit split;
+  surefoot::diagnosis::FitProblem problem;
+  surefoot::diagnosis::Hypothesis hypothesis;
 };
 
 /// Forty sequences with a pose in every row, each predicted from the row before; see walk_recordings for `change`.
 template <class Change>
-FittedWalk fitted_walk(Change&& change, std::uint64_t seed, const surefoot::Parallel& parallel = surefoot::serially()) {
-  FittedWalk walk{.rig = surefoot::bind_simulator(WalkingRobot{}, walk_recordings(change, false, 40, seed)),
+FittedWalk fitted_walk(Change&& change, std::uint64_t seed,
+                       const surefoot::diagnosis::Parallel& parallel = surefoot::diagnosis::serially()) {
+  FittedWalk walk{.bound = surefoot::diagnosis::bind_simulator(WalkingRobot{}, walk_recordings(change, false, 40, seed)),
                   .split = {},
                   .problem = {},
                   .hypothesis = {}};
-  walk.rig.integration.restart = 1;
-  walk.split = surefoot::split_recordings(walk.rig.recordings, {}, 0.2, 4, seed);
+  walk.bound.integration.restart = 1;
+  walk.split = surefoot::diagnosis::split_recordings(walk.bound.recordings, {}, 0.2, 4, seed);
   walk.problem.recordings = walk.split.training;
-  walk.problem.integration = walk.rig.integration;
-  walk.hypothesis =
-      surefoot::calibrate(walk.rig, surefoot::nominal_hypothesis(walk.rig), walk.problem, 8, seed, parallel).hypothesis;
+  walk.problem.integration = walk.bound.integration;
+  walk.hypothesis = surefoot::diagnosis::calibrate(walk.bound, surefoot::diagnosis::nominal_hypothesis(walk.bound),
+                                                   walk.problem, 8, seed, parallel)
+                        .hypothesis;
   return walk;
 }
 

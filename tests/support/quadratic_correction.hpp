@@ -24,8 +24,8 @@ struct QuadraticCorrection {
   }
   static QuadraticCorrection from_parameters(const surefoot::Vec<6>& p) { return {p.head<3>(), p.tail<3>()}; }
   surefoot::Vec<6> parameters() const { return (surefoot::Vec<6>() << linear, quadratic).finished(); }
-  surefoot::Pose2 displacement(const surefoot::Vec<3>& orders) const {
-    return surefoot::Pose2::from_vec((linear + quadratic.cwiseProduct(orders.cwiseAbs())).cwiseProduct(orders));
+  surefoot::Pose2 displacement(const surefoot::Vec<3>& commands) const {
+    return surefoot::Pose2::from_vec((linear + quadratic.cwiseProduct(commands.cwiseAbs())).cwiseProduct(commands));
   }
 
   surefoot::Vec<3> linear = surefoot::Vec<3>::Ones(), quadratic = surefoot::Vec<3>::Zero();

@@ -30,13 +30,13 @@ inline surefoot::MotionNoise noise(double factor = 1) {
   return surefoot::UniformNoise{factor * toys::paper_noise().half_width}.as_motion_noise();
 }
 
-/// Every order walked once.
+/// Every command walked once.
 inline std::vector<surefoot::WalkSequence> walked(const Model& model, const surefoot::MotionNoise& noise,
-                                                  const std::vector<Eigen::Matrix3Xd>& orders, bool every_pose,
+                                                  const std::vector<Eigen::Matrix3Xd>& commands, bool every_pose,
                                                   std::uint64_t seed) {
   surefoot::Rng rng(seed);
   std::vector<surefoot::WalkSequence> result;
-  for (const Eigen::Matrix3Xd& one : orders) {
+  for (const Eigen::Matrix3Xd& one : commands) {
     const surefoot::WalkSequence planned = surefoot::planned_sequence(one, every_pose);
     result.push_back(surefoot::simulate_walk(model, noise, surefoot::PoseAccuracy(), planned, rng));
   }

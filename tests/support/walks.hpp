@@ -1,4 +1,4 @@
-// Recorded walks of the robot of the paper, made up: its correction and noise, random orders, poses after every cycle.
+// Recorded walks of the robot of the paper, made up: its correction and noise, random commands, poses after every cycle.
 #pragma once
 
 #include <cstdint>
@@ -28,9 +28,9 @@ template <surefoot::MotionModel M, surefoot::NoiseModel N>
 std::vector<surefoot::WalkSequence> walks(const M& model, const N& noise, int count, std::uint64_t seed,
                                           int cycles = 25, const surefoot::PoseAccuracy& accuracy = exact) {
   std::vector<surefoot::WalkSequence> result;
-  for (const Eigen::Matrix3Xd& orders : surefoot::plan_orders({}, count, cycles, seed)) {
+  for (const Eigen::Matrix3Xd& commands : surefoot::plan_commands({}, count, cycles, seed)) {
     surefoot::Rng rng(seed, result.size(), 1);
-    result.push_back(surefoot::simulate_walk(model, noise, accuracy, surefoot::planned_sequence(orders, true), rng));
+    result.push_back(surefoot::simulate_walk(model, noise, accuracy, surefoot::planned_sequence(commands, true), rng));
   }
   return result;
 }

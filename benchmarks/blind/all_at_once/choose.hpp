@@ -1,4 +1,4 @@
-// Which candidates survive an L1 penalty that held-out recordings choose.
+// Choice of candidates by an L1 penalty that held-out recordings set.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// concealed_all_at_once: a baseline for the concealed proof that knows every effect of the library but does not search.
+// concealed_all_at_once: a baseline for the blind benchmark that knows every effect of the library but does not search.
 // Calibrates the nominal parameters, linearises all candidate effects at once, and names those that survive an L1
 // penalty. Same command line and diagnosis.json as surefoot-diagnose.
 #include <algorithm>
@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "choose.hpp"
 #include "apps/diagnose/equations.hpp"
 #include "apps/diagnose/own_simulator.hpp"
 #include "apps/diagnose/write_json.hpp"
+#include "choose.hpp"
 #include "prepare.hpp"
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/executor.hpp"
@@ -93,8 +93,8 @@ int run(const S& simulator, const diagnose_program::Layout& layout, const diagno
   LoadedRecordings loaded = load_all(line, layout);
   surefoot::DiagnoseOptions options;
   options.known = known_effects(model, surefoot::all_effects());
-  options.test = test_names(line, loaded.recordings);
-  options.test_share = line.test_share;
+  options.held_out = test_names(line, loaded.recordings);
+  options.held_out_share = line.test_share;
   options.effects = line.effects;
   options.max_effects = line.max_effects;
   prepare_folder(line.out);
@@ -102,7 +102,9 @@ int run(const S& simulator, const diagnose_program::Layout& layout, const diagno
   const surefoot::Parallel parallel = [&](std::size_t count, const std::function<void(std::size_t)>& job) {
     threads.run(count, job);
   };
-  const MakeRig make = [&](std::vector<surefoot::Recording> some) { return bind_simulator(simulator, std::move(some)); };
+  const MakeRig make = [&](std::vector<surefoot::Recording> some) {
+    return bind_simulator(simulator, std::move(some));
+  };
   surefoot::Diagnosis diagnosis =
       diagnose(make, simulator.info(), std::move(loaded.recordings), options, parallel, line.seed);
   diagnosis.remarks.insert(diagnosis.remarks.begin(), loaded.remarks.begin(), loaded.remarks.end());

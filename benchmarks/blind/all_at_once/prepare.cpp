@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/screening.hpp"
 
 using namespace surefoot::diagnosis;
@@ -28,15 +28,15 @@ Investigation prepare(const MakeRig& make, const surefoot::SimulatorInfo& info,
   diagnosis.seed = seed;
   for (surefoot::Recording& recording : recordings) {
     check_recording(info, recording);
-    const auto wild = remove_outliers(info, recording);
-    diagnosis.remarks.insert(diagnosis.remarks.end(), wild.begin(), wild.end());
+    const auto outliers = remove_outliers(info, recording);
+    diagnosis.remarks.insert(diagnosis.remarks.end(), outliers.begin(), outliers.end());
   }
   surefoot::BoundSimulator& bound = result.bound;
   bound = make(std::move(recordings));
-  result.split = split_recordings(bound.recordings, options.test, options.test_share, 4, seed);
+  result.split = split_recordings(bound.recordings, options.held_out, options.held_out_share, 4, seed);
   const auto& training = result.split.training;
   for (const std::size_t r : training) diagnosis.fit.push_back(bound.recordings[r].name);
-  for (const std::size_t r : result.split.test) diagnosis.test.push_back(bound.recordings[r].name);
+  for (const std::size_t r : result.split.held_out) diagnosis.held_out.push_back(bound.recordings[r].name);
   diagnosis.select = diagnosis.fit;
 
   result.nominal = nominal_hypothesis(bound);

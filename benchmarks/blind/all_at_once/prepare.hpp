@@ -1,12 +1,13 @@
-// What a diagnosis does before it looks for effects: screened recordings, their split, calibrated parameters, sizes.
+// Preparation of a diagnosis before it looks for effects: screened recordings, their split, calibrated parameters,
+// sizes.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <vector>
 
-#include "surefoot/diagnose/verdict/investigation.hpp"
 #include "surefoot/diagnose/options.hpp"
+#include "surefoot/diagnose/verdict/investigation.hpp"
 
 namespace all_at_once {
 

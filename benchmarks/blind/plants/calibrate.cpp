@@ -103,7 +103,7 @@ Column residuals(const System& system, const Values& parameters, const std::vect
       if (how.stepwise) noise = std::hypot(std::sqrt(2) * noise, system.process_noise[k]);
       for (std::size_t row = 0; row < series.outputs[k].size(); ++row) {
         const double reading = recording.readings[k][row];
-        if (std::isfinite(reading) && !recording.wild[k][row])
+        if (std::isfinite(reading) && !recording.outliers[k][row])
           all.push_back((reading - series.outputs[k][row]) / noise);
       }
     }

@@ -1,4 +1,4 @@
-// Fits parameters to readings: Gauss-Newton after Levenberg and Marquardt, derivatives by differences.
+// Fit of parameters to readings: Gauss-Newton after Levenberg and Marquardt, derivatives by differences.
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace plants {
 
-/// Readings minus simulation, in standard deviations of the noise; missing and wild readings are left out.
+/// Readings minus simulation, in standard deviations of the noise; missing readings and outliers are left out.
 Column residuals(const System& system, const Values& parameters, const std::vector<Fault>& faults,
                  std::span<const Recording> recordings, const How& how);
 

@@ -52,8 +52,8 @@ bool measure(Random& random, Case& one) {
         if (!(std::abs(value) < 1e3)) return false;
     read_out(random, one.system, one.sensing, recording);
   }
-  if (one.sensing.wild)
-    add_wild_sample(random, one.system, one.system.recordings[random.index(one.system.recordings.size())]);
+  if (one.sensing.outlier)
+    add_outlier(random, one.system, one.system.recordings[random.index(one.system.recordings.size())]);
   return true;
 }
 

@@ -1,4 +1,4 @@
-// One case of the concealed proof: a system, its faults, its readings, and how much the faults matter.
+// A case of the blind benchmark: a system, its faults, its readings, and how much the faults matter.
 #pragma once
 
 #include <filesystem>
@@ -42,7 +42,7 @@ Case draw_case(Random& random, const std::string& family, Kind kind);
 /// Writes DIR/<name>/ with the model file and the recordings.
 void write_case(const Case& one, const std::filesystem::path& folder);
 
-/// Writes what was concealed.
+/// Writes the hidden ground truth.
 void write_truth(const Case& one, const std::filesystem::path& file);
 
 }  // namespace plants

@@ -1,4 +1,4 @@
-// Draws forces for a machine with one degree of freedom, in strengths that suit its typical motion.
+// Random forces for a machine with one degree of freedom, in strengths that suit its typical motion.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Orders over time for the experiments.
+// Commands over time for the experiments.
 #pragma once
 
 #include <cmath>

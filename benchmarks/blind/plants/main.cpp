@@ -1,4 +1,4 @@
-// concealed_plants: writes cases for the concealed proof, machines with physics that their model files leave out, and,
+// concealed_plants: writes cases for the blind benchmark, machines with physics that their model files leave out, and,
 // apart from them, the truth. Nothing here comes from the library.
 #include <algorithm>
 #include <cstdio>

@@ -1,5 +1,5 @@
-// Simulates a machine with one degree of freedom and any faults: classical Runge-Kutta, with bristles, plays and stops
-// brought up to date once per step.
+// Simulation of a machine with one degree of freedom and any faults: classical Runge-Kutta, with bristles, plays and
+// stops brought up to date once per step.
 #pragma once
 
 #include <array>

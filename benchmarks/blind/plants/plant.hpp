@@ -1,4 +1,4 @@
-// What the plants are made of: recordings, faults (the concealed physics) and systems (a nominal model that can be
+// Parts of the plants: recordings, faults (the hidden physics) and systems (a nominal model that can be
 // simulated with any parameters and faults).
 #pragma once
 
@@ -22,7 +22,7 @@ struct Recording {
   std::vector<double> initial;                       // true initial state
   std::vector<Column> ideal;                         // per output: noise-free
   std::vector<Column> readings;                      // per output: as written, NaN = not measured
-  std::vector<std::vector<bool>> wild;               // per output: reading is a measurement error
+  std::vector<std::vector<bool>> outliers;           // per output: reading is a measurement error
 };
 
 /// A number of a fault, as the truth file shows it.
@@ -104,7 +104,7 @@ enum class Formula {
 
 enum class Place { force, state, input, signal, sensor, parameter, planar };
 
-/// One piece of concealed physics.
+/// One piece of hidden physics.
 struct Fault {
   std::string name;  // name of the effect, or "outside: ..."
   std::string attached_to;

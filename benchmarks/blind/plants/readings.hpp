@@ -1,4 +1,4 @@
-// From ideal outputs to what is written down: coloured noise, rounding, missing cells, rarely a wild sample.
+// Readings made of ideal outputs: coloured noise, rounding, missing cells, rarely an outlier.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@ struct Sensing {
   double correlation = 0;  // of the noise from row to row (first-order autoregression)
   double resolution = 0;   // rounding of the readings, in standard deviations of the noise
   double missing = 0;      // share of empty cells
-  bool wild = false;       // one reading is a gross error
+  bool outlier = false;    // one reading is a gross error
 };
 
 inline Sensing draw_sensing(Random& random, bool final_only) {
@@ -22,7 +22,7 @@ inline Sensing draw_sensing(Random& random, bool final_only) {
   if (final_only) return sensing;
   sensing.correlation = random.uniform(0, 0.6);
   if (random.chance(0.3)) sensing.missing = random.uniform(0.001, 0.01);
-  sensing.wild = random.chance(0.1);
+  sensing.outlier = random.chance(0.1);
   return sensing;
 }
 
@@ -40,7 +40,7 @@ inline Column coloured(Random& random, std::size_t rows, double deviation, doubl
 inline void read_out(Random& random, const System& system, const Sensing& sensing, Recording& recording) {
   const double nothing = std::numeric_limits<double>::quiet_NaN();
   recording.readings = recording.ideal;
-  recording.wild.clear();
+  recording.outliers.clear();
   for (std::size_t k = 0; k < recording.ideal.size(); ++k) {
     Column& column = recording.readings[k];
     const double step = sensing.resolution * system.noise[k];
@@ -50,15 +50,15 @@ inline void read_out(Random& random, const System& system, const Sensing& sensin
       const bool unseen = system.final_only ? i + 1 < column.size() : i > 0 && random.chance(sensing.missing);
       if (unseen) column[i] = nothing;
     }
-    recording.wild.emplace_back(column.size(), false);
+    recording.outliers.emplace_back(column.size(), false);
   }
 }
 
-inline void add_wild_sample(Random& random, const System& system, Recording& recording) {
+inline void add_outlier(Random& random, const System& system, Recording& recording) {
   const std::size_t k = random.index(system.outputs.size()), row = 10 + random.index(recording.readings[k].size() - 20);
   if (!std::isfinite(recording.readings[k][row])) return;
   recording.readings[k][row] += random.sign() * random.uniform(20, 60) * system.noise[k];
-  recording.wild[k][row] = true;
+  recording.outliers[k][row] = true;
 }
 
 }  // namespace plants

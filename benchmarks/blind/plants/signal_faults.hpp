@@ -1,4 +1,4 @@
-// Formulas of what happens to orders on their way in and to readings on their way out.
+// Formulas of faults of signals: of commands on their way in and of readings on their way out.
 #pragma once
 
 #include <algorithm>

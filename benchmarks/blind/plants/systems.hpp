@@ -1,4 +1,4 @@
-// What the families share: parameters, model files, sizes of the motion.
+// Common parts of the families: parameters, model files, sizes of the motion.
 #pragma once
 
 #include <algorithm>

@@ -81,7 +81,7 @@ void write_truth(const Case& one, const std::filesystem::path& file) {
   json["sensing"] = {{"noise_correlation", one.sensing.correlation},
                      {"resolution_in_noise", one.sensing.resolution},
                      {"missing_share", one.sensing.missing},
-                     {"wild_sample", one.sensing.wild}};
+                     {"outlier", one.sensing.outlier}};
   json["true_model_rmse"] = one.actual_rmse;
   json["calibrated_nominal_rmse"] = one.calibrated_rmse;
   json["strength"] = one.strength();

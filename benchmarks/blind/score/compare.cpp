@@ -24,7 +24,7 @@ bool right_place(const Effect& named, const Effect& truth) {
          std::ranges::find(truth.also_accepted, named.attached_to) != truth.also_accepted.end();
 }
 
-// Some concealed effect is named at its right place.
+// Some hidden effect is named at its right place.
 bool any_attached(const Effects& named, const Effects& truth) {
   return std::ranges::any_of(named, [&](const Effect& one) {
     return std::ranges::any_of(truth, [&](const Effect& t) { return t.name == one.name && right_place(one, t); });

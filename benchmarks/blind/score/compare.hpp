@@ -1,4 +1,4 @@
-// What an answer got right in one case.
+// Comparison of an answer with the truth of a case.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ struct Outcome {
   bool detected = false;     // says that something is missing
   bool named_first = false;  // its first name is right, or a declared class of indistinguishable ones contains it
   bool named_in_three = false;
-  bool all_named = false;                // every concealed effect is among those named
+  bool all_named = false;                // every hidden effect is among those named
   bool attached = false;                 // of a right name: at the right place
   int class_size = 1;                    // hypotheses declared indistinguishable, the chosen one included
   int superfluous = 0;                   // names that are not in the truth

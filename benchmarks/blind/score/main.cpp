@@ -1,4 +1,4 @@
-// concealed_score: compares answers with the truth of the concealed cases and prints tables.
+// concealed_score: compares answers with the hidden truth of the cases and prints tables.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

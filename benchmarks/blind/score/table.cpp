@@ -38,7 +38,7 @@ const std::vector<std::string> kinds{"nothing", "one", "two", "outside"};
 void print_confusion(const std::vector<Outcome>& outcomes) {
   std::map<std::string, std::map<std::string, std::map<std::string, int>>> counts;  // family, kind, verdict
   for (const Outcome& outcome : outcomes) ++counts[outcome.truth->family][outcome.truth->kind][outcome.answer.verdict];
-  std::printf("Verdicts (rows: what is concealed)\n%-12s %-10s", "family", "kind");
+  std::printf("Verdicts (rows: ground truth)\n%-12s %-10s", "family", "kind");
   for (const std::string& verdict : verdicts) std::printf(" %16s", verdict.c_str());
   std::printf("\n");
   for (auto& [family, rows] : counts)
@@ -89,7 +89,7 @@ void print_wrong(const std::vector<Outcome>& outcomes) {
   for (const Outcome& outcome : outcomes) {
     const std::string what = complaint(outcome);
     if (what.empty()) continue;
-    std::printf("%s %-10s %-24s strength %5.1f | concealed: %s | said: %s, %s", outcome.truth->name.c_str(),
+    std::printf("%s %-10s %-24s strength %5.1f | hidden: %s | said: %s, %s", outcome.truth->name.c_str(),
                 outcome.truth->family.c_str(), what.c_str(), outcome.truth->strength,
                 joined(outcome.truth->effects).c_str(), outcome.answer.verdict.c_str(),
                 joined(outcome.answer.effects).c_str());

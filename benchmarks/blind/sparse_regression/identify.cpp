@@ -14,7 +14,7 @@ using plants::Recording;
 using plants::System;
 using plants::Values;
 
-constexpr double least_gain = 0.95;  // error with terms over error without, on rows kept aside
+constexpr double least_gain = 0.95;  // error with terms over error without, on held-out rows
 
 std::vector<std::size_t> free_parameters(const System& system) {
   std::vector<std::size_t> free;

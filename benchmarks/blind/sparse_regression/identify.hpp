@@ -1,4 +1,4 @@
-// Finds terms by sparse regression, component by component, and tells how far they carry in simulation.
+// Identification of terms by sparse regression, component by component, and their errors in simulation.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@ namespace sparse {
 struct Found {
   plants::Values coefficients;  // of machine.terms
   plants::Values importance;    // share of the residual that a term makes up, in root mean square
-  bool significant = false;     // the terms lower the error on rows kept aside by a twentieth
+  bool significant = false;     // the terms lower the error on held-out rows by a twentieth
 };
 
 Found identify(const plants::System& system, const Machine& machine, const plants::Values& parameters,

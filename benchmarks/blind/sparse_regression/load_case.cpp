@@ -96,7 +96,7 @@ Recording read_recording(const std::filesystem::path& file, const System& system
     for (std::size_t k = 0; k < system.outputs.size(); ++k) recording.readings[k].push_back(value(system.outputs[k]));
   }
   if (recording.readings[0].size() < 2) throw std::runtime_error(file.string() + ": fewer than two rows");
-  for (const plants::Column& column : recording.readings) recording.wild.emplace_back(column.size(), false);
+  for (const plants::Column& column : recording.readings) recording.outliers.emplace_back(column.size(), false);
   return recording;
 }
 

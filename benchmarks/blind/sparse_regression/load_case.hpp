@@ -1,5 +1,5 @@
-// Reads a case as it is given to every method: the model file (for its nominal values; the equations of the families
-// are known) and the recordings.
+// Reader of a case as it is given to every method: the model file (for its nominal values; the equations of the
+// families are known) and the recordings.
 #pragma once
 
 #include <filesystem>

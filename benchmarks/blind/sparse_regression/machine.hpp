@@ -16,7 +16,7 @@ using Triple = std::array<double, 3>;
 struct Look {
   double time = 0;           // [s], or step
   Triple state{};            // one_dof: position, speed; levels: upper, lower; walk: pose
-  Triple input{}, before{};  // before: a few rows earlier; for walks the previous order
+  Triple input{}, before{};  // before: a few rows earlier; for walks the previous command
 };
 
 enum class Motion { one_dof, levels, walk };

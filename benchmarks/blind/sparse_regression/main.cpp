@@ -1,4 +1,4 @@
-// concealed_sparse_regression: a plain baseline for the concealed proof. Calibrates the nominal parameters, regresses
+// concealed_sparse_regression: a plain baseline for the blind benchmark. Calibrates the nominal parameters, regresses
 // what remains of the rates on a library of terms with sequential thresholding, and names the effects that the terms
 // stand for. Same command line and diagnosis.json as surefoot-diagnose, as far as scoring needs them.
 #include <algorithm>

@@ -18,7 +18,7 @@ struct Rows {
 struct Fit {
   plants::Values coefficients;  // zero: dropped
   double threshold = 0;
-  double before = 0, after = 0;  // root mean square error on the rows kept aside: kept columns alone, all chosen
+  double before = 0, after = 0;  // root mean square error on the held-out rows: kept columns alone, all chosen
 };
 
 /// The threshold is the one that does best on `check`; within 2 % of the best, the sparsest.

@@ -1,4 +1,4 @@
-// What regression is done on: states and their rates from smoothed readings, or the steps between measured poses.
+// Samples for the regression: states and their rates from smoothed readings, or the steps between measured poses.
 #pragma once
 
 #include <vector>

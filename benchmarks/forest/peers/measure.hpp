@@ -1,4 +1,4 @@
-// How long things take: CPU time of this process, and of single calls whose data is no longer in the L1 and L2 caches.
+// Durations: CPU time of this process, and of single calls whose data is no longer in the L1 and L2 caches.
 #pragma once
 
 #include <cstddef>

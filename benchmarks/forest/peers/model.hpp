@@ -1,4 +1,4 @@
-// What every library is asked to do: learn from the same samples, predict the same points.
+// Tasks for every library: learn from the same samples, predict the same points.
 #pragma once
 
 #include <cstddef>

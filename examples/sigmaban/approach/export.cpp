@@ -54,7 +54,7 @@ std::string braces(const auto& numbers) {
 
 /// What a walk does at a speed that stays the same.
 Eigen::Matrix<double, 3, 4> steady_walk(const surefoot::FullLinearCorrection& walk) { return walk.matrix(); }
-Eigen::Matrix<double, 3, 4> steady_walk(const surefoot::PreviousOrderCorrection& walk) {
+Eigen::Matrix<double, 3, 4> steady_walk(const surefoot::PreviousCommandCorrection& walk) {
   Eigen::Matrix<double, 3, 4> result = walk.present().matrix();
   result.rightCols<3>() += walk.previous();
   return result;

@@ -18,7 +18,7 @@
 namespace sigmaban {
 
 /// With any linear walk and any noise that calibration knows.
-using CalibratedApproach = ApproachWith<surefoot::PreviousOrderCorrection, surefoot::MotionNoise>;
+using CalibratedApproach = ApproachWith<surefoot::PreviousCommandCorrection, surefoot::MotionNoise>;
 
 inline void add_motion_option(CLI::App& command, std::string& file) {
   command

@@ -19,7 +19,7 @@ void add_twin_options(CLI::App& command, TwinOptions& options) {
 }
 
 void add_sequence_options(CLI::App& command, int& sequences, int& cycles) {
-  command.add_option("--sequences", sequences, "of random orders within the paper's bounds")
+  command.add_option("--sequences", sequences, "of random commands within the paper's bounds")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   command.add_option("--cycles", cycles, "of each sequence")->check(CLI::Range(1, 10'000))->capture_default_str();

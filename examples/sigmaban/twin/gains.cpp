@@ -28,7 +28,7 @@ surefoot::Vec<3> spread(const std::vector<TwinSequence>& sequences, const Eigen:
   for (const TwinSequence& sequence : sequences) {
     for (std::size_t i = 0; i < sequence.moved.size(); ++i, ++cycles) {
       const surefoot::Vec<3> expected =
-          gains.leftCols<1>() + gains.rightCols<3>() * (steps_per_cycle * sequence.orders[i]);
+          gains.leftCols<1>() + gains.rightCols<3>() * (steps_per_cycle * sequence.commands[i]);
       squares += (sequence.moved[i].vec() - expected).cwiseAbs2();
     }
   }
@@ -42,7 +42,7 @@ void print(const std::vector<TwinSequence>& sequences, double cpu_seconds) {
               100 * upright.value(), 100 * upright.low(), 100 * upright.high());
   const auto gains = walk_gains(sequences);
   const surefoot::Vec<3> rest = spread(sequences, gains);
-  std::printf("displacement of a cycle = A (1, orders of the cycle):  [m, m, rad]\n");
+  std::printf("displacement of a cycle = A (1, commands of the cycle):  [m, m, rad]\n");
   constexpr const char* names[] = {"forward", "left", "turn"};
   for (Eigen::Index i = 0; i < 3; ++i) {
     std::printf("  %-8s %8.4f %7.3f %7.3f %7.3f   unexplained %.4f\n", names[i], gains(i, 0), gains(i, 1), gains(i, 2),
@@ -57,12 +57,12 @@ void print(const std::vector<TwinSequence>& sequences, double cpu_seconds) {
 
 void run(const Options& options) {
   const WalkingTwinOptions twin = walking_twin_options(options.twin);
-  const auto orders =
-      surefoot::plan_orders(surefoot::OrderBounds(), options.sequences, options.cycles, options.twin.seed);
+  const auto commands =
+      surefoot::plan_commands(surefoot::CommandBounds(), options.sequences, options.cycles, options.twin.seed);
   calibrate_program::until_interrupted(options.twin.threads, [&](const calibrate_program::StoppableThreads& threads) {
     const std::clock_t began = std::clock();  // of all threads together
     const auto sequences =
-        record_sequences(twin, orders, options.twin.seed, threads, ProgressLine("sequences", orders.size()));
+        record_sequences(twin, commands, options.twin.seed, threads, ProgressLine("sequences", commands.size()));
     if (!sequences.empty()) print(sequences, static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC);
   });
 }

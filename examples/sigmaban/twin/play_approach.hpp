@@ -21,7 +21,7 @@ struct PlayedApproach {
   bool fell = false;                   // costs what losing the ball costs, and ends the run
   surefoot::Pose2 ball;                // position, and the direction of the kick
   std::vector<surefoot::Pose2> cycle;  // poses of the trunk: at the start, and after every cycle
-  std::vector<surefoot::Pose2> tick;   // after every order period
+  std::vector<surefoot::Pose2> tick;   // after every command period
 };
 
 /// From where the robot stands now. Poses are in the frame of the ground.

@@ -1,4 +1,4 @@
-// `record`: sequences of walk orders and where the twin got by them, as CSV.
+// `record`: sequences of walk commands and where the twin got by them, as CSV.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -20,31 +20,31 @@ namespace {
 struct Options {
   TwinOptions twin;
   int sequences = 25, cycles = 25;
-  std::filesystem::path orders, out;
+  std::filesystem::path commands, out;
 };
 
 /// Per cycle, one matrix per sequence.
-std::vector<Eigen::Matrix3Xd> orders_of(const Options& options) {
-  if (options.orders.empty()) {
-    return surefoot::plan_orders(surefoot::OrderBounds(), options.sequences, options.cycles, options.twin.seed);
+std::vector<Eigen::Matrix3Xd> commands_of(const Options& options) {
+  if (options.commands.empty()) {
+    return surefoot::plan_commands(surefoot::CommandBounds(), options.sequences, options.cycles, options.twin.seed);
   }
   calibrate_program::LoadOptions load;
   load.usual_steps = steps_per_cycle;
   load.poses_needed = false;
-  std::vector<Eigen::Matrix3Xd> orders;
-  for (auto& sequence : calibrate_program::load_sequences({options.orders}, load).sequences) {
-    orders.push_back(std::move(sequence.orders));
+  std::vector<Eigen::Matrix3Xd> commands;
+  for (auto& sequence : calibrate_program::load_sequences({options.commands}, load).sequences) {
+    commands.push_back(std::move(sequence.commands));
   }
-  return orders;
+  return commands;
 }
 
 void run(const Options& options) {
   const WalkingTwinOptions twin = walking_twin_options(options.twin);
-  const std::vector<Eigen::Matrix3Xd> orders = orders_of(options);
+  const std::vector<Eigen::Matrix3Xd> commands = commands_of(options);
   example::prepare_output(options.out);
   calibrate_program::until_interrupted(options.twin.threads, [&](const calibrate_program::StoppableThreads& threads) {
     const auto sequences =
-        record_sequences(twin, orders, options.twin.seed, threads, ProgressLine("sequences", orders.size()));
+        record_sequences(twin, commands, options.twin.seed, threads, ProgressLine("sequences", commands.size()));
     const auto falls = std::ranges::count_if(sequences, &TwinSequence::fell);
     example::write_text(options.out, sequences_csv(sequences));
     std::printf("%s: %zd sequences", options.out.c_str(), std::ssize(sequences) - falls);
@@ -58,14 +58,14 @@ void run(const Options& options) {
 void add_record(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      program.add_subcommand("record", "Write what is recorded of the twin: orders, displacement and pose per cycle");
+      program.add_subcommand("record", "Write what is recorded of the twin: commands, displacement and pose per cycle");
   command->footer(
-      "Orders in the file are per step, a cycle has two: tell surefoot-calibrate --steps-per-cycle 2.\n"
+      "Commands in the file are per step, a cycle has two: tell surefoot-calibrate --steps-per-cycle 2.\n"
       "Ctrl-C ends early and keeps the sequences that are done.");
   add_sequence_options(*command, options->sequences, options->cycles);
   command
-      ->add_option("--orders", options->orders,
-                   "CSV file of orders in place of random ones, as written by surefoot-calibrate plan or by record")
+      ->add_option("--commands", options->commands,
+                   "CSV file of commands in place of random ones, as written by surefoot-calibrate plan or by record")
       ->check(CLI::ExistingFile);
   add_twin_options(*command, options->twin);
   command->add_option("--out", options->out, "CSV file to write")->required();

@@ -11,19 +11,19 @@
 namespace sigmaban {
 
 void draw_robot_strip(const std::filesystem::path& base, const WalkingTwinOptions& options,
-                      const surefoot::Vec<3>& orders) {
+                      const surefoot::Vec<3>& commands) {
   constexpr std::size_t panels = 8;
   constexpr int width = 300, height = 360;  // [pixels]
   WalkingTwin robot(options);
   OffscreenView view(robot.twin(), width, height);
-  for (int i = 0; i < 2; ++i) robot.cycle(orders);
+  for (int i = 0; i < 2; ++i) robot.cycle(commands);
   std::string pixels;
   std::ostringstream commands;
   commands << "set multiplot layout 2,4 margins 0.005,0.995,0.005,0.94 spacing 0.01,0.06\n"
               "unset tics\nunset key\nunset colorbox\nset border 0\n";
   const auto ticks = static_cast<std::size_t>(1 / (options.walk.frequency * options.twin.order_period));
   std::size_t tick = 0, drawn = 0;
-  robot.cycle(orders, [&](const Twin&) {
+  robot.cycle(commands, [&](const Twin&) {
     if (tick++ != drawn * ticks / panels || drawn == panels) return;
     const Image image = view.render(robot.twin());
     commands << "set title 'after " << std::lround(1000 * options.twin.order_period * static_cast<double>(tick))

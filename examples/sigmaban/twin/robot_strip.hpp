@@ -8,9 +8,9 @@
 
 namespace sigmaban {
 
-/// Draws BASE.svg and BASE.png: eight moments of the third walk cycle with these orders per step [m, m, rad]. Throws
+/// Draws BASE.svg and BASE.png: eight moments of the third walk cycle with these commands per step [m, m, rad]. Throws
 /// example::UsageError if nothing can be rendered here.
 void draw_robot_strip(const std::filesystem::path& base, const WalkingTwinOptions& options,
-                      const surefoot::Vec<3>& orders);
+                      const surefoot::Vec<3>& commands);
 
 }  // namespace sigmaban

@@ -27,7 +27,7 @@ class Twin {
   /// At the origin, looking along x, joints at these targets, the left foot flat on the ground, nothing moving.
   void reset(const JointTargets& stand);
 
-  /// One order period with these targets. Throws TwinError for targets that are not finite.
+  /// One command period with these targets. Throws TwinError for targets that are not finite.
   void drive(const JointTargets& targets);
 
   surefoot::Pose2 pose() const;

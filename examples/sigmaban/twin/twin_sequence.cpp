@@ -8,15 +8,15 @@
 
 namespace sigmaban {
 
-TwinSequence record_sequence(const WalkingTwinOptions& options, const Eigen::Matrix3Xd& orders, std::size_t number,
+TwinSequence record_sequence(const WalkingTwinOptions& options, const Eigen::Matrix3Xd& commands, std::size_t number,
                              std::uint64_t seed) {
-  TwinSequence result{.number = number, .orders = {}, .moved = {}};
+  TwinSequence result{.number = number, .commands = {}, .moved = {}};
   WalkingTwin robot(options, surefoot::Rng(seed, number).stream(1));
-  for (Eigen::Index cycle = 0; cycle < orders.cols() && !robot.fallen(); ++cycle) {
-    const surefoot::Vec<3> order = orders.col(cycle) / steps_per_cycle;
-    const surefoot::Pose2 moved = robot.cycle(order);
+  for (Eigen::Index cycle = 0; cycle < commands.cols() && !robot.fallen(); ++cycle) {
+    const surefoot::Vec<3> command = commands.col(cycle) / steps_per_cycle;
+    const surefoot::Pose2 moved = robot.cycle(command);
     if (robot.fallen()) break;
-    result.orders.push_back(order);
+    result.commands.push_back(command);
     result.moved.push_back(moved);
   }
   result.fell = robot.fallen();
@@ -38,11 +38,11 @@ surefoot::WalkSequence walk_sequence(const TwinSequence& sequence) {
   const auto cycles = static_cast<Eigen::Index>(sequence.moved.size());
   if (cycles == 0) throw TwinError("sequence " + std::to_string(sequence.number) + " of the twin has no cycle");
   surefoot::WalkSequence result{.name = std::to_string(sequence.number)};
-  result.orders.resize(3, cycles);
+  result.commands.resize(3, cycles);
   result.poses.resize(3, cycles);
   const std::vector<surefoot::Pose2> after = poses(sequence);
   for (Eigen::Index i = 0; i < cycles; ++i) {
-    result.orders.col(i) = steps_per_cycle * sequence.orders[static_cast<std::size_t>(i)];
+    result.commands.col(i) = steps_per_cycle * sequence.commands[static_cast<std::size_t>(i)];
     result.poses.col(i) = after[static_cast<std::size_t>(i)].vec();
   }
   return result;
@@ -55,11 +55,11 @@ std::string sequences_csv(std::span<const TwinSequence> sequences) {
     if (sequence.fell) continue;
     const std::vector<surefoot::Pose2> after = poses(sequence);
     for (std::size_t i = 0; i < after.size(); ++i) {
-      const surefoot::Vec<3>& order = sequence.orders[i];
+      const surefoot::Vec<3>& command = sequence.commands[i];
       const surefoot::Pose2 &moved = sequence.moved[i], &pose = after[i];
       text += std::to_string(sequence.number) + ',' + std::to_string(i);
       for (const double value :
-           {order[0], order[1], order[2], moved.x, moved.y, moved.angle, pose.x, pose.y, pose.angle}) {
+           {command[0], command[1], command[2], moved.x, moved.y, moved.angle, pose.x, pose.y, pose.angle}) {
         std::array<char, 40> cell{};
         std::snprintf(cell.data(), cell.size(), ",%.6f", value);
         text += cell.data();
@@ -74,12 +74,12 @@ Eigen::Matrix<double, 3, 4> walk_gains(std::span<const TwinSequence> sequences) 
   Eigen::Index cycles = 0;
   for (const TwinSequence& sequence : sequences) cycles += static_cast<Eigen::Index>(sequence.moved.size());
   if (cycles < 4) throw TwinError("the gains of a walk need four cycles or more, walk more sequences");
-  Eigen::MatrixX4d ordered(cycles, 4);
+  Eigen::MatrixX4d commanded(cycles, 4);
   Eigen::MatrixX3d moved(cycles, 3);
   Eigen::Index row = 0;
   for (const TwinSequence& sequence : sequences) {
     for (std::size_t i = 0; i < sequence.moved.size(); ++i, ++row) {
-      ordered.row(row) << 1, steps_per_cycle * sequence.orders[i].transpose();
+      commanded.row(row) << 1, steps_per_cycle * sequence.commands[i].transpose();
       moved.row(row) = sequence.moved[i].vec();
     }
   }

@@ -11,7 +11,7 @@
 
 namespace sigmaban {
 
-/// Parameters, switches or orders that the twin cannot take, or a physics engine that fails.
+/// Parameters, switches or commands that the twin cannot take, or a physics engine that fails.
 struct TwinError : surefoot::Error {
   using Error::Error;
 };
@@ -19,7 +19,7 @@ struct TwinError : surefoot::Error {
 struct TwinSwitches {
   double backlash = 0;         // free play behind every servo, from end to end [rad]
   double servo_friction = 0;   // further dry friction of every servo [N m]
-  double order_delay = 0;      // walk orders take effect so much later, a whole number [cycles]
+  double order_delay = 0;      // walk commands take effect so much later, a whole number [cycles]
   double slope_forward = 0;    // the ground falls in the direction that the robot looks in at the start [rad]
   double slope_left = 0;       // the ground falls to the left of that direction [rad]
   double short_left_leg = 0;   // by how much the left shin is shorter [m]

@@ -35,17 +35,17 @@ WalkingTwin::WalkingTwin(const WalkingTwinOptions& options, surefoot::Rng noise)
   for (int i = 0; i < options.cycles_on_spot; ++i) cycle(surefoot::Vec<3>::Zero());
 }
 
-WalkOrders WalkingTwin::delayed(const surefoot::Vec<3>& orders) {
-  if (!orders.allFinite()) throw TwinError("WalkingTwin: a walk order is not finite");
-  waiting_.push_back(orders);
+WalkOrders WalkingTwin::delayed(const surefoot::Vec<3>& commands) {
+  if (!commands.allFinite()) throw TwinError("WalkingTwin: a walk command is not finite");
+  waiting_.push_back(commands);
   const surefoot::Vec<3> now = waiting_.front();
   waiting_.pop_front();
   return {.forward = now[0], .left = now[1], .turn = now[2]};
 }
 
-void WalkingTwin::tick(const WalkOrders& orders) {
-  const auto targets = engine_.step(orders, twin_.parameters().order_period);
-  if (!targets) throw TwinError("WalkingTwin: these orders put a foot out of reach, make them smaller");
+void WalkingTwin::tick(const WalkOrders& commands) {
+  const auto targets = engine_.step(commands, twin_.parameters().order_period);
+  if (!targets) throw TwinError("WalkingTwin: these commands put a foot out of reach, make them smaller");
   twin_.drive(target_noise_ > 0 ? with_noise(*targets, target_noise_, noise_) : *targets);
 }
 

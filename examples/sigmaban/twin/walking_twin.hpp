@@ -1,4 +1,4 @@
-// The twin under our walk engine: walk orders in, displacements out, one full walk cycle (two steps) at a time.
+// The twin under our walk engine: walk commands in, displacements out, one full walk cycle (two steps) at a time.
 #pragma once
 
 #include <deque>
@@ -17,7 +17,7 @@ struct WalkingTwinOptions {
   TwinSwitches switches;
   WalkParameters walk = twin_walk();
   double target_noise = 0;  // standard deviation, on every joint target [rad]
-  int cycles_on_spot = 3;   // before anything is ordered
+  int cycles_on_spot = 3;   // before anything is commanded
   double standing = 0.5;    // before that [s]
 };
 
@@ -27,13 +27,13 @@ class WalkingTwin {
   /// parameters that cannot be walked with.
   explicit WalkingTwin(const WalkingTwinOptions& options = {}, surefoot::Rng noise = surefoot::Rng(0));
 
-  /// One walk cycle, from walk phase 0 to where the phase wraps, with orders per step (forward, left, turn)
+  /// One walk cycle, from walk phase 0 to where the phase wraps, with commands per step (forward, left, turn)
   /// [m, m, rad]: the displacement of the trunk, seen from where it was at the cycle's start. `each_tick(twin)` is
-  /// called after every order period. A robot that has fallen does not go on.
+  /// called after every command period. A robot that has fallen does not go on.
   template <class EachTick>
-  surefoot::Pose2 cycle(const surefoot::Vec<3>& orders, EachTick&& each_tick);
-  surefoot::Pose2 cycle(const surefoot::Vec<3>& orders) {
-    return cycle(orders, [](const Twin&) {});
+  surefoot::Pose2 cycle(const surefoot::Vec<3>& commands, EachTick&& each_tick);
+  surefoot::Pose2 cycle(const surefoot::Vec<3>& commands) {
+    return cycle(commands, [](const Twin&) {});
   }
 
   const Twin& twin() const { return twin_; }
@@ -41,20 +41,20 @@ class WalkingTwin {
   bool fallen() const { return twin_.fallen(); }
 
  private:
-  /// The orders that take effect now. Throws TwinError unless `orders` are finite.
-  WalkOrders delayed(const surefoot::Vec<3>& orders);
-  void tick(const WalkOrders& orders);
+  /// The commands that take effect now. Throws TwinError unless `commands` are finite.
+  WalkOrders delayed(const surefoot::Vec<3>& commands);
+  void tick(const WalkOrders& commands);
 
   double target_noise_;
   Twin twin_;
   SplineWalk engine_;
   surefoot::Rng noise_;
-  std::deque<surefoot::Vec<3>> waiting_;  // orders given that are not in effect yet, oldest first
+  std::deque<surefoot::Vec<3>> waiting_;  // commands given that are not in effect yet, oldest first
 };
 
 template <class EachTick>
-surefoot::Pose2 WalkingTwin::cycle(const surefoot::Vec<3>& orders, EachTick&& each_tick) {
-  const WalkOrders now = delayed(orders);
+surefoot::Pose2 WalkingTwin::cycle(const surefoot::Vec<3>& commands, EachTick&& each_tick) {
+  const WalkOrders now = delayed(commands);
   const surefoot::Pose2 start = twin_.pose();
   double phase = 0;
   do {

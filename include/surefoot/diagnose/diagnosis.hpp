@@ -1,4 +1,4 @@
-// What a diagnosis finds: plain data, the source of the report, of the JSON and of the augmented model.
+// Results of a diagnosis: plain data, the source of the report, of the JSON and of the augmented model.
 #pragma once
 
 #include <Eigen/Core>
@@ -31,7 +31,7 @@ struct CalibratedParameter {
   bool at_bound = false, fixed = false;
 };
 
-/// How far an output is off, in its own unit; simulated over whole recordings kept for the test.
+/// How far an output is off, in its own unit; simulated over whole held-out recordings.
 struct ChannelMismatch {
   std::string output, unit;
   double rmse_nominal = 0, rmse_calibrated = 0, rmse_after = 0;
@@ -52,7 +52,7 @@ struct MismatchInterval {
 };
 
 struct Evidence {
-  double heldout_gain = 0;  // share of the held-out error that goes with this effect (1 - after / before)
+  double gain = 0;  // share of the cross-validated error that goes with this effect (1 - after / before)
   double gain_stderr = 0;
   double p_value = 1;
   double confidence = 0;  // share of bootstrap repetitions that choose it
@@ -68,16 +68,17 @@ struct FoundEffect {
 /// Effects that might have been chosen instead.
 struct Alternative {
   std::vector<std::pair<std::string, std::string>> effects;  // name, attached to
-  double heldout_rmse = 0;
-  bool indistinguishable = false;  // these recordings cannot tell them from the chosen ones
+  double cross_validated_rmse = 0;                           // in units of the weighting
+  bool indistinguishable = false;                            // these recordings cannot tell them from the chosen ones
 };
 
 struct RecordingFit {
   std::string recording;
-  double before = 0, after = 0;  // error in units of the noise, or of the spread of the output where that is unknown
+  double before = 0,
+         after = 0;  // error in units of the noise, or of the output's standard deviation where that is unknown
 };
 
-/// One test recording for pictures: rows x outputs, and the times.
+/// One held-out recording for pictures: rows x outputs, and the times.
 struct Curve {
   std::string recording;
   Eigen::VectorXd time;
@@ -108,8 +109,8 @@ struct DetectionLimit {
 struct ForestResidual {
   bool tried = false, kept = false;  // kept only if recordings it has not seen are simulated better with it
   double gain = 0, gain_stderr = 0;  // share of the error that goes, cross-validated on the recordings to fit
-  double heldout_before = std::numeric_limits<double>::quiet_NaN();  // errors on the test recordings
-  double heldout_after = std::numeric_limits<double>::quiet_NaN();
+  double held_out_before = std::numeric_limits<double>::quiet_NaN();  // errors on the held-out recordings
+  double held_out_after = std::numeric_limits<double>::quiet_NaN();
   ResidualModel model;  // of the model with the effects that were found
 };
 
@@ -118,27 +119,27 @@ struct Diagnosis {
   bool complete = true;  // false: interrupted
   Verdict verdict = Verdict::adequate;
   std::string sentence;
-  std::vector<std::string> fit, select, test;  // names of recordings
+  std::vector<std::string> fit, select, held_out;  // names of recordings
   std::vector<Remark> remarks;
   std::vector<CalibratedParameter> parameters;  // of the model without effects
   std::vector<CalibratedParameter> augmented_parameters;
   std::vector<std::string> correlated;  // pairs of parameters the recordings hardly separate
-  std::string noise_sentence;           // measurement noise, or noise that accumulates
+  std::string noise_sentence;           // measurement noise, or process noise that accumulates
   std::vector<NoiseFinding> noise_findings;
   std::vector<ChannelMismatch> channels;
   std::vector<MismatchRegion> regions;
   std::vector<MismatchInterval> intervals;
   std::vector<FoundEffect> effects;
-  std::vector<FoundEffect> known_effects;  // that the model had before, with numbers of the augmented fit
+  std::vector<FoundEffect> known_effects;  // that the model had before, with parameters of the augmented fit
   std::vector<Alternative> alternatives;
   std::vector<DetectionLimit> limits;
   std::string next_experiment;
-  double train_before = 0, train_after = 0;
-  double test_before = 0, test_after = 0;
-  double test_forest = std::numeric_limits<double>::quiet_NaN();  // a forest on residuals instead of effects
+  double training_before = 0, training_after = 0;  // errors, in units as in RecordingFit
+  double held_out_before = 0, held_out_after = 0;
+  double held_out_forest = std::numeric_limits<double>::quiet_NaN();  // a forest on residuals instead of effects
   ForestResidual forest_residual;
   double noise_floor = std::numeric_limits<double>::quiet_NaN();
-  double gain_low = 0, gain_high = 0;  // 95 % interval of test_after / test_before over recordings
+  double gain_low = 0, gain_high = 0;  // 95 % interval of held_out_after / held_out_before over recordings
   std::vector<RecordingFit> per_recording;
   std::vector<Curve> curves;
   int integration_order = 4;    // with which all this was simulated, see Integration

@@ -1,8 +1,9 @@
-// What can be chosen about a diagnosis.
+// Options of `diagnose()`.
 #pragma once
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,16 +14,23 @@
 namespace surefoot {
 
 struct DiagnoseOptions {
-  std::vector<std::string> test = {};     // names of recordings kept for the test; empty: a random share
-  double test_share = 0.3;                // of the recordings, if none is named
-  std::vector<std::string> effects = {};  // names of effects to consider; empty: all
-  std::vector<Effect> more_effects = {};  // of the user's own
-  std::vector<NamedEffect> known = {};    // part of the model already; their numbers are calibrated with the others
-  int max_effects = 4;
-  double max_seconds = 0;   // ends the search for effects after that long; 0: never
-  std::size_t starts = 24;  // points of the global search for the nominal parameters
+  std::vector<std::string> held_out = {};  // names of recordings that are held out; empty: a random share
+  double held_out_share = 0.3;             // [0..1] of the recordings, if none is named; never all, and at least one
+  std::vector<std::string> effects = {};   // names of effects to consider; empty: all
+  std::vector<Effect> more_effects = {};   // of the user's own
+  std::vector<NamedEffect> known = {};     // part of the model already; their parameters are calibrated with the others
+  int max_effects = 4;                     // to combine; 0: calibrates and tests only
+  double max_seconds = std::numeric_limits<double>::infinity();  // [s] since the begin, until the search ends
+  std::size_t starts = 24;  // points of the global search for the nominal parameters, beside these themselves
   /// Told what is being done, the share of the work done (0..1) and the best so far.
-  std::function<void(std::string_view stage, double share, std::string_view best)> progress = {};
+  std::function<void(std::string_view stage, double share, std::string_view best)> on_progress = {};
 };
 
+/// Throws a DiagnoseError that names the first option that cannot be, and the cure.
+void check(const DiagnoseOptions& options);
+
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/options.ipp"
+#endif

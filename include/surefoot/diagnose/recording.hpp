@@ -12,11 +12,6 @@
 
 namespace surefoot {
 
-/// Wrong models, recordings or options handed to the diagnosis.
-struct DiagnoseError : Error {
-  using Error::Error;
-};
-
 /// One column per row of the recording (a context for an ODE, a step for a map). Units are those of the model.
 struct Recording {
   std::string name;                         // for messages and reports: the file's name

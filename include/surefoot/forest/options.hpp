@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "surefoot/forest/error.hpp"
+#include "surefoot/core/error.hpp"
 
 namespace surefoot {
 

@@ -10,10 +10,10 @@
 #include <stop_token>
 #include <utility>
 
+#include "surefoot/core/error.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/forest/dataset.hpp"
-#include "surefoot/forest/error.hpp"
 #include "surefoot/forest/forest.hpp"
 #include "surefoot/forest/leaf.hpp"
 #include "surefoot/forest/train/unexplained_variance.hpp"

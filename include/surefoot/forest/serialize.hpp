@@ -29,9 +29,8 @@
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/error.hpp"
 #include "surefoot/forest/evaluate/check_trees.hpp"
-#include "surefoot/forest/error.hpp"
-#include "surefoot/forest/forest.hpp"
 #include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/forest.hpp"
 
 namespace surefoot {
 
@@ -259,8 +258,8 @@ F load(const std::filesystem::path& path) {
 ///   auto* memory = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file, 0);
 ///   auto forest = view<Forest<6, 1>>({static_cast<const std::byte*>(memory), size});
 template <AnyForest F>
-  requires(std::endian::native == std::endian::little)
-auto view(std::span<const std::byte> bytes, const std::string& source = "the bytes") {
+requires(std::endian::native == std::endian::little) auto view(std::span<const std::byte> bytes,
+                                                               const std::string& source = "the bytes") {
   using Traits = detail::ForestTraits<F>;
   return detail::as_forest_error([&] {
     ByteReader in(bytes, source);

@@ -10,21 +10,20 @@
 #include <string_view>
 #include <utility>
 
+#include "surefoot/core/pose2.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/motion/motion_model.hpp"
-#include "surefoot/core/pose2.hpp"
 
 namespace surefoot {
 
 /// The correction with 3, 6 or 12 free coefficients. The parameter vector lists the free entries of A row by row.
 template <int Count>
-  requires(Count == 3 || Count == 6 || Count == 12)
-class LinearCorrection {
+requires(Count == 3 || Count == 6 || Count == 12) class LinearCorrection {
  public:
   static constexpr int parameter_count = Count;
   static constexpr std::string_view name = Count == 3 ? "proportional" : Count == 6 ? "simple linear" : "full linear";
   using Parameters = Vec<Count>;
-  using Matrix = Eigen::Matrix<double, 3, 4>;  // rows: dx, dy, dt; columns: offset, ordered dx, dy, dt
+  using Matrix = Eigen::Matrix<double, 3, 4>;  // rows: dx, dy, dt; columns: offset, commanded dx, dy, dt
 
   /// The walk does what it is told.
   LinearCorrection() : LinearCorrection(identity()) {}
@@ -43,9 +42,9 @@ class LinearCorrection {
 
   const Matrix& matrix() const { return matrix_; }
 
-  /// Displacement of a cycle with these orders (x, y, turn) [m, m, rad].
-  Pose2 displacement(const Vec<3>& orders) const {
-    return Pose2::from_vec(matrix_.template leftCols<1>() + matrix_.template rightCols<3>() * orders);
+  /// Displacement of a cycle with these commands (x, y, turn) [m, m, rad].
+  Pose2 displacement(const Vec<3>& commands) const {
+    return Pose2::from_vec(matrix_.template leftCols<1>() + matrix_.template rightCols<3>() * commands);
   }
 
   static std::array<ModelParameter, std::size_t{Count}> parameter_info() {

@@ -1,4 +1,5 @@
-// The concept of a motion model: what a walk cycle (or a control period of wheels) really does with its orders.
+// The concept of a motion model: the displacement that really follows from the commands of a walk cycle (or of a
+// control period of wheels).
 #pragma once
 
 #include <array>
@@ -8,19 +9,21 @@
 #include <string_view>
 
 #include "surefoot/core/box.hpp"
-#include "surefoot/core/vec.hpp"
 #include "surefoot/core/pose2.hpp"
+#include "surefoot/core/problem.hpp"
+#include "surefoot/core/vec.hpp"
 
 namespace surefoot {
 
-/// What one parameter of a model is called, and where it may reasonably lie.
+/// Name, unit and reasonable range of one parameter of a model.
 struct ModelParameter {
   std::string_view name, unit;
   double low = 0, high = 0;  // in that unit
 };
 
-/// A motion model maps the ordered displacement of one cycle (x, y, turn) [m, m, rad] to the displacement that
-/// follows from it, in the frame before the cycle. Its parameters form a vector, so that calibration can search them.
+/// A motion model maps the commanded displacement of one cycle (x, y, turn) [m, m, rad] to the displacement that
+/// follows from it, in the frame before the cycle. A model is its parameters, a vector that calibration can search:
+/// from_parameters(parameters()) moves alike.
 /// The smallest conforming struct:
 ///
 ///   struct Scale {
@@ -28,38 +31,67 @@ struct ModelParameter {
 ///     static std::array<surefoot::ModelParameter, 1> parameter_info() { return {{{"scale", "1", 0.5, 2.0}}}; }
 ///     static Scale from_parameters(const surefoot::Vec<1>& p) { return {p[0]}; }
 ///     surefoot::Vec<1> parameters() const { return surefoot::Vec<1>(scale); }
-///     surefoot::Pose2 displacement(const surefoot::Vec<3>& orders) const {
-///       return surefoot::Pose2::from_vec(scale * orders);
+///     surefoot::Pose2 displacement(const surefoot::Vec<3>& commands) const {
+///       return surefoot::Pose2::from_vec(scale * commands);
 ///     }
 ///     double scale = 1;
 ///   };
 ///
-/// A walk that is measured between two phases carries part of the last order: a model may ask for it by taking
-/// `displacement(orders, previous)` instead, `previous` being the orders of the cycle before. A default-constructed
+/// A walk that is measured between two phases carries part of the last command: a model may ask for it by taking
+/// `displacement(commands, previous)` instead, `previous` being the commands of the cycle before. A default-constructed
 /// model is the one to start a calibration from: nothing is known of the robot, it does what it is told.
 template <class M>
 concept MotionModel = std::default_initializable<M> &&
-                      requires(const M& model, const Vec<3>& orders, const Vec<M::parameter_count>& parameters) {
-                        requires M::parameter_count > 0;
-                        {
-                          M::parameter_info()
-                        } -> std::same_as<std::array<ModelParameter, std::size_t{M::parameter_count}>>;
-                        { M::from_parameters(parameters) } -> std::same_as<M>;
-                        { model.parameters() } -> std::same_as<Vec<M::parameter_count>>;
-                        requires requires {
-                          { model.displacement(orders) } -> std::same_as<Pose2>;
-                        } || requires {
-                          { model.displacement(orders, orders) } -> std::same_as<Pose2>;
-                        };
-                      };
+    requires(const M& model, const Vec<3>& commands, const Vec<M::parameter_count>& parameters) {
+  requires M::parameter_count >
+  0;
+  { M::parameter_info() } -> std::same_as<std::array<ModelParameter, std::size_t{M::parameter_count}>>;
+  { M::from_parameters(parameters) } -> std::same_as<M>;
+  { model.parameters() } -> std::same_as<Vec<M::parameter_count>>;
+  requires requires {
+    { model.displacement(commands) } -> std::same_as<Pose2>;
+  } || requires {
+    { model.displacement(commands, commands) } -> std::same_as<Pose2>;
+  };
+};
 
-/// Displacement of a cycle with these orders after one with the orders `previous`, by any model.
-template <MotionModel M>
-Pose2 cycle_displacement(const M& model, const Vec<3>& orders, const Vec<3>& previous) {
-  if constexpr (requires { model.displacement(orders, previous); }) {
-    return model.displacement(orders, previous);
+/// A compile error of one sentence about the first member that keeps M from being a MotionModel; the compiler quotes
+/// the line with the declaration wanted (see explain_problem in core/problem.hpp).
+template <class M>
+auto explain_motion_model() {
+  if constexpr (!std::default_initializable<M>) {
+    return Incomplete<M>::default_constructor;  // M(): the model of a robot that does what it is told
+  } else if constexpr (!requires {
+                         requires M::parameter_count >
+                         0;
+                       }) {
+    return Incomplete<M>::parameter_count;  // static constexpr int parameter_count: above 0
+  } else if constexpr (!requires {
+                         {
+                           M::parameter_info()
+                           } -> std::same_as<std::array<ModelParameter, std::size_t{M::parameter_count}>>;
+                       }) {
+    return Incomplete<M>::parameter_info;  // static std::array<surefoot::ModelParameter, parameter_count> of that name
+  } else if constexpr (!requires(const Vec<M::parameter_count>& p) {
+                         { M::from_parameters(p) } -> std::same_as<M>;
+                       }) {
+    return Incomplete<M>::from_parameters;  // static M from_parameters(const surefoot::Vec<parameter_count>&)
+  } else if constexpr (!requires(const M& m) {
+                         { m.parameters() } -> std::same_as<Vec<M::parameter_count>>;
+                       }) {
+    return Incomplete<M>::parameters;  // surefoot::Vec<parameter_count> parameters() const
   } else {
-    return model.displacement(orders);
+    return Incomplete<M>::displacement;  // surefoot::Pose2 displacement(const surefoot::Vec<3>& command) const
+  }
+}
+
+/// Displacement of a cycle with these commands after one with the commands `previous`, by any model.
+template <MotionModel M>
+Pose2 cycle_displacement(const M& model, const Vec<3>& commands, const Vec<3>& previous) {
+  if constexpr (requires { model.displacement(commands, previous); }) {
+    return model.displacement(commands, previous);
+  } else {
+    return model.displacement(commands);
   }
 }
 

@@ -13,11 +13,11 @@
 
 namespace surefoot {
 
-/// What a problem asks of noise: a deviation (x, y, turn) [m, m, rad] drawn for a cycle with these orders after one
-/// with the orders `previous`.
+/// What a problem asks of noise: a deviation (x, y, turn) [m, m, rad] drawn for a cycle with these commands after one
+/// with the commands `previous`.
 template <class N>
-concept NoiseModel = requires(const N& noise, const Vec<3>& orders, const Vec<3>& previous, Rng& rng) {
-  { noise.sample(orders, previous, rng) } -> std::same_as<Vec<3>>;
+concept NoiseModel = requires(const N& noise, const Vec<3>& commands, const Vec<3>& previous, Rng& rng) {
+  { noise.sample(commands, previous, rng) } -> std::same_as<Vec<3>>;
 };
 
 enum class NoiseShape : std::uint8_t { uniform, gaussian };
@@ -31,19 +31,9 @@ enum class NoiseGrowth : std::uint8_t {
 
 inline std::string_view name_of(NoiseShape shape) { return shape == NoiseShape::uniform ? "uniform" : "gaussian"; }
 
-inline std::string_view name_of(NoiseGrowth growth) {
-  switch (growth) {
-    case NoiseGrowth::constant:
-      return "constant";
-    case NoiseGrowth::with_speed:
-      return "proportional to speed";
-    case NoiseGrowth::with_speed_and_acceleration:
-      return "linear in speed and acceleration";
-  }
-  return "";
-}
+std::string_view name_of(NoiseGrowth growth);
 
-/// Speed is the length of the ordered displacement and acceleration that of its change since the cycle before, each
+/// Speed is the length of the commanded displacement and acceleration that of its change since the cycle before, each
 /// component counted in units of `scale`. Components (x, y, turn) are independent; the standard deviation of each is
 /// constant + per_speed * speed + per_acceleration * acceleration.
 struct MotionNoise {
@@ -51,20 +41,20 @@ struct MotionNoise {
   Vec<3> constant = Vec<3>::Zero();          // [m, m, rad]
   Vec<3> per_speed = Vec<3>::Zero();         // [m, m, rad]
   Vec<3> per_acceleration = Vec<3>::Zero();  // [m, m, rad]
-  Vec<3> scale{0.08, 0.04, 0.4};             // full orders of a cycle [m, m, rad]
+  Vec<3> scale{0.08, 0.04, 0.4};             // full commands of a cycle [m, m, rad]
   static constexpr auto fields = std::tuple(&MotionNoise::shape, &MotionNoise::constant, &MotionNoise::per_speed,
                                             &MotionNoise::per_acceleration, &MotionNoise::scale);
 
-  double speed(const Vec<3>& orders) const { return orders.cwiseQuotient(scale).norm(); }
-  double acceleration(const Vec<3>& orders, const Vec<3>& previous) const { return speed(orders - previous); }
+  double speed(const Vec<3>& commands) const { return commands.cwiseQuotient(scale).norm(); }
+  double acceleration(const Vec<3>& commands, const Vec<3>& previous) const { return speed(commands - previous); }
 
   /// Standard deviations (x, y, turn) [m, m, rad].
-  Vec<3> deviation(const Vec<3>& orders, const Vec<3>& previous) const {
-    return constant + per_speed * speed(orders) + per_acceleration * acceleration(orders, previous);
+  Vec<3> deviation(const Vec<3>& commands, const Vec<3>& previous) const {
+    return constant + per_speed * speed(commands) + per_acceleration * acceleration(commands, previous);
   }
 
-  Vec<3> sample(const Vec<3>& orders, const Vec<3>& previous, Rng& rng) const {
-    const Vec<3> sigma = deviation(orders, previous);
+  Vec<3> sample(const Vec<3>& commands, const Vec<3>& previous, Rng& rng) const {
+    const Vec<3> sigma = deviation(commands, previous);
     Vec<3> result;
     for (int i = 0; i < 3; ++i) {
       const double unit = shape == NoiseShape::gaussian ? rng.normal() : std::numbers::sqrt3 * rng.uniform(-1, 1);
@@ -76,11 +66,11 @@ struct MotionNoise {
 
 static_assert(NoiseModel<MotionNoise>);
 
-/// The same for all orders, uniform between plus and minus these (x, y, turn) [m, m, rad].
+/// The same for all commands, uniform between plus and minus these (x, y, turn) [m, m, rad].
 struct UniformNoise {
   Vec<3> half_width = Vec<3>::Zero();
 
-  Vec<3> sample(const Vec<3>& /*orders*/, const Vec<3>& /*previous*/, Rng& rng) const {
+  Vec<3> sample(const Vec<3>& /*commands*/, const Vec<3>& /*previous*/, Rng& rng) const {
     Vec<3> result;
     for (int i = 0; i < 3; ++i) result[i] = rng.uniform(-half_width[i], half_width[i]);
     return result;
@@ -95,3 +85,7 @@ struct UniformNoise {
 static_assert(NoiseModel<UniformNoise>);
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/motion/noise.ipp"
+#endif

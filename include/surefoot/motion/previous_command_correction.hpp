@@ -1,6 +1,6 @@
-// Linear correction that also sees the order of the cycle before: displacement = A (1, dx, dy, dt)^T + B (dx', dy',
-// dt')^T. A walk whose cycles are measured between two phases still carries out part of the last order there; B says
-// how much of it.
+// Linear correction that also depends on the command of the cycle before: displacement = A (1, dx, dy, dt)^T + B (dx',
+// dy', dt')^T. A walk whose cycles are measured between two phases still carries out part of the last command there; B
+// says how much of it.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,27 +8,27 @@
 #include <cstddef>
 #include <string_view>
 
+#include "surefoot/core/pose2.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/motion/linear_correction.hpp"
 #include "surefoot/motion/motion_model.hpp"
-#include "surefoot/core/pose2.hpp"
 
 namespace surefoot {
 
-/// The full linear correction with the nine coefficients of the previous order. The parameter vector lists the twelve
+/// The full linear correction with the nine coefficients of the previous command. The parameter vector lists the twelve
 /// of A row by row, then the nine of B row by row.
-class PreviousOrderCorrection {
+class PreviousCommandCorrection {
  public:
   static constexpr int parameter_count = 21;
-  static constexpr std::string_view name = "full linear with previous order";
+  static constexpr std::string_view name = "full linear with previous command";
   using Parameters = Vec<21>;
-  using Previous = Eigen::Matrix3d;  // rows: dx, dy, dt; columns: dx, dy, dt ordered in the cycle before
+  using Previous = Eigen::Matrix3d;  // rows: dx, dy, dt; columns: dx, dy, dt commanded in the cycle before
 
   /// The walk does what it is told, at once.
-  PreviousOrderCorrection() = default;
+  PreviousCommandCorrection() = default;
 
-  static PreviousOrderCorrection from_parameters(const Parameters& parameters) {
-    PreviousOrderCorrection result;
+  static PreviousCommandCorrection from_parameters(const Parameters& parameters) {
+    PreviousCommandCorrection result;
     result.present_ = FullLinearCorrection::from_parameters(parameters.head<12>());
     for (int i = 0; i < 9; ++i) result.previous_(i / 3, i % 3) = parameters[12 + i];
     return result;
@@ -44,9 +44,9 @@ class PreviousOrderCorrection {
   const FullLinearCorrection& present() const { return present_; }
   const Previous& previous() const { return previous_; }
 
-  /// Displacement of a cycle with these orders after one with the orders `before`, both (x, y, turn) [m, m, rad].
-  Pose2 displacement(const Vec<3>& orders, const Vec<3>& before) const {
-    return Pose2::from_vec(present_.displacement(orders).vec() + previous_ * before);
+  /// Displacement of a cycle with these commands after one with the commands `before`, both (x, y, turn) [m, m, rad].
+  Pose2 displacement(const Vec<3>& commands, const Vec<3>& before) const {
+    return Pose2::from_vec(present_.displacement(commands).vec() + previous_ * before);
   }
 
   static std::array<ModelParameter, 21> parameter_info() {
@@ -71,6 +71,6 @@ class PreviousOrderCorrection {
   Previous previous_ = Previous::Zero();
 };
 
-static_assert(MotionModel<PreviousOrderCorrection>);
+static_assert(MotionModel<PreviousCommandCorrection>);
 
 }  // namespace surefoot

@@ -1,5 +1,4 @@
-// One recorded sequence: what was ordered in each walk cycle, and where the robot was found, in the end or after every
-// cycle.
+// A recorded sequence: the command of each walk cycle, and the pose measured in the end or after every cycle.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,69 +6,66 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "surefoot/core/compiled.hpp"
 #include "surefoot/core/error.hpp"
-#include "surefoot/core/vec.hpp"
-#include "surefoot/motion/motion_model.hpp"
 #include "surefoot/core/pose2.hpp"
+#include "surefoot/core/vec.hpp"
+#include "surefoot/motion/any_motion_model.hpp"
 
 namespace surefoot {
 
-/// Wrong sequences, models or options handed to the motion area.
-struct MotionError : Error {
-  using Error::Error;
-};
-
 /// The robot starts at the origin, looking along x. Column i is cycle i.
 struct WalkSequence {
-  std::string name = {};                 // for messages: file, or number of the sequence
-  Eigen::Matrix3Xd orders = {};          // ordered displacement of each cycle (x, y, turn) [m, m, rad]
-  Eigen::Matrix3Xd poses = {};           // pose after each cycle (x, y, heading) [m, m, rad]; NaN: not measured
-  Vec<3> order_before = Vec<3>::Zero();  // the orders before the first cycle, e.g. walking on the spot
+  std::string name = {};                   // for messages: file, or number of the sequence
+  Eigen::Matrix3Xd commands = {};          // commanded displacement of each cycle (x, y, turn) [m, m, rad]
+  Eigen::Matrix3Xd poses = {};             // pose after each cycle (x, y, heading) [m, m, rad]; NaN: not measured
+  Vec<3> command_before = Vec<3>::Zero();  // the commands before the first cycle, e.g. walking on the spot
 
-  Eigen::Index cycles() const { return orders.cols(); }
-  Vec<3> previous_order(Eigen::Index cycle) const { return cycle == 0 ? order_before : Vec<3>(orders.col(cycle - 1)); }
+  Eigen::Index cycles() const { return commands.cols(); }
+  Vec<3> previous_command(Eigen::Index cycle) const {
+    return cycle == 0 ? command_before : Vec<3>(commands.col(cycle - 1));
+  }
   bool position_measured(Eigen::Index cycle) const {
     return std::isfinite(poses(0, cycle)) && std::isfinite(poses(1, cycle));
   }
   bool heading_measured(Eigen::Index cycle) const { return std::isfinite(poses(2, cycle)); }
 };
 
-/// Throws MotionError, naming the sequence, unless it has cycles, finite orders and a position after its last cycle.
-inline void check(const WalkSequence& sequence) {
-  const auto fail = [&](const std::string& what) { throw MotionError("sequence " + sequence.name + ": " + what); };
-  if (sequence.cycles() == 0) fail("has no cycle");
-  if (sequence.poses.cols() != sequence.cycles()) fail("must have one column of poses per cycle");
-  if (!sequence.orders.allFinite() || !sequence.order_before.allFinite()) fail("has an order that is no number");
-  if (!sequence.position_measured(sequence.cycles() - 1)) {
-    fail("has no final position; measure where the robot stopped, or leave the sequence out");
-  }
-}
+/// Throws MotionError, naming the sequence, unless it has cycles, finite commands and a position after its last cycle.
+void check(const WalkSequence& sequence);
 
 /// Checks each, and that there is at least one.
-inline void check(std::span<const WalkSequence> sequences) {
-  if (sequences.empty()) throw MotionError("there is no sequence to calibrate from");
-  for (const WalkSequence& sequence : sequences) check(sequence);
-}
+void check(std::span<const WalkSequence> sequences);
 
 /// The sequence as a tape measures it: all poses but the last are forgotten.
-inline WalkSequence final_pose_only(WalkSequence sequence) {
-  if (sequence.cycles() > 1) sequence.poses.leftCols(sequence.cycles() - 1).setConstant(std::nan(""));
-  return sequence;
-}
+WalkSequence final_pose_only(WalkSequence sequence);
 
-/// The pose after the last cycle, if the robot moves exactly as the model says. Cost: one displacement per cycle.
-template <MotionModel M>
-Pose2 predict_final_pose(const M& model, const WalkSequence& sequence) {
-  Pose2 pose;
-  Vec<3> previous = sequence.order_before;
-  for (const auto& column : sequence.orders.colwise()) {
-    const Vec<3> orders = column;
-    pose = pose * cycle_displacement(model, orders, previous);
-    previous = orders;
+/// How well a pose is measured.
+struct PoseAccuracy {
+  double position = 0.005;       // standard deviation of x and of y [m]
+  double heading = 0.02;         // standard deviation [rad]
+  double heading_tolerance = 0;  // half width of the bins that headings are sorted into [rad]
+
+  Vec<3> variance() const {
+    const double binned = heading_tolerance * heading_tolerance / 3;
+    return {position * position, position * position, heading * heading + binned};
   }
-  return pose;
-}
+};
+
+/// Throws MotionError, naming the field, unless all are finite and none is negative.
+void check(const PoseAccuracy& accuracy);
+
+/// The pose after the last cycle, if the robot moves exactly as the model predicts. Cost: one displacement per cycle.
+Pose2 predict_final_pose(const AnyMotionModel& model, const WalkSequence& sequence);
+
+namespace detail {
+
+/// Displacements by the model, by sequence (column = cycle).
+std::vector<Eigen::Matrix3Xd> displacements(const AnyMotionModel& model, std::span<const WalkSequence> sequences);
+
+}  // namespace detail
 
 /// How far a model misses final poses: root mean squares of distances [m] and of angles [rad] (over the sequences whose
 /// heading was measured; NaN without any).
@@ -79,21 +75,11 @@ struct FinalPoseError {
 };
 
 /// Distances of angles below `heading_tolerance` [rad] count as none.
-template <MotionModel M>
-FinalPoseError final_pose_error(const M& model, std::span<const WalkSequence> sequences, double heading_tolerance = 0) {
-  double position = 0, heading = 0;
-  int headings = 0;
-  for (const WalkSequence& sequence : sequences) {
-    const Pose2 predicted = predict_final_pose(model, sequence);
-    const auto measured = sequence.poses.col(sequence.cycles() - 1);
-    position += (predicted.position() - measured.head<2>()).squaredNorm();
-    if (!std::isfinite(measured[2])) continue;
-    const double angle = std::max(0.0, std::abs(wrap_angle(predicted.angle - measured[2])) - heading_tolerance);
-    heading += angle * angle;
-    ++headings;
-  }
-  const auto count = static_cast<double>(sequences.size());
-  return {std::sqrt(position / count), headings > 0 ? std::sqrt(heading / headings) : std::nan("")};
-}
+FinalPoseError final_pose_error(const AnyMotionModel& model, std::span<const WalkSequence> sequences,
+                                double heading_tolerance = 0);
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/motion/walk_sequence.ipp"
+#endif

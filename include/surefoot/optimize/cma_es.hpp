@@ -11,41 +11,24 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <stop_token>
 #include <utility>
 
 #include "surefoot/core/box.hpp"
+#include "surefoot/core/compiled.hpp"
 #include "surefoot/core/executor.hpp"
-#include "surefoot/optimize/cma_es_core.hpp"
 #include "surefoot/optimize/cma_es_loop.hpp"
 #include "surefoot/optimize/cma_es_options.hpp"
 #include "surefoot/optimize/cma_es_search.hpp"
 #include "surefoot/optimize/objective.hpp"
-#include "surefoot/optimize/search_space.hpp"
 
 namespace surefoot {
 
 /// A search that has not begun. With a box, `sigma` is in widths of the box.
-inline CmaEsSearch cma_es_search(const Eigen::VectorXd& start, double sigma,
-                                 const std::optional<Box<Eigen::Dynamic>>& box, const CmaEsOptions& options,
-                                 std::uint64_t seed) {
-  check(options);
-  const Eigen::VectorXd from = SearchSpace(box).to_search(start);
-  const Eigen::Index population = options.population != 0 ? options.population : default_population(from.size());
-  CmaEsSearch search;
-  search.start = start;
-  search.sigma = sigma;
-  search.box = box;
-  search.seed = seed;
-  search.state = cma_es_start(from, sigma, population, seed);
-  search.plan.population = population;
-  search.schedule.first_population = population;
-  search.schedule.large_population = population;
-  search.descent.population = population;
-  search.noise_evaluations = options.noise.evaluations;
-  return search;
-}
+CmaEsSearch cma_es_search(const Eigen::VectorXd& start, double sigma, const std::optional<Box<Eigen::Dynamic>>& box,
+                          const CmaEsOptions& options, std::uint64_t seed);
 
 /// Goes on with a search, with the same objective and options as before except for target and budgets: then it ends in
 /// the same bits as one that was never interrupted.
@@ -53,7 +36,13 @@ template <Objective F, Executor E>
 CmaEsResult cma_es(const F& objective, CmaEsSearch search, const CmaEsOptions& options, const E& executor,
                    std::stop_token stop = {}) {
   check(options);
-  return detail::CmaEsLoop(objective, std::move(search), options, executor, std::move(stop)).run();
+  const detail::CmaEsEnvironment environment{
+      .evaluate = [&](detail::CmaEsGeneration& g) { return detail::evaluate_generation(objective, g, executor, stop); },
+      .in_any_process = [&](bool flag) { return in_any_process(executor, flag); },
+      .once = [&](const std::function<void()>& job) { once(executor, job); },
+      .stop = stop,
+      .noisy = NoisyObjective<F>};
+  return detail::run_cma_es(std::move(search), options, environment);
 }
 
 /// Minimises without bounds, from `start` with standard deviation `sigma` in every coordinate: scale the objective's
@@ -75,3 +64,7 @@ CmaEsResult cma_es(const F& objective, const Eigen::VectorXd& start, const Box<E
 }
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/optimize/cma_es.ipp"
+#endif

@@ -1,4 +1,4 @@
-// The concept of a function to be minimised, and the exception of the optimize area.
+// The concept of a function to be minimised.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,11 +8,6 @@
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot {
-
-/// Wrong starts, bounds, options or values handed to the optimize area.
-struct OptimizeError : Error {
-  using Error::Error;
-};
 
 /// A function to be minimised that gives the same value at the same point: `[](const Eigen::VectorXd& x) -> double`.
 template <class F>

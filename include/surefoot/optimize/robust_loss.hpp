@@ -1,4 +1,4 @@
-// How much a residual counts: losses that keep a few outliers from deciding a fit.
+// Losses that keep a few outliers from deciding a fit: how much a residual counts.
 // Huber: "Robust Statistics", 1981. Each is s^2 rho(r^2 / s^2) for a residual r and the scale s, in place of r^2.
 #pragma once
 

@@ -12,11 +12,6 @@
 
 namespace surefoot {
 
-/// Wrong options, files or problems handed to the solve area.
-struct SolveError : Error {
-  using Error::Error;
-};
-
 /// How long to work. `seconds` is counted, not measured: every simulated step, forest look-up and fit has a nominal
 /// price, so the same budget means the same work, and the same result, on any machine and any number of threads.
 struct Budget {

@@ -11,8 +11,6 @@
 
 #include "surefoot/core/rng.hpp"
 
-using namespace surefoot::diagnosis;
-
 namespace surefoot {
 namespace {
 

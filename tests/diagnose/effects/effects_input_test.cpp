@@ -8,10 +8,16 @@
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
-#include "surefoot/diagnose/simulate_augmented.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
-
-using namespace surefoot::diagnosis;
+#include "surefoot/diagnose/effects/dead_zone.hpp"
+#include "surefoot/diagnose/effects/first_order_lag.hpp"
+#include "surefoot/diagnose/effects/input_asymmetry.hpp"
+#include "surefoot/diagnose/effects/input_delay.hpp"
+#include "surefoot/diagnose/effects/input_gain.hpp"
+#include "surefoot/diagnose/effects/rate_limit.hpp"
+#include "surefoot/diagnose/effects/saturation.hpp"
+#include "surefoot/diagnose/effects/supply_sag.hpp"
+#include "surefoot/diagnose/simulate_augmented.hpp"
 
 namespace surefoot {
 namespace {

@@ -8,10 +8,15 @@
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
-#include "surefoot/diagnose/simulate_augmented.hpp"
+#include "surefoot/diagnose/effects/backlash.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
-
-using namespace surefoot::diagnosis;
+#include "surefoot/diagnose/effects/cogging.hpp"
+#include "surefoot/diagnose/effects/constant_force.hpp"
+#include "surefoot/diagnose/effects/cubic_stiffness.hpp"
+#include "surefoot/diagnose/effects/detail/two_masses.hpp"
+#include "surefoot/diagnose/effects/hysteresis.hpp"
+#include "surefoot/diagnose/effects/joint_elasticity.hpp"
+#include "surefoot/diagnose/simulate_augmented.hpp"
 
 namespace surefoot {
 namespace {
@@ -65,8 +70,8 @@ TEST_CASE("the play operator does nothing twice") {
     CHECK(std::abs(once - driver) <= width + 1e-15);
   }
   CHECK(effects::play(0.3, 0.5, 0.3) == 0.3);
-  CHECK(effects::detail::beyond_gap(0.2, 0.3) == 0);
-  CHECK(effects::detail::beyond_gap(-0.5, 0.3) == doctest::Approx(-0.2));
+  CHECK(effects::beyond_gap(0.2, 0.3) == 0);
+  CHECK(effects::beyond_gap(-0.5, 0.3) == doctest::Approx(-0.2));
 }
 
 TEST_CASE("the path of hysteresis does not depend on how it is cut into steps") {
@@ -74,7 +79,7 @@ TEST_CASE("the path of hysteresis does not depend on how it is cut into steps") 
   for (int i = 0; i < 200; ++i) {
     const double width = uniform(rng, 0.01, 1), z = width * uniform(rng, -1, 1);
     const double side = rng.uniform() < 0.5 ? -1 : 1, a = side * rng.uniform(), b = side * rng.uniform();
-    using namespace effects::detail;
+    using namespace effects;
     CHECK(bouc_wen_1(bouc_wen_1(z, a, width), b, width) == doctest::Approx(bouc_wen_1(z, a + b, width)));
     CHECK(bouc_wen_2(bouc_wen_2(z, a, width), b, width) == doctest::Approx(bouc_wen_2(z, a + b, width)));
     CHECK(std::abs(bouc_wen_2(z, a, width)) <= width * (1 + 1e-12));
@@ -85,7 +90,7 @@ TEST_CASE("hysteresis solves its differential equation") {
   const double width = 0.2, small = 1e-6;
   for (const double z : {-0.15, -0.02, 0.0, 0.07, 0.19}) {
     for (const double side : {-1.0, 1.0}) {
-      using namespace effects::detail;
+      using namespace effects;
       const double slope = (bouc_wen_1(z, side * small, width) - z) / (side * small);
       CHECK(slope == doctest::Approx(1 - side * z / width).epsilon(1e-4));
       const double squared = (bouc_wen_2(z, side * small, width) - z) / (side * small);
@@ -153,7 +158,7 @@ TEST_CASE("a free elastic joint swings at its frequency about the common centre"
 
 // Positions of two masses, coupled by a spring with a gap, the first (of unit inertia) on the spring of `Spring`, held
 // by dry friction; integrated apart from the library, in steps of 10 us.
-Eigen::VectorXd two_masses(const effects::detail::TwoMasses& masses, double dry, int rows, double step, double q,
+Eigen::VectorXd two_masses(const effects::TwoMasses& masses, double dry, int rows, double step, double q,
                            double v) {
   const double reduced = masses.ratio / (1 + masses.ratio), h = 1e-5;
   const double stiffness = reduced * masses.frequency * masses.frequency;
@@ -163,7 +168,7 @@ Eigen::VectorXd two_masses(const effects::detail::TwoMasses& masses, double dry,
   for (int row = 0; row < rows; ++row) {
     positions[row] = q;
     for (int i = 0; i < static_cast<int>(std::lround(step / h)); ++i) {
-      const double bend = effects::detail::beyond_gap(other - q, masses.half_width);
+      const double bend = effects::beyond_gap(other - q, masses.half_width);
       double pull = bend == 0 ? 0 : stiffness * bend + damping * (speed - v);
       if (masses.half_width > 0 && pull * bend < 0) pull = 0;
       const double free = v + h * (pull - 36 * q);
@@ -191,7 +196,7 @@ TEST_CASE("an elastic joint moves as two masses do, whatever the step and the or
 }
 
 TEST_CASE("an elastic joint knows when dry friction holds it") {
-  const effects::detail::TwoMasses masses{.ratio = 2, .frequency = 25, .damping = 0.02};
+  const effects::TwoMasses masses{.ratio = 2, .frequency = 25, .damping = 0.02};
   const Eigen::VectorXd truth = two_masses(masses, 2, 301, 0.005, 0.3, 1);
   Augmented augmented;
   augmented.effects = {{.name = "joint_elasticity", .attached_to = "v", .values = {2, 25, 0.02}},
@@ -201,7 +206,7 @@ TEST_CASE("an elastic joint knows when dry friction holds it") {
 }
 
 TEST_CASE("a joint with a gap moves as two masses do") {
-  const effects::detail::TwoMasses masses{.ratio = 0.5, .frequency = 60, .damping = 0.2, .half_width = 0.05};
+  const effects::TwoMasses masses{.ratio = 0.5, .frequency = 60, .damping = 0.2, .half_width = 0.05};
   const Eigen::VectorXd truth = two_masses(masses, 0, 201, 0.005, 0.3, 1);
   const auto x = simulated(effects::backlash_gap(), {0.5, 0.05, 60}, recording_of(201, 0.005, 0.3, 1)).states;
   CHECK((x.row(0).transpose() - truth).cwiseAbs().maxCoeff() < 0.02);

@@ -7,10 +7,12 @@
 #include <vector>
 
 #include "surefoot/core/vec.hpp"
-#include "surefoot/diagnose/simulate_augmented.hpp"
+#include "surefoot/diagnose/effects/body_drift.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
-
-using namespace surefoot::diagnosis;
+#include "surefoot/diagnose/effects/cross_coupling.hpp"
+#include "surefoot/diagnose/effects/ground_slope.hpp"
+#include "surefoot/diagnose/effects/slip_saturation.hpp"
+#include "surefoot/diagnose/simulate_augmented.hpp"
 
 namespace surefoot {
 namespace {

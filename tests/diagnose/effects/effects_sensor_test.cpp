@@ -5,8 +5,11 @@
 #include <vector>
 
 #include "surefoot/diagnose/effects/catalogue.hpp"
-
-using namespace surefoot::diagnosis;
+#include "surefoot/diagnose/effects/quantization.hpp"
+#include "surefoot/diagnose/effects/sensor_bias.hpp"
+#include "surefoot/diagnose/effects/sensor_delay.hpp"
+#include "surefoot/diagnose/effects/sensor_drift.hpp"
+#include "surefoot/diagnose/effects/sensor_scale.hpp"
 
 namespace surefoot {
 namespace {

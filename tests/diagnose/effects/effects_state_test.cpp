@@ -7,10 +7,12 @@
 #include <vector>
 
 #include "surefoot/core/vec.hpp"
-#include "surefoot/diagnose/simulate_augmented.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
-
-using namespace surefoot::diagnosis;
+#include "surefoot/diagnose/effects/constant_rate.hpp"
+#include "surefoot/diagnose/effects/leak.hpp"
+#include "surefoot/diagnose/effects/overflow.hpp"
+#include "surefoot/diagnose/effects/parameter_drift.hpp"
+#include "surefoot/diagnose/simulate_augmented.hpp"
 
 namespace surefoot {
 namespace {

@@ -9,10 +9,18 @@
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
-#include "surefoot/diagnose/simulate_augmented.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
-
-using namespace surefoot::diagnosis;
+#include "surefoot/diagnose/effects/cogging.hpp"
+#include "surefoot/diagnose/effects/constant_force.hpp"
+#include "surefoot/diagnose/effects/coulomb_friction.hpp"
+#include "surefoot/diagnose/effects/cubic_stiffness.hpp"
+#include "surefoot/diagnose/effects/end_stop.hpp"
+#include "surefoot/diagnose/effects/gravity_offset.hpp"
+#include "surefoot/diagnose/effects/load_dependent_friction.hpp"
+#include "surefoot/diagnose/effects/quadratic_drag.hpp"
+#include "surefoot/diagnose/effects/stribeck_friction.hpp"
+#include "surefoot/diagnose/effects/viscous_friction.hpp"
+#include "surefoot/diagnose/simulate_augmented.hpp"
 
 namespace surefoot {
 namespace {

@@ -9,8 +9,6 @@
 #include "tests/support/servo_pendulum.hpp"
 #include "tests/support/walking_robot.hpp"
 
-using namespace surefoot::diagnosis;
-
 namespace surefoot {
 namespace {
 

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
-
-using namespace surefoot::diagnosis;
+#include "surefoot/diagnose/effects/detail/sensor_steps.hpp"
 
 using surefoot::effects::lattice_steps;
 using surefoot::effects::sawtooth_steps;

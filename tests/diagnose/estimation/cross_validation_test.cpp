@@ -10,9 +10,7 @@
 #include "surefoot/core/rng.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 BlockLosses score_of(std::vector<double> blocks) {
@@ -47,7 +45,7 @@ TEST_CASE("of hypotheses that are equally good, about one in twenty seems better
 
 TEST_CASE("a hypothesis that is better everywhere is believed, and its gain is that of the root mean square") {
   const BlockLosses before = score_of({100, 120, 80, 90, 300, 110, 95, 105}),
-              quarter = score_of({25, 30, 20, 22.5, 75, 27.5, 23.75, 26.25});
+                    quarter = score_of({25, 30, 20, 22.5, 75, 27.5, 23.75, 26.25});
   const Comparison better = compare_losses(before, quarter);
   CHECK(better.gain == doctest::Approx(0.5));
   CHECK(better.stderr_ == doctest::Approx(0));
@@ -144,4 +142,4 @@ TEST_CASE("a fold is judged by a fit that has not seen it") {
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

@@ -9,9 +9,7 @@
 #include <string>
 #include <vector>
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 std::vector<Recording> named(std::size_t count) {
@@ -72,4 +70,4 @@ TEST_CASE("the same seed gives the same split, another seed another one") {
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

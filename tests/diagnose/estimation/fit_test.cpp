@@ -8,15 +8,14 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
-#include "surefoot/diagnose/selection/candidates.hpp"
-#include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/effects/leak.hpp"
+#include "surefoot/diagnose/estimation/calibrate.hpp"
+#include "surefoot/diagnose/selection/candidates.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 #include "tests/support/servo_pendulum.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 using toys::LeakyTank;
@@ -88,7 +87,8 @@ TEST_CASE("an effect's parameters and unknown initial states are recovered toget
 }
 
 TEST_CASE("a fit is never worse than its start, however few its iterations and odd its start") {
-  const BoundSimulator bound = bind_simulator(ServoPendulum{}, toys::servo_recordings(toys::machine({1.4, 3.9, 0.014}), 2, 2));
+  const BoundSimulator bound =
+      bind_simulator(ServoPendulum{}, toys::servo_recordings(toys::machine({1.4, 3.9, 0.014}), 2, 2));
   Rng rng(2);
   for (int k = 0; k < 12; ++k) {
     Hypothesis start = nominal_hypothesis(bound);
@@ -105,7 +105,7 @@ TEST_CASE("a fit is never worse than its start, however few its iterations and o
     CHECK(fitted.ok == std::isfinite(before));  // some of these machines cannot be integrated in one step per row
     if (!fitted.ok) continue;
     const Parallel serial = serially();
-    const detail::FitFunctions functions(bound, fitted.hypothesis, problem, serial);
+    const FitFunctions functions(bound, fitted.hypothesis, problem, serial);
     CHECK(mean_loss(functions.residuals(functions.start()), 4) == doctest::Approx(fitted.loss).epsilon(1e-6));
   }
 }
@@ -161,7 +161,8 @@ double coverage(double memory) {
   int within = 0;
   constexpr int repetitions = 100;
   for (int k = 0; k < repetitions; ++k) {
-    const BoundSimulator bound = bind_simulator(LeakyTank{}, tanks(4, 200, 1.5, 0.7, 0.02, memory, 10 + static_cast<std::uint64_t>(k)));
+    const BoundSimulator bound =
+        bind_simulator(LeakyTank{}, tanks(4, 200, 1.5, 0.7, 0.02, memory, 10 + static_cast<std::uint64_t>(k)));
     const FitProblem problem = problem_of(4, 0.02);
     const Fit fitted = fit(bound, nominal_hypothesis(bound), problem, serially());
     const StandardErrors errors = standard_errors(bound, fitted.hypothesis, problem, serially());
@@ -182,4 +183,4 @@ TEST_CASE("two standard errors cover the truth about as often as they should, al
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

@@ -10,9 +10,7 @@
 #include "tests/diagnose/small_simulators.hpp"
 #include "tests/support/walking_robot.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 using toys::WalkingRobot;
@@ -48,7 +46,7 @@ std::vector<Recording> exact_walks(int count) {
 
 TEST_CASE("steps that are noisy are noise of the process, poses that are noise of the measurement") {
   const BoundSimulator walking = bind_simulator(WalkingRobot{}, walks(false, 20, 1)),
-            measuring = bind_simulator(WalkingRobot{}, exact_walks(20));
+                       measuring = bind_simulator(WalkingRobot{}, exact_walks(20));
   for (const Vec<3>& gains : {Vec<3>(1.2, 0.9, 1.1), Vec<3>(1, 1, 1)}) {  // also before the gains are known
     CHECK(noise_kind(walking, with_gains(walking, gains), first(0, 20)) == NoiseKind::process);
     CHECK(noise_kind(measuring, with_gains(measuring, gains), first(0, 20)) == NoiseKind::measurement);
@@ -97,7 +95,7 @@ TEST_CASE("whitened final poses have unit variance and no correlation, also thos
       const std::vector<Cell> cells = cells_of(bound.recordings[r]);
       const SimulatedRun run = simulate(bound, truth, r, {});
       const Eigen::VectorXd white =
-          weighed_residuals(bound, r, run, cells, {.sigma = Vec<3>(1, 1, 1), .whitening = whitening});
+          weighted_residuals(bound, r, run, cells, {.sigma = Vec<3>(1, 1, 1), .whitening = whitening});
       const Eigen::VectorXd off = raw_residuals(bound, r, run, cells);
       REQUIRE(white.size() == 3);
       covariance += white * white.transpose() / 150;
@@ -126,4 +124,4 @@ TEST_CASE("a longer walk counts less") {
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

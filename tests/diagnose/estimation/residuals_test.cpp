@@ -11,9 +11,7 @@
 #include "tests/diagnose/small_simulators.hpp"
 #include "tests/support/servo_pendulum.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
@@ -48,7 +46,7 @@ TEST_CASE("residuals are simulated minus measured, in units of sigma of their ou
   const auto [bound, run] = zero_against(measured);
   const std::vector<Cell> cells = cells_of(bound.recordings[0]);
   CHECK(raw_residuals(bound, 0, run, cells) == Vec<3>(-1, 10, -2));
-  CHECK(weighed_residuals(bound, 0, run, cells, {.sigma = Vec<2>(0.5, 10), .whitening = {}}) == Vec<3>(-2, 1, -4));
+  CHECK(weighted_residuals(bound, 0, run, cells, {.sigma = Vec<2>(0.5, 10), .whitening = {}}) == Vec<3>(-2, 1, -4));
 }
 
 TEST_CASE("a whitening matrix of the right size replaces sigma") {
@@ -57,9 +55,9 @@ TEST_CASE("a whitening matrix of the right size replaces sigma") {
   const auto [bound, run] = zero_against(measured);
   Weighting weighting{.sigma = Vec<2>(1, 1), .whitening = {Eigen::MatrixXd{{1.0, 1.0}, {0.0, 2.0}}}};
   const std::vector<Cell> cells = cells_of(bound.recordings[0]);
-  CHECK(weighed_residuals(bound, 0, run, cells, weighting) == Vec<2>(-4, -6));
+  CHECK(weighted_residuals(bound, 0, run, cells, weighting) == Vec<2>(-4, -6));
   weighting.whitening[0] = Eigen::MatrixXd::Identity(3, 3);  // of another set of cells
-  CHECK(weighed_residuals(bound, 0, run, cells, weighting) == Vec<2>(-1, -3));
+  CHECK(weighted_residuals(bound, 0, run, cells, weighting) == Vec<2>(-1, -3));
 }
 
 TEST_CASE("angles that are known up to full turns differ by the short way round, others by the long one") {
@@ -94,4 +92,4 @@ TEST_CASE("sizes of residuals are those of the noise, however wild a few of them
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

@@ -9,9 +9,7 @@
 
 #include "tests/diagnose/small_simulators.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 using toys::SlidingBlock;
@@ -45,7 +43,7 @@ double value(const FeatureTable& table, const std::string& name, Eigen::Index sa
 
 TEST_CASE("features are states, speeds without sign, reversals, inputs, time and constants that differ") {
   CHECK(feature_names(motion().bound) == std::vector<std::string>{"x", "v", "abs(v)", "since_reversal(v)", "push",
-                                                                "since_change(push)", "time", "load"});
+                                                                  "since_change(push)", "time", "load"});
 }
 
 TEST_CASE("times since a reversal or a change count from the row in which it happened") {
@@ -71,4 +69,4 @@ TEST_CASE("a stride leaves rows out but sees what happens in them") {
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

@@ -13,9 +13,7 @@
 #include "surefoot/diagnose/verdict/evaluate.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 using toys::SlidingBlock;
@@ -56,7 +54,7 @@ Bench bench(std::vector<Recording> recordings) {
 }
 
 double error(const BoundSimulator& bound, std::size_t r, const SimulatedRun& run) {
-  return detail::recording_error(bound, r, run, Eigen::VectorXd::Ones(2));
+  return recording_error(bound, r, run, Eigen::VectorXd::Ones(2));
 }
 
 TEST_CASE("it learns what depends on the motion, and takes it off recordings it has not seen") {
@@ -116,7 +114,7 @@ ForestResidual offered(std::vector<Recording> recordings, Verdict verdict) {
   investigation.problem.fit.weighting.sigma = Eigen::VectorXd::Ones(2);
   investigation.nominal = nominal_hypothesis(investigation.bound);
   investigation.diagnosis.verdict = verdict;
-  detail::prove(investigation, investigation.nominal, investigation.nominal, serially(), 1);
+  prove(investigation, investigation.nominal, investigation.nominal, serially(), 1);
   return investigation.diagnosis.forest_residual;
 }
 
@@ -125,7 +123,7 @@ TEST_CASE("it is offered where nothing explains a mismatch, and kept only where 
   CHECK(helps.tried);
   CHECK(helps.kept);
   CHECK(helps.gain > 2 * helps.gain_stderr);
-  CHECK(helps.heldout_after < 0.7 * helps.heldout_before);
+  CHECK(helps.held_out_after < 0.7 * helps.held_out_before);
   const ForestResidual noise = offered(block_recordings(0, 0.01), Verdict::unexplained);
   CHECK(noise.tried);
   CHECK_FALSE(noise.kept);
@@ -133,4 +131,4 @@ TEST_CASE("it is offered where nothing explains a mismatch, and kept only where 
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

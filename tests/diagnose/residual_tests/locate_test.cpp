@@ -10,9 +10,7 @@
 #include "surefoot/core/rng.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 // Four recordings of 200 samples: a slow angle, a fast one, and time.
@@ -93,7 +91,8 @@ TEST_CASE("the stretches with most of a mismatch come first, with the time they 
   std::vector<Recording> recordings{toys::tank_recording(0, 401), toys::tank_recording(1, 401)};
   const BoundSimulator bound = bind_simulator(toys::LeakyTank{}, recordings);
   std::vector<SimulatedRun> runs;
-  for (const Recording& recording : bound.recordings) runs.push_back({recording.outputs, Eigen::MatrixXd::Zero(1, 401)});
+  for (const Recording& recording : bound.recordings)
+    runs.push_back({recording.outputs, Eigen::MatrixXd::Zero(1, 401)});
   runs[1].outputs.middleCols(145, 12).array() += 0.5;  // 7.25 s to 7.8 s of 20 s
   const FeatureTable table = make_features(bound, {0, 1}, runs, 2);
   const Eigen::VectorXd energy = mismatch_energy(bound, {0, 1}, runs, Vec<1>(0.1), table, 0);
@@ -118,4 +117,4 @@ TEST_CASE("energy of changes belongs to where the error arises, not to where it 
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

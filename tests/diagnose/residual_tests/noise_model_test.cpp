@@ -9,9 +9,7 @@
 
 #include "tests/diagnose/made_up_noise.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 TEST_CASE("the likelihood is that of the Gaussian with the same covariance, gaps or not") {
@@ -60,4 +58,4 @@ TEST_CASE("a fit with more numbers is never less likely") {
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

@@ -12,9 +12,7 @@
 #include "tests/diagnose/small_simulators.hpp"
 #include "tests/support/walking_robot.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 const OutputInfo angle{"theta_rad", "rad"};
@@ -155,4 +153,4 @@ TEST_CASE("noise that accumulates is judged step by step") {
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

@@ -7,9 +7,7 @@
 
 #include "tests/support/fitted_walk.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 template <class Change>
@@ -37,8 +35,8 @@ TEST_CASE("a twist that depends on the heading is predicted") {
 }
 
 TEST_CASE("the same seed gives the same bits on any number of threads") {
-  BoundSimulator bound =
-      bind_simulator(toys::WalkingRobot{}, toys::walk_recordings([](Pose2 moved, Pose2) { return moved; }, false, 12, 1));
+  BoundSimulator bound = bind_simulator(toys::WalkingRobot{},
+                                        toys::walk_recordings([](Pose2 moved, Pose2) { return moved; }, false, 12, 1));
   bound.integration.restart = 1;
   FitProblem problem;
   problem.integration = bound.integration;
@@ -52,4 +50,4 @@ TEST_CASE("the same seed gives the same bits on any number of threads") {
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

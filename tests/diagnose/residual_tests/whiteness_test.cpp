@@ -11,9 +11,7 @@
 #include "surefoot/core/rng.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 // Four recordings of 600 rows whose residuals are noise of deviation 0.01 m that is correlated by `memory` from row to
@@ -119,4 +117,4 @@ TEST_CASE("the noise of a sensor is seen through motion that is smooth") {
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

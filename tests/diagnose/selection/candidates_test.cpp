@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/effects/constant_rate.hpp"
+#include "surefoot/diagnose/effects/leak.hpp"
+#include "surefoot/diagnose/effects/overflow.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 /// A car in the plane: nothing depends on where it is.
@@ -71,7 +72,8 @@ TEST_CASE("what spills over spills into any other store") {
 }
 
 TEST_CASE("a store can leak and overflow, a place and an angle cannot") {
-  const BoundSimulator tank = bind_simulator(toys::LeakyTank{}, {toys::blank_recording(toys::LeakyTank{}.info(), 100, 0.1)});
+  const BoundSimulator tank =
+      bind_simulator(toys::LeakyTank{}, {toys::blank_recording(toys::LeakyTank{}.info(), 100, 0.1)});
   const BoundSimulator car = bind_simulator(Car{}, {toys::blank_recording(Car{}.info(), 100, 0.1)});
   for (const Effect& effect : {effects::leak(), effects::leak_hole(), effects::overflow()}) {
     CAPTURE(effect.name);
@@ -82,4 +84,4 @@ TEST_CASE("a store can leak and overflow, a place and an angle cannot") {
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

@@ -7,14 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 #include "tests/support/servo_pendulum.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 using toys::ServoPendulum;
@@ -107,4 +105,4 @@ TEST_CASE("where nothing is missing no proposal explains much") {
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

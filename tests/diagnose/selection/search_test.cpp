@@ -8,13 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/diagnose/selection/candidates.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/effects/constant_rate.hpp"
+#include "surefoot/diagnose/effects/sensor_bias.hpp"
+#include "surefoot/diagnose/effects/sensor_drift.hpp"
+#include "surefoot/diagnose/selection/candidates.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 // Six tanks that these effects act on, with noise of 1 cm, and the search in them.
@@ -24,7 +25,7 @@ struct Bench {
   std::vector<AttachedEffect> candidates;
   SelectionCriteria options;
   Parallel parallel = serially();
-  detail::Search search{bound, problem, candidates, options, parallel};
+  Search search{bound, problem, candidates, options, parallel};
 
   explicit Bench(const std::vector<NamedEffect>& truth) {
     std::vector<Recording> recordings;
@@ -56,7 +57,7 @@ struct Bench {
       start.effects.push_back(*std::find_if(candidates.begin(), candidates.end(), of_name));
       start.values.emplace_back(Eigen::VectorXd::Constant(1, 0.01));
     }
-    return detail::judge(bound, fit(bound, start, problem.fit, parallel), problem, parallel);
+    return judge(bound, fit(bound, start, problem.fit, parallel), problem, parallel);
   }
 };
 
@@ -74,14 +75,14 @@ const NamedEffect rate{"constant_rate", "level", {}, {}, {0.2}}, drift{"sensor_d
 TEST_CASE("an effect that another one made idle is dropped") {
   const Bench bench({rate});
   EvaluatedHypothesis chosen = bench.with({"sensor_drift", "constant_rate"});
-  detail::drop_idle_effects(bench.search, chosen);
+  drop_idle_effects(bench.search, chosen);
   CHECK(names_of(chosen) == "constant_rate");
 }
 
 TEST_CASE("two effects that both do something stay") {
   const Bench bench({rate, drift});
   EvaluatedHypothesis chosen = bench.with({"sensor_drift", "constant_rate"});
-  detail::drop_idle_effects(bench.search, chosen);
+  drop_idle_effects(bench.search, chosen);
   CHECK(names_of(chosen) == "constant_rate, sensor_drift");
 }
 
@@ -90,7 +91,7 @@ TEST_CASE("a pair takes the place of one effect that leaves something open") {
   Selection selection;
   selection.nominal = bench.with({});
   selection.chosen = bench.with({"sensor_bias"});
-  detail::try_pair_instead(bench.search, selection);
+  try_pair_instead(bench.search, selection);
   CHECK(names_of(selection.chosen) == "constant_rate, sensor_drift");
 }
 
@@ -100,7 +101,7 @@ TEST_CASE("an effect that stands where another one does better is replaced, unti
   selection.nominal = bench.with({});
   selection.chosen = bench.with({"constant_rate", "sensor_bias"});
   int rounds = 0;
-  while (rounds < 5 && detail::compare_with_others(bench.search, selection, true)) ++rounds;
+  while (rounds < 5 && compare_with_others(bench.search, selection, true)) ++rounds;
   CHECK(rounds > 0);
   CHECK(rounds < 5);
   CHECK(names_of(selection.chosen) == "constant_rate, sensor_drift");
@@ -108,4 +109,4 @@ TEST_CASE("an effect that stands where another one does better is replaced, unti
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

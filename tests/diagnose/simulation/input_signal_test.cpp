@@ -8,12 +8,8 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
-
-using detail::InputSignal;
 
 // Input 0 is held, input 1 interpolated.
 SimulatorInfo two_inputs() {
@@ -160,4 +156,4 @@ TEST_CASE("a delay loses and adds nothing: the integral of the late input is tha
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

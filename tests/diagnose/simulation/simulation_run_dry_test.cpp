@@ -8,9 +8,7 @@
 #include "surefoot/diagnose/simulate_augmented.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 using toys::blank_recording;
@@ -83,4 +81,4 @@ TEST_CASE("several dry frictions of one velocity add up") {
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

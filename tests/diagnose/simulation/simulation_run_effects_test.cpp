@@ -8,9 +8,7 @@
 #include "tests/diagnose/small_simulators.hpp"
 #include "tests/support/walking_robot.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 using toys::LeakyTank;
@@ -18,11 +16,12 @@ using toys::machine;
 using toys::SlidingBlock;
 using toys::tank_recording;
 
-const Effect doubling{
-    .name = "doubling", .place = Place::input, .signal = [](const EffectContext& m, Values, Values) { return 2 * m.value; }};
-const Effect fifth_more{.name = "fifth_more", .place = Place::input, .signal = [](const EffectContext& m, Values, Values) {
-                          return m.value + 0.2;
-                        }};
+const Effect doubling{.name = "doubling", .place = Place::input, .signal = [](const EffectContext& m, Values, Values) {
+                        return 2 * m.value;
+                      }};
+const Effect fifth_more{.name = "fifth_more",
+                        .place = Place::input,
+                        .signal = [](const EffectContext& m, Values, Values) { return m.value + 0.2; }};
 
 TEST_CASE("an effect on a signal inside the equations is one on what the signal stands for") {
   const Recording recording = tank_recording(1, 100);
@@ -74,9 +73,9 @@ struct RowTank {
 static_assert(Simulator<RowTank>);
 
 TEST_CASE("on a map an effect on a state adds to the next value, and sees the change of this row") {
-  const Effect half_more{.name = "half_more", .place = Place::state, .force = [](const EffectContext& m, Values, Values) {
-                           return 0.5 * m.rate;
-                         }};
+  const Effect half_more{.name = "half_more",
+                         .place = Place::state,
+                         .force = [](const EffectContext& m, Values, Values) { return 0.5 * m.rate; }};
   Recording recording = toys::blank_recording(RowTank{}.info(), 30, 1);
   for (Eigen::Index row = 0; row < 30; ++row) recording.inputs(0, row) = row % 7 == 0 ? 1.0 : 0.1;
   const SimulatedRun run =
@@ -89,10 +88,10 @@ TEST_CASE("on a map an effect on a state adds to the next value, and sees the ch
 }
 
 TEST_CASE("effects with more hidden states than there is room for are refused") {
-  const Effect forgetful{
-      .name = "forgetful", .place = Place::input, .hidden_states = 9, .signal = [](const EffectContext& m, Values, Values) {
-        return m.value;
-      }};
+  const Effect forgetful{.name = "forgetful",
+                         .place = Place::input,
+                         .hidden_states = 9,
+                         .signal = [](const EffectContext& m, Values, Values) { return m.value; }};
   const NamedEffect one{"forgetful", "valve", {}, {}, {}};
   CHECK_NOTHROW(simulate_augmented(LeakyTank{}, machine({}, {one, one}), tank_recording(1, 10), {forgetful}));
   CHECK_THROWS_WITH_AS(
@@ -149,4 +148,4 @@ TEST_CASE("a sensor that is off changes what is read and not what moves") {
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

@@ -12,9 +12,7 @@
 #include "surefoot/diagnose/simulate_augmented.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 using toys::blank_recording;
@@ -165,4 +163,4 @@ TEST_CASE("a simulation that runs away says so") {
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

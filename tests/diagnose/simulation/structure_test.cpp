@@ -10,9 +10,7 @@
 #include "tests/support/servo_pendulum.hpp"
 #include "tests/support/walking_robot.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 template <class S>
@@ -107,4 +105,4 @@ TEST_CASE("a simulator is asked as it is for the recording") {
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

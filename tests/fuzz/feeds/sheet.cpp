@@ -1,4 +1,4 @@
-// Orders and a sheet that go together become walks that can be read.
+// Commands and a sheet that go together become walks that can be read.
 #include "apps/calibrate/sheet.hpp"
 
 #include "apps/calibrate/load_sequences.hpp"
@@ -14,10 +14,10 @@ namespace {
 using namespace calibrate_program;
 using diagnose_program::parse_csv;
 
-void merge(const std::string& orders, const std::string& sheet) {
+void merge(const std::string& commands, const std::string& sheet) {
   MergedSheet merged;
   const bool good = fuzz::accepted<surefoot::MotionError, surefoot::DiagnoseError>(
-      [&] { merged = merge_sheet(parse_csv(orders, "orders.csv"), parse_csv(sheet, "sheet.csv")); });
+      [&] { merged = merge_sheet(parse_csv(commands, "commands.csv"), parse_csv(sheet, "sheet.csv")); });
   if (!good) return;
   fuzz::accepted<surefoot::MotionError, surefoot::DiagnoseError>(
       [&] { sequences_of(parse_csv(merged.walks, "walks.csv"), {}); });
@@ -26,7 +26,7 @@ void merge(const std::string& orders, const std::string& sheet) {
 }  // namespace
 
 void fuzz::sheet(Input input) {
-  static const std::string orders = orders_csv(surefoot::plan_orders(surefoot::OrderBounds(), 3, 2, 1), 1);
-  merge(orders, text_of(input));
+  static const std::string commands = commands_csv(surefoot::plan_commands(surefoot::CommandBounds(), 3, 2, 1), 1);
+  merge(commands, text_of(input));
   merge(text_of(input), "seq,x_cm,y_cm,heading_clock\n1,100,-20,3\n2,,,\n3,50,10,12\n");
 }

@@ -27,7 +27,7 @@ Model some_walk() {
 }  // namespace
 
 TEST_CASE_TEMPLATE("a walk is found again from final poses", Model, surefoot::ProportionalCorrection,
-                   surefoot::SimpleLinearCorrection, FullLinearCorrection, surefoot::PreviousOrderCorrection,
+                   surefoot::SimpleLinearCorrection, FullLinearCorrection, surefoot::PreviousCommandCorrection,
                    toys::QuadraticCorrection) {
   const Model truth = some_walk<Model>();
   const auto walks = toys::final_poses(toys::walks(truth, little, 60, 1));
@@ -53,9 +53,9 @@ TEST_CASE("the slopes of the residuals are those of numeric differences") {
   CHECK((exact - numeric).norm() < 1e-5 * numeric.norm());
 }
 
-TEST_CASE("what orders never excite keeps its default, and its standard error says so") {
+TEST_CASE("what commands never excite keeps its default, and its standard error says so") {
   auto walks = toys::walks(toys::paper_walk(), toys::paper_noise(), 20, 3);
-  for (auto& walk : walks) walk.orders.row(1).setZero();  // never a lateral order
+  for (auto& walk : walks) walk.commands.row(1).setZero();  // never a lateral command
   const auto fit = surefoot::fit_model<FullLinearCorrection>(walks, toys::paper_noise().as_motion_noise());
   CHECK(fit.model.parameters()[6] == doctest::Approx(1));
   CHECK(fit.standard_errors()[6] > 0.5);   // of dy per dy, whose prior is 0.75

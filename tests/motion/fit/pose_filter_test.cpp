@@ -22,8 +22,8 @@ TEST_CASE("what exact poses leave is each cycle's own deviation, seen in the fra
   surefoot::Pose2 from;
   for (const auto& innovation : found) {
     const auto to = surefoot::Pose2::from_vec(walks[0].poses.col(innovation.cycle));
-    const Vec<3> orders = walks[0].orders.col(innovation.cycle);
-    Vec<3> deviation = (from.inverse() * to).vec() - toys::paper_walk().displacement(orders).vec();
+    const Vec<3> commands = walks[0].commands.col(innovation.cycle);
+    Vec<3> deviation = (from.inverse() * to).vec() - toys::paper_walk().displacement(commands).vec();
     deviation[2] = surefoot::wrap_angle(deviation[2]);
     CHECK(innovation.whitened().squaredNorm() ==
           doctest::Approx(deviation.cwiseQuotient(noise.constant).squaredNorm()).epsilon(1e-6));
@@ -72,7 +72,7 @@ TEST_CASE("without a measured heading only the position counts") {
 
 TEST_CASE("the likelihood is that of a normal distribution") {
   WalkSequence sequence{.name = "one cycle"};
-  sequence.orders = Vec<3>{0.1, 0, 0};
+  sequence.commands = Vec<3>{0.1, 0, 0};
   sequence.poses = Vec<3>{0.13, -0.01, 0.02};
   const MotionNoise noise{.constant = {0.03, 0.01, 0.05}};
   const PoseAccuracy accuracy{.position = 0.04, .heading = 0.12, .heading_tolerance = 0};

@@ -14,7 +14,7 @@ using surefoot::WalkSequence;
 namespace {
 
 std::vector<WalkSequence> wandering(const sigmaban::Model& model, int sequences, int cycles, std::uint64_t seed) {
-  return sigmaban::walked(model, sigmaban::noise(), surefoot::plan_orders({}, sequences, cycles, seed), true, seed);
+  return sigmaban::walked(model, sigmaban::noise(), surefoot::plan_commands({}, sequences, cycles, seed), true, seed);
 }
 
 surefoot::MotionTracker<sigmaban::Model> calibrated(std::span<const WalkSequence> sequences) {

@@ -18,7 +18,7 @@ using Alarm = surefoot::ChangeAlarm<sigmaban::Model>;
 namespace {
 
 std::vector<WalkSequence> wandering(const sigmaban::Model& model, int sequences, std::uint64_t seed) {
-  return sigmaban::walked(model, sigmaban::noise(), surefoot::plan_orders({}, sequences, 25, seed), true, seed);
+  return sigmaban::walked(model, sigmaban::noise(), surefoot::plan_commands({}, sequences, 25, seed), true, seed);
 }
 
 /// Calibrated from 25 sequences with every pose, with a threshold that such walks rarely reach.

@@ -20,7 +20,7 @@ namespace {
 
 std::vector<WalkSequence> wandering(int sequences, const surefoot::MotionNoise& noise, bool every_pose,
                                     std::uint64_t seed) {
-  return sigmaban::walked(sigmaban::model(), noise, surefoot::plan_orders({}, sequences, 25, seed), every_pose, seed);
+  return sigmaban::walked(sigmaban::model(), noise, surefoot::plan_commands({}, sequences, 25, seed), every_pose, seed);
 }
 
 }  // namespace
@@ -74,8 +74,8 @@ TEST_CASE("with forgetting the tracker follows a changed robot, and what is not 
   const auto fit = surefoot::fit_model<sigmaban::Model>(before, noise);
   Tracker tracker = surefoot::track(fit.model, fit.covariance, noise);
   tracker.forgetting = 0.9;
-  std::vector<Eigen::Matrix3Xd> plan = surefoot::plan_orders({}, 200, 25, 5);
-  for (Eigen::Matrix3Xd& orders : plan) orders.row(1).setZero();  // never sideways again
+  std::vector<Eigen::Matrix3Xd> plan = surefoot::plan_commands({}, 200, 25, 5);
+  for (Eigen::Matrix3Xd& commands : plan) commands.row(1).setZero();  // never sideways again
   for (const WalkSequence& sequence : sigmaban::walked(sigmaban::bent(1, 0.8), noise, plan, true, 5)) {
     update(tracker, sequence);
   }
@@ -91,7 +91,7 @@ TEST_CASE("with forgetting the tracker follows a changed robot, and what is not 
 TEST_CASE("what a tracker cannot use is refused") {
   Tracker tracker{.model = sigmaban::Model()};
   tracker.noise = sigmaban::noise();
-  CHECK_THROWS_AS(update(tracker, WalkSequence{.name = "1", .orders = {}, .poses = {}}), MotionError);
+  CHECK_THROWS_AS(update(tracker, WalkSequence{.name = "1", .commands = {}, .poses = {}}), MotionError);
   tracker.forgetting = 0;
   CHECK_THROWS_AS(update(tracker, wandering(1, sigmaban::noise(), true, 1)[0]), MotionError);
   CHECK_THROWS_AS(surefoot::track(sigmaban::Model(), -Tracker::Square::Identity(), sigmaban::noise()), MotionError);

@@ -80,9 +80,9 @@ TEST_CASE("what more sequences bring follows from the curve") {
 TEST_CASE("models are compared on sequences they were not fitted to, and the simplest good one is chosen") {
   const auto walks = toys::final_poses(toys::walks(toys::paper_walk(), toys::paper_noise(), 40, 4));
   const auto scores = surefoot::compare_models<ProportionalCorrection, SimpleLinearCorrection, FullLinearCorrection,
-                                               surefoot::PreviousOrderCorrection>(walks, {}, surefoot::Threads(2), 1);
+                                               surefoot::PreviousCommandCorrection>(walks, {}, surefoot::Threads(2), 1);
   REQUIRE(scores.size() == 5);
-  CHECK(scores[0].name == "orders as they are");
+  CHECK(scores[0].name == "commands as they are");
   CHECK(scores[0].position > scores[1].position);
   CHECK(scores[1].position > scores[3].position);
   CHECK(scores[3].chosen);

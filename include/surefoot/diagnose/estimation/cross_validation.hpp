@@ -1,4 +1,4 @@
-// How well hypotheses do, block by block, so that two of them can be compared in pairs.
+// Cross-validation of hypotheses, block by block, so that two of them can be compared in pairs.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,6 +10,9 @@
 #include "surefoot/diagnose/estimation/fit.hpp"
 
 namespace surefoot::diagnosis {
+
+/// In place of a divisor that may be 0: a ratio then is large, but finite.
+inline constexpr double never_zero = 1e-300;
 
 /// Robust squared residuals summed over blocks of the recordings; the blocks are the same for every hypothesis.
 struct BlockLosses {
@@ -45,9 +48,13 @@ struct BlockLosses {
 /// Splits a recording's residuals into at most eight blocks, each long enough to be nearly independent of the others.
 inline Eigen::Index blocks_of(Eigen::Index cells) { return std::clamp<Eigen::Index>(cells / 60, 1, 8); }
 
-void append_losses(BlockLosses& score, const Eigen::VectorXd& residuals, double robust);
+void append_losses(BlockLosses& losses, const Eigen::VectorXd& residuals, double robust);
 
-/// BlockLosses of a hypothesis as it is, on some recordings.
+/// Losses of simulations, which go with the recordings.
+BlockLosses block_losses(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                         const std::vector<SimulatedRun>& runs, const Weighting& weighting);
+
+/// Losses of a hypothesis as it is, on some recordings.
 BlockLosses block_losses(const BoundSimulator& bound, const Hypothesis& hypothesis,
                          const std::vector<std::size_t>& recordings, const Weighting& weighting,
                          const Integration& integration, const Parallel& parallel);
@@ -80,11 +87,10 @@ void test_losses(const std::vector<double>& before, const std::vector<double>& a
 /// the choice.
 Comparison compare_losses(const BlockLosses& before, const BlockLosses& after);
 
-/// Held-out score: each fold is judged by a fit to the other folds, which starts from `start`. Blocks come in the order
-/// of the folds.
+/// Losses of each fold for a fit to the other folds, which starts from `start`. Blocks come in the order of the folds.
 struct CrossValidation {
-  BlockLosses score;
-  std::vector<Hypothesis> folds;
+  BlockLosses losses;
+  std::vector<Hypothesis> folds;  // the fit that has not seen each of them
 };
 
 CrossValidation cross_validate(const BoundSimulator& bound, const Hypothesis& start, const FitProblem& problem,

@@ -13,17 +13,29 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE void append_losses(BlockLosses& score, const Eigen::VectorXd& residuals, double robust) {
+SUREFOOT_INLINE void append_losses(BlockLosses& losses, const Eigen::VectorXd& residuals, double robust) {
+  constexpr double diverged = 1e6;  // loss of a cell whose simulation ran away: much, but not everything
   const Eigen::Index cells = residuals.size(), blocks = blocks_of(cells);
   for (Eigen::Index b = 0; b < blocks; ++b) {
     const Eigen::Index from = cells * b / blocks, to = cells * (b + 1) / blocks;
     const Eigen::VectorXd part = residuals.segment(from, to - from);
     double loss = mean_loss(part, robust) * static_cast<double>(part.size());
-    if (!std::isfinite(loss)) loss = 1e6 * static_cast<double>(part.size());
-    score.blocks.push_back(loss);
-    score.counts.push_back(static_cast<double>(part.size()));
+    if (!std::isfinite(loss)) loss = diverged * static_cast<double>(part.size());
+    losses.blocks.push_back(loss);
+    losses.counts.push_back(static_cast<double>(part.size()));
   }
-  score.ends.push_back(score.blocks.size());
+  losses.ends.push_back(losses.blocks.size());
+}
+
+SUREFOOT_INLINE BlockLosses block_losses(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                         const std::vector<SimulatedRun>& runs, const Weighting& weighting) {
+  BlockLosses result;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const std::size_t r = recordings[i];
+    append_losses(result, weighted_residuals(bound, r, runs[i], cells_of(bound.recordings[r]), weighting),
+                  weighting.robust);
+  }
+  return result;
 }
 
 SUREFOOT_INLINE BlockLosses block_losses(const BoundSimulator& bound, const Hypothesis& hypothesis,
@@ -32,8 +44,8 @@ SUREFOOT_INLINE BlockLosses block_losses(const BoundSimulator& bound, const Hypo
   std::vector<Eigen::VectorXd> residuals(recordings.size());
   parallel(recordings.size(), [&](std::size_t i) {
     const std::size_t r = recordings[i];
-    residuals[i] = weighed_residuals(bound, r, simulate(bound, hypothesis, r, integration),
-                                     cells_of(bound.recordings[r]), weighting);
+    residuals[i] = weighted_residuals(bound, r, simulate(bound, hypothesis, r, integration),
+                                      cells_of(bound.recordings[r]), weighting);
   });
   BlockLosses result;
   for (const Eigen::VectorXd& one : residuals) append_losses(result, one, weighting.robust);
@@ -41,13 +53,17 @@ SUREFOOT_INLINE BlockLosses block_losses(const BoundSimulator& bound, const Hypo
 }
 
 SUREFOOT_INLINE double t_value(const std::vector<double>& differences) {
+  constexpr double largest = 1e3;  // of differences that are all alike
   const auto n = static_cast<double>(differences.size());
   if (n < 2) return 0;
   double mean = 0, squares = 0;
   for (const double d : differences) mean += d / n;
   for (const double d : differences) squares += (d - mean) * (d - mean);
   const double deviation = std::sqrt(squares / (n - 1) / n);
-  return deviation > 0 ? std::clamp(mean / deviation, -1e3, 1e3) : (mean > 0 ? 1e3 : mean < 0 ? -1e3 : 0);
+  return deviation > 0 ? std::clamp(mean / deviation, -largest, largest)
+                       : (mean > 0   ? largest
+                          : mean < 0 ? -largest
+                                     : 0);
 }
 
 SUREFOOT_INLINE void test_losses(const std::vector<double>& before, const std::vector<double>& after,
@@ -104,10 +120,10 @@ SUREFOOT_INLINE CrossValidation cross_validate(const BoundSimulator& bound, cons
     for (std::size_t j = 0; j < folds.size(); ++j) {
       if (j != k) others.recordings.insert(others.recordings.end(), folds[j].begin(), folds[j].end());
     }
-    const Hypothesis fitted =
-        with_estimated_starts(bound, fit(bound, start, others, parallel).hypothesis, folds[k], problem, parallel);
+    const Hypothesis fitted = with_estimated_initial_states(bound, fit(bound, start, others, parallel).hypothesis,
+                                                            folds[k], problem, parallel);
     const BlockLosses one = block_losses(bound, fitted, folds[k], problem.weighting, problem.integration, parallel);
-    result.score.append(one);
+    result.losses.append(one);
     result.folds.push_back(fitted);
   }
   return result;

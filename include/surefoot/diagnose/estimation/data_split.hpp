@@ -1,4 +1,4 @@
-// Which recordings are for the fit and the choice, and which for the test.
+// Split of the recordings: those for the fit and the choice, and those held out.
 #pragma once
 
 #include <algorithm>
@@ -14,13 +14,13 @@
 namespace surefoot::diagnosis {
 
 struct RecordingSplit {
-  std::vector<std::size_t> training, test;
+  std::vector<std::size_t> training, held_out;
   std::vector<std::vector<std::size_t>> folds;  // of the training recordings
 };
 
-/// Test recordings are those named, or a random share; never all, and at least one. The rest is dealt into folds, up
-/// to two more than asked for if each recording is then left out alone.
-RecordingSplit split_recordings(const std::vector<Recording>& recordings, const std::vector<std::string>& test,
+/// Held-out recordings are those named, or a random share; never all, and at least one. The rest is dealt into folds,
+/// up to two more than asked for if each recording is then left out alone.
+RecordingSplit split_recordings(const std::vector<Recording>& recordings, const std::vector<std::string>& held_out,
                                 double share, std::size_t folds, std::uint64_t seed);
 
 }  // namespace surefoot::diagnosis

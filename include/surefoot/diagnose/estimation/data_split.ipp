@@ -16,8 +16,8 @@
 namespace surefoot::diagnosis {
 
 SUREFOOT_INLINE RecordingSplit split_recordings(const std::vector<Recording>& recordings,
-                                                const std::vector<std::string>& test, double share, std::size_t folds,
-                                                std::uint64_t seed) {
+                                                const std::vector<std::string>& held_out, double share,
+                                                std::size_t folds, std::uint64_t seed) {
   std::vector<std::size_t> order(recordings.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   Rng rng(seed, 0x5370u);
@@ -25,22 +25,23 @@ SUREFOOT_INLINE RecordingSplit split_recordings(const std::vector<Recording>& re
     std::swap(order[i - 1], order[rng.below(static_cast<std::uint32_t>(i))]);
   }
   RecordingSplit split;
-  for (const std::string& name : test) {
+  for (const std::string& name : held_out) {
     const auto found = std::find_if(recordings.begin(), recordings.end(),
                                     [&](const Recording& recording) { return recording.name == name; });
-    if (found == recordings.end()) throw DiagnoseError("the test recording '" + name + "' is not among the recordings");
-    split.test.push_back(static_cast<std::size_t>(found - recordings.begin()));
+    if (found == recordings.end())
+      throw DiagnoseError("the held-out recording '" + name + "' is not among the recordings");
+    split.held_out.push_back(static_cast<std::size_t>(found - recordings.begin()));
   }
-  if (test.empty()) {
+  if (held_out.empty()) {
     const auto wanted = static_cast<std::size_t>(std::lround(share * static_cast<double>(recordings.size())));
     const std::size_t count = std::clamp<std::size_t>(wanted, 1, recordings.size() - 1);
-    split.test.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
+    split.held_out.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
   }
-  std::sort(split.test.begin(), split.test.end());
+  std::sort(split.held_out.begin(), split.held_out.end());
   for (const std::size_t r : order) {
-    if (!std::binary_search(split.test.begin(), split.test.end(), r)) split.training.push_back(r);
+    if (!std::binary_search(split.held_out.begin(), split.held_out.end(), r)) split.training.push_back(r);
   }
-  if (split.training.empty()) throw DiagnoseError("no recording is left for the fit: name fewer test recordings");
+  if (split.training.empty()) throw DiagnoseError("no recording is left for the fit: name fewer held-out recordings");
   const std::size_t count = split.training.size();
   split.folds.resize(count <= folds + 2 ? count : folds);
   for (std::size_t i = 0; i < split.training.size(); ++i)

@@ -1,7 +1,6 @@
 // Definitions of surefoot/diagnose/estimation/fit.hpp.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -22,6 +21,86 @@ SUREFOOT_INLINE Parallel serially() {
   return [](std::size_t count, const std::function<void(std::size_t)>& job) {
     for (std::size_t i = 0; i < count; ++i) job(i);
   };
+}
+
+SUREFOOT_INLINE FitFunctions::FitFunctions(const BoundSimulator& bound, const Hypothesis& start,
+                                           const FitProblem& problem, const Parallel& parallel)
+    : bound_(bound), base_(start), problem_(problem), parallel_(parallel) {
+  variables_ = variables_of(bound, start, problem.recordings, problem.free);
+  shared_ = static_cast<std::size_t>(std::count_if(
+      variables_.begin(), variables_.end(), [](const Variable& v) { return v.kind != Variable::Kind::initial; }));
+  begin_.push_back(0);
+  for (const std::size_t r : problem.recordings) {
+    cells_.push_back(cells_of(bound.recordings[r]));
+    begin_.push_back(begin_.back() + static_cast<Eigen::Index>(cells_.back().size()));
+  }
+}
+
+SUREFOOT_INLINE Eigen::VectorXd FitFunctions::start() const {
+  Eigen::VectorXd z(static_cast<Eigen::Index>(variables_.size()));
+  Hypothesis copy = base_;
+  for (std::size_t i = 0; i < variables_.size(); ++i) {
+    z[static_cast<Eigen::Index>(i)] =
+        to_search(variables_[i], std::clamp(value_of(copy, variables_[i]), variables_[i].low, variables_[i].high));
+  }
+  return z;
+}
+
+SUREFOOT_INLINE Box<Eigen::Dynamic> FitFunctions::box() const {
+  Eigen::VectorXd low(static_cast<Eigen::Index>(variables_.size())), high = low;
+  for (std::size_t i = 0; i < variables_.size(); ++i) {
+    low[static_cast<Eigen::Index>(i)] = to_search(variables_[i], variables_[i].low);
+    high[static_cast<Eigen::Index>(i)] = to_search(variables_[i], variables_[i].high);
+  }
+  return {low, high};
+}
+
+SUREFOOT_INLINE Hypothesis FitFunctions::at(const Eigen::VectorXd& z) const {
+  Hypothesis hypothesis = base_;
+  for (std::size_t i = 0; i < variables_.size(); ++i) {
+    value_of(hypothesis, variables_[i]) = from_search(variables_[i], z[static_cast<Eigen::Index>(i)]);
+  }
+  return hypothesis;
+}
+
+SUREFOOT_INLINE Eigen::VectorXd FitFunctions::residuals(const Eigen::VectorXd& z) const {
+  const Hypothesis hypothesis = at(z);
+  Eigen::VectorXd all(begin_.back());
+  parallel_(cells_.size(),
+            [&](std::size_t i) { all.segment(begin_[i], begin_[i + 1] - begin_[i]) = residuals_of(hypothesis, i); });
+  return all;
+}
+
+SUREFOOT_INLINE Eigen::MatrixXd FitFunctions::jacobian(const Eigen::VectorXd& z, const Eigen::VectorXd& here) const {
+  constexpr double difference = 1e-4;  // in units of the search, about 1e-4 of a variable: between noise and curvature
+  const auto columns = static_cast<Eigen::Index>(variables_.size());
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(begin_.back(), columns);
+  std::vector<std::pair<std::size_t, std::size_t>> jobs;  // variable, place of a recording
+  for (std::size_t v = 0; v < variables_.size(); ++v) {
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      if (v < shared_ || variables_[v].item == problem_.recordings[i]) jobs.emplace_back(v, i);
+    }
+  }
+  parallel_(jobs.size(), [&](std::size_t j) {
+    const auto [v, i] = jobs[j];
+    const auto k = static_cast<Eigen::Index>(v);
+    const double high = to_search(variables_[v], variables_[v].high);
+    const double step = z[k] + 2 * difference > high ? -difference : difference;
+    Eigen::VectorXd moved = z;
+    moved[k] += step;
+    const Eigen::Index length = begin_[i + 1] - begin_[i];
+    jacobian.col(k).segment(begin_[i], length) = (residuals_of(at(moved), i) - here.segment(begin_[i], length)) / step;
+  });
+  for (Eigen::Index i = 0; i < jacobian.size(); ++i) {
+    if (!std::isfinite(jacobian.data()[i])) jacobian.data()[i] = 0;
+  }
+  return jacobian;
+}
+
+SUREFOOT_INLINE Eigen::VectorXd FitFunctions::residuals_of(const Hypothesis& hypothesis, std::size_t i) const {
+  const std::size_t r = problem_.recordings[i];
+  return weighted_residuals(bound_, r, simulate(bound_, hypothesis, r, problem_.integration), cells_[i],
+                            problem_.weighting);
 }
 
 SUREFOOT_INLINE double mean_loss(const Eigen::VectorXd& residuals, double robust) {
@@ -64,54 +143,13 @@ SUREFOOT_INLINE Fit fit(const BoundSimulator& bound, const Hypothesis& start, co
   return result;
 }
 
-SUREFOOT_INLINE Hypothesis with_estimated_starts(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                                 const std::vector<std::size_t>& recordings, FitProblem problem,
-                                                 const Parallel& parallel) {
-  if (!free_start(bound, recordings)) return hypothesis;
+SUREFOOT_INLINE Hypothesis with_estimated_initial_states(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                         const std::vector<std::size_t>& recordings, FitProblem problem,
+                                                         const Parallel& parallel) {
+  if (!has_unknown_initial_state(bound, recordings)) return hypothesis;
   problem.recordings = recordings;
   problem.free = Free::initial_only;
   return fit(bound, hypothesis, problem, parallel).hypothesis;
-}
-
-SUREFOOT_INLINE StandardErrors standard_errors(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                               const FitProblem& problem, const Parallel& parallel) {
-  const FitFunctions functions(bound, hypothesis, problem, parallel);
-  const Eigen::VectorXd z = functions.start();
-  StandardErrors result{functions.variables(), {}, {}};
-  const auto count = static_cast<Eigen::Index>(result.variables.size());
-  if (count == 0) return result;
-  const Eigen::VectorXd residuals = functions.residuals(z);
-  const Eigen::MatrixXd slopes = functions.jacobian(z, residuals);
-  Eigen::MatrixXd hessian = slopes.transpose() * slopes, meat = Eigen::MatrixXd::Zero(count, count);
-  const Eigen::VectorXd scale = hessian.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
-  double blocks = 0;
-  for (std::size_t i = 0; i + 1 < functions.begin().size(); ++i) {
-    const Eigen::Index from = functions.begin()[i], length = functions.begin()[i + 1] - from;
-    const Eigen::Index parts = std::clamp<Eigen::Index>(length / 50, 1, 8);
-    for (Eigen::Index part = 0; part < parts; ++part) {
-      const Eigen::Index a = from + length * part / parts, b = from + length * (part + 1) / parts;
-      const Eigen::VectorXd pull =
-          scale.cwiseProduct(slopes.middleRows(a, b - a).transpose() * residuals.segment(a, b - a));
-      meat += pull * pull.transpose();
-      ++blocks;
-    }
-  }
-  Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
-  scaled.diagonal().array() += 1e-9;
-  const Eigen::MatrixXd inverse = scaled.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
-  Eigen::MatrixXd covariance = inverse * meat * inverse * (blocks / std::max(1.0, blocks - 1));
-  covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
-  result.deviation.resize(count);
-  result.correlation = scale.asDiagonal() * inverse * scale.asDiagonal();
-  Eigen::VectorXd norm = result.correlation.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  result.correlation = norm.asDiagonal() * result.correlation * norm.asDiagonal();
-  Hypothesis copy = hypothesis;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Variable& variable = result.variables[static_cast<std::size_t>(i)];
-    const double unit = variable.logarithmic ? value_of(copy, variable) : variable.scale;
-    result.deviation[i] = std::sqrt(std::max(0.0, covariance(i, i))) * unit;
-  }
-  return result;
 }
 
 }  // namespace surefoot::diagnosis

@@ -1,4 +1,4 @@
-// A hypothesis: which effects act, with which parameters, from which initial states. What fits search and scores judge.
+// A hypothesis: which effects act, with which parameters, from which initial states; and its variables for a fit.
 #pragma once
 
 #include <Eigen/Core>
@@ -39,7 +39,7 @@ void append_unit(std::string& above, std::string& below, const std::string& unit
 /// Unit of a measure at the place an effect is attached to.
 std::string measure_unit(const BoundSimulator& bound, const AttachedEffect& attached, const Measure& measure);
 
-/// One number that a fit may change.
+/// A scalar that a fit may change.
 struct Variable {
   enum class Kind : unsigned char { parameter, effect, initial } kind = Kind::parameter;
   std::size_t index = 0;  // of the parameter, of the effect, of the state

@@ -127,15 +127,19 @@ SUREFOOT_INLINE double& value_of(Hypothesis& hypothesis, const Variable& variabl
 
 SUREFOOT_INLINE std::vector<Variable> variables_of(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                                    const std::vector<std::size_t>& recordings, Free free) {
+  constexpr double logarithmic_range =
+      10;                               // high / low, from which on a positive variable is searched by its logarithm
+  constexpr double least_scale = 0.02;  // of the range, for a variable that is near zero
+  constexpr double initial_range = 20;  // times its scale, on both sides
   std::vector<Variable> variables;
   if (free != Free::initial_only) {
     for (std::size_t i = 0; i < bound.info.parameters.size(); ++i) {
       const ParameterInfo& info = bound.info.parameters[i];
       if (info.fixed || !(info.high > info.low)) continue;
-      const bool logarithmic = info.low > 0 && info.high / info.low >= 10;
+      const bool logarithmic = info.low > 0 && info.high / info.low >= logarithmic_range;
       const double now = std::abs(hypothesis.parameters[static_cast<Eigen::Index>(i)]);
       variables.push_back({Variable::Kind::parameter, i, 0, info.low, info.high,
-                           std::max(now, 0.02 * (info.high - info.low)), logarithmic});
+                           std::max(now, least_scale * (info.high - info.low)), logarithmic});
     }
   }
   if (free == Free::everything) {
@@ -144,9 +148,10 @@ SUREFOOT_INLINE std::vector<Variable> variables_of(const BoundSimulator& bound, 
       for (std::size_t k = 0; k < parameters.size(); ++k) {
         const double unit = measure_size(bound, hypothesis.effects[e], parameters[k].measure);
         const double low = parameters[k].low * unit, high = parameters[k].high * unit;
-        const bool logarithmic = low > 0 && high / low >= 10;
+        const bool logarithmic = low > 0 && high / low >= logarithmic_range;
         const double now = std::abs(hypothesis.values[e][static_cast<Eigen::Index>(k)]);
-        variables.push_back({Variable::Kind::effect, e, k, low, high, std::max(now, 0.02 * (high - low)), logarithmic});
+        variables.push_back(
+            {Variable::Kind::effect, e, k, low, high, std::max(now, least_scale * (high - low)), logarithmic});
       }
     }
   }
@@ -156,8 +161,8 @@ SUREFOOT_INLINE std::vector<Variable> variables_of(const BoundSimulator& bound, 
       const double scale = recording.initial_scale[i];
       if (!(scale > 0)) continue;
       const double middle = recording.initial[i];
-      variables.push_back({Variable::Kind::initial, static_cast<std::size_t>(i), r, middle - 20 * scale,
-                           middle + 20 * scale, scale, false});
+      variables.push_back({Variable::Kind::initial, static_cast<std::size_t>(i), r, middle - initial_range * scale,
+                           middle + initial_range * scale, scale, false});
     }
   }
   return variables;

@@ -1,10 +1,8 @@
-// Noise that accumulates: a walk that is off by a little in every step is off by more at the end. Decides how to
-// compare simulations with recordings, and weighs final poses by the covariance that such noise leaves in them.
+// Kinds of noise: a walk that is off by a little in every step is off by more at the end. They decide how simulations
+// are compared with recordings; final poses are weighted by the covariance that such noise leaves in them.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

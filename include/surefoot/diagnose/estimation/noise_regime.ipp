@@ -3,7 +3,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -56,70 +55,77 @@ SUREFOOT_INLINE NoiseKind noise_kind(const BoundSimulator& bound, const Hypothes
   if (only_final_pose(bound)) return NoiseKind::final_pose;
   if (!bound.structure.all_states_measured) return NoiseKind::measurement;
   const Eigen::MatrixX3d apart = step_correlations(bound, hypothesis, recordings);
-  const bool in_turn = apart.rightCols<2>().maxCoeff() > 0.3;  // every second or third step differs: that is no noise
-  return apart.col(0).mean() < -0.25 && !in_turn ? NoiseKind::measurement : NoiseKind::process;
+  constexpr double alternating = 0.3;    // a correlation two or three rows apart: such steps differ in turn, no noise
+  constexpr double differenced = -0.25;  // half way between noise of the process (0) and of measurement (-1/2)
+  const bool in_turn = apart.rightCols<2>().maxCoeff() > alternating;
+  return apart.col(0).mean() < differenced && !in_turn ? NoiseKind::measurement : NoiseKind::process;
 }
 
-SUREFOOT_INLINE std::vector<Eigen::MatrixXd> final_pose_whitening(const BoundSimulator& bound,
-                                                                  const Hypothesis& hypothesis,
-                                                                  const std::vector<std::size_t>& recordings,
-                                                                  const Integration& integration) {
-  struct Sequence {
-    Eigen::VectorXd off;
-    Eigen::MatrixXd by_position, by_heading, tape_position, tape_heading;  // covariances for unit variances
-  };
+/// Residuals of a walk of which the end was measured, and how their covariance grows with each variance.
+struct FinalResiduals {
+  Eigen::VectorXd off;
+  Eigen::MatrixXd by_position, by_heading, tape_position, tape_heading;  // covariances for unit variances
+};
+
+SUREFOOT_INLINE FinalResiduals final_residuals(const BoundSimulator& bound, std::size_t r,
+                                               const SimulatedRun& trajectory) {
   const PlanarInfo& planar = *bound.info.planar;
-  std::vector<Sequence> sequences(bound.recordings.size());
-  for (std::size_t r = 0; r < bound.recordings.size(); ++r) {
-    const SimulatedRun trajectory = simulate(bound, hypothesis, r, integration);
-    const std::vector<Cell> cells = cells_of(bound.recordings[r]);
-    const auto count = static_cast<Eigen::Index>(cells.size());
-    Sequence& sequence = sequences[r];
-    sequence.off = raw_residuals(bound, r, trajectory, cells);
-    sequence.by_position = Eigen::MatrixXd::Zero(count, count);
-    sequence.by_heading = sequence.tape_position = sequence.tape_heading = sequence.by_position;
-    const Eigen::Index last = trajectory.states.cols() - 1;
-    std::vector<int> kind(cells.size(), -1);  // 0: x, 1: y, 2: heading
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const auto k = static_cast<int>(cells[i].output);
-      if (bound.structure.output_of[static_cast<std::size_t>(planar.x)] == k) kind[i] = 0;
-      if (bound.structure.output_of[static_cast<std::size_t>(planar.y)] == k) kind[i] = 1;
-      if (bound.structure.output_of[static_cast<std::size_t>(planar.heading)] == k) kind[i] = 2;
-      (kind[i] == 2 ? sequence.tape_heading : sequence.tape_position)(static_cast<Eigen::Index>(i),
-                                                                      static_cast<Eigen::Index>(i)) = 1;
-    }
-    for (Eigen::Index step = 1; step <= last; ++step) {
-      const double x = trajectory.states(planar.x, last) - trajectory.states(planar.x, step);
-      const double y = trajectory.states(planar.y, last) - trajectory.states(planar.y, step);
-      Eigen::VectorXd turn = Eigen::VectorXd::Zero(count);  // of the end, for a turn in this step
-      for (Eigen::Index i = 0; i < count; ++i) {
-        const int what = kind[static_cast<std::size_t>(i)];
-        turn[i] = what == 0 ? -y : what == 1 ? x : what == 2 ? 1 : 0;
-        if (what == 0 || what == 1) sequence.by_position(i, i) += 1;
-      }
-      sequence.by_heading += turn * turn.transpose();
-    }
+  const std::vector<Cell> cells = cells_of(bound.recordings[r]);
+  const auto count = static_cast<Eigen::Index>(cells.size());
+  FinalResiduals sequence;
+  sequence.off = raw_residuals(bound, r, trajectory, cells);
+  sequence.by_position = Eigen::MatrixXd::Zero(count, count);
+  sequence.by_heading = sequence.tape_position = sequence.tape_heading = sequence.by_position;
+  const Eigen::Index last = trajectory.states.cols() - 1;
+  std::vector<int> kind(cells.size(), -1);  // 0: x, 1: y, 2: heading
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto k = static_cast<int>(cells[i].output);
+    if (bound.structure.output_of[static_cast<std::size_t>(planar.x)] == k) kind[i] = 0;
+    if (bound.structure.output_of[static_cast<std::size_t>(planar.y)] == k) kind[i] = 1;
+    if (bound.structure.output_of[static_cast<std::size_t>(planar.heading)] == k) kind[i] = 2;
+    (kind[i] == 2 ? sequence.tape_heading : sequence.tape_position)(static_cast<Eigen::Index>(i),
+                                                                    static_cast<Eigen::Index>(i)) = 1;
   }
-  const auto covariance = [&](const Sequence& s, const Eigen::Vector4d& v) -> Eigen::MatrixXd {
-    return v[0] * s.by_position + v[1] * s.by_heading + v[2] * s.tape_position + v[3] * s.tape_heading;
-  };
+  for (Eigen::Index step = 1; step <= last; ++step) {
+    const double x = trajectory.states(planar.x, last) - trajectory.states(planar.x, step);
+    const double y = trajectory.states(planar.y, last) - trajectory.states(planar.y, step);
+    Eigen::VectorXd turn = Eigen::VectorXd::Zero(count);  // of the end, for a turn in this step
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const int what = kind[static_cast<std::size_t>(i)];
+      turn[i] = what == 0 ? -y : what == 1 ? x : what == 2 ? 1 : 0;
+      if (what == 0 || what == 1) sequence.by_position(i, i) += 1;
+    }
+    sequence.by_heading += turn * turn.transpose();
+  }
+  return sequence;
+}
+
+SUREFOOT_INLINE Eigen::MatrixXd covariance_of(const FinalResiduals& s, const Eigen::Vector4d& v) {
+  return v[0] * s.by_position + v[1] * s.by_heading + v[2] * s.tape_position + v[3] * s.tape_heading;
+}
+
+/// Logarithms of the four variances with the highest likelihood, by a coordinate search.
+SUREFOOT_INLINE Eigen::Vector4d most_likely_variances(const std::vector<FinalResiduals>& sequences,
+                                                      const std::vector<std::size_t>& recordings) {
   const auto cost = [&](const Eigen::Vector4d& logarithms) {
     double sum = 0;
     for (const std::size_t r : recordings) {
-      const Sequence& s = sequences[r];
+      const FinalResiduals& s = sequences[r];
       if (s.off.size() == 0 || !s.off.allFinite()) continue;
-      const Eigen::LDLT<Eigen::MatrixXd> ldlt(covariance(s, logarithms.array().exp().matrix()));
+      const Eigen::LDLT<Eigen::MatrixXd> ldlt(covariance_of(s, logarithms.array().exp().matrix()));
       sum += ldlt.vectorD().array().max(1e-30).log().sum() + s.off.dot(ldlt.solve(s.off));
     }
     return sum;
   };
+  // A step is off by about 1 cm and 20 mrad, the tape by 1 cm and 30 mrad.
   Eigen::Vector4d best(2 * std::log(0.01), 2 * std::log(0.02), 2 * std::log(0.01), 2 * std::log(0.03));
+  constexpr double lowest = -20, highest = 4;  // of a logarithm
   double least = cost(best);
-  for (double width = 2; width > 0.1; width *= 0.7) {  // coordinate search
+  for (double width = 2; width > 0.1; width *= 0.7) {
     for (int k = 0; k < 4; ++k) {
       for (const double move : {-width, width}) {
         Eigen::Vector4d next = best;
-        next[k] = std::clamp(next[k] + move, -20.0, 4.0);
+        next[k] = std::clamp(next[k] + move, lowest, highest);
         const double value = cost(next);
         if (value < least) {
           least = value;
@@ -128,11 +134,23 @@ SUREFOOT_INLINE std::vector<Eigen::MatrixXd> final_pose_whitening(const BoundSim
       }
     }
   }
+  return best;
+}
+
+SUREFOOT_INLINE std::vector<Eigen::MatrixXd> final_pose_whitening(const BoundSimulator& bound,
+                                                                  const Hypothesis& hypothesis,
+                                                                  const std::vector<std::size_t>& recordings,
+                                                                  const Integration& integration) {
+  std::vector<FinalResiduals> sequences;
+  for (std::size_t r = 0; r < bound.recordings.size(); ++r) {
+    sequences.push_back(final_residuals(bound, r, simulate(bound, hypothesis, r, integration)));
+  }
+  const Eigen::Vector4d best = most_likely_variances(sequences, recordings);
   std::vector<Eigen::MatrixXd> whitening(bound.recordings.size());
   for (std::size_t r = 0; r < sequences.size(); ++r) {
     const auto count = sequences[r].off.size();
     if (count == 0) continue;
-    const Eigen::LLT<Eigen::MatrixXd> llt(covariance(sequences[r], best.array().exp().matrix()));
+    const Eigen::LLT<Eigen::MatrixXd> llt(covariance_of(sequences[r], best.array().exp().matrix()));
     whitening[r] = llt.matrixL().solve(Eigen::MatrixXd::Identity(count, count));
   }
   return whitening;

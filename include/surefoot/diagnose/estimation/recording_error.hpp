@@ -1,4 +1,5 @@
-// Errors of whole recordings, in units that people can compare: those of the noise, or of the spread of an output.
+// Errors of whole recordings, in units that people can compare: those of the noise, or of the standard deviation of an
+// output.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "surefoot/diagnose/estimation/calibrate.hpp"
+#include "surefoot/diagnose/estimation/residuals.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -15,16 +16,23 @@ namespace surefoot::diagnosis {
 double recording_error(const BoundSimulator& bound, std::size_t r, const SimulatedRun& trajectory,
                        const Eigen::VectorXd& scale);
 
+/// Root mean square of the errors of some recordings, each counted as often as it has cells.
 double over_all(const std::vector<double>& errors, const std::vector<double>& counts);
 
+/// How many cells each recording has.
 std::vector<double> cell_counts(const BoundSimulator& bound, const std::vector<std::size_t>& recordings);
 
-/// The unit of errors, by output: its stated noise or, where none is stated, its spread over the recordings.
+/// The unit of errors, by output: its stated noise or, where none is stated, its standard deviation over the
+/// recordings.
 Eigen::VectorXd error_scale(const BoundSimulator& bound);
 
-/// Error of a hypothesis on some recordings, each simulated as a whole.
-double whole_error(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                   const std::vector<std::size_t>& recordings, Integration integration, const Parallel& parallel);
+/// Error of each recording; `runs` go with `recordings`.
+std::vector<double> recording_errors(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                     const std::vector<SimulatedRun>& runs, const Eigen::VectorXd& scale);
+
+/// Error over all of some recordings, in units of error_scale().
+double error_over_all(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                      const std::vector<SimulatedRun>& runs);
 
 }  // namespace surefoot::diagnosis
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
-#include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
+#include "surefoot/diagnose/estimation/typical_sizes.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -40,7 +40,7 @@ SUREFOOT_INLINE std::vector<double> cell_counts(const BoundSimulator& bound,
 SUREFOOT_INLINE Eigen::VectorXd error_scale(const BoundSimulator& bound) {
   std::vector<std::size_t> all(bound.recordings.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  Eigen::VectorXd scale = output_spreads(bound, all);
+  Eigen::VectorXd scale = output_deviations(bound, all);
   for (Eigen::Index k = 0; k < scale.size(); ++k) {
     const double noise = bound.info.outputs[static_cast<std::size_t>(k)].noise;
     if (noise > 0) scale[k] = noise;
@@ -48,17 +48,20 @@ SUREFOOT_INLINE Eigen::VectorXd error_scale(const BoundSimulator& bound) {
   return scale;
 }
 
-SUREFOOT_INLINE double whole_error(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                   const std::vector<std::size_t>& recordings, Integration integration,
-                                   const Parallel& parallel) {
-  integration.restart = 0;
-  const auto runs = simulate_all(bound, hypothesis, recordings, integration, parallel);
-  const Eigen::VectorXd scale = error_scale(bound);
+SUREFOOT_INLINE std::vector<double> recording_errors(const BoundSimulator& bound,
+                                                     const std::vector<std::size_t>& recordings,
+                                                     const std::vector<SimulatedRun>& runs,
+                                                     const Eigen::VectorXd& scale) {
   std::vector<double> errors;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     errors.push_back(recording_error(bound, recordings[i], runs[i], scale));
   }
-  return over_all(errors, cell_counts(bound, recordings));
+  return errors;
+}
+
+SUREFOOT_INLINE double error_over_all(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                      const std::vector<SimulatedRun>& runs) {
+  return over_all(recording_errors(bound, recordings, runs, error_scale(bound)), cell_counts(bound, recordings));
 }
 
 }  // namespace surefoot::diagnosis

@@ -1,4 +1,4 @@
-// Residuals of a hypothesis: simulated minus measured, weighed by what an output may be off.
+// Residuals of a hypothesis: simulated minus measured, weighted by what an output may be off.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@
 
 namespace surefoot::diagnosis {
 
-/// How residuals are weighed: divided by sigma, by output, and by the scale of their recording; or, where noise
+/// How residuals are weighted: divided by sigma, by output, and by the scale of their recording; or, where noise
 /// accumulates until a late measurement, multiplied by a matrix for each recording (the inverse of a square root of
 /// their covariance).
 struct Weighting {
@@ -36,8 +36,8 @@ Eigen::VectorXd raw_residuals(const BoundSimulator& bound, std::size_t r, const 
                               const std::vector<Cell>& cells);
 
 /// Dimensionless residuals of one recording.
-Eigen::VectorXd weighed_residuals(const BoundSimulator& bound, std::size_t r, const SimulatedRun& trajectory,
-                                  const std::vector<Cell>& cells, const Weighting& weighting);
+Eigen::VectorXd weighted_residuals(const BoundSimulator& bound, std::size_t r, const SimulatedRun& trajectory,
+                                   const std::vector<Cell>& cells, const Weighting& weighting);
 
 /// Root mean square of the raw residuals by output over some recordings. Far outliers are left out, at most one in a
 /// hundred: what is far off more often than that is not an accident.

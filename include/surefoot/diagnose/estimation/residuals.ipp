@@ -42,9 +42,9 @@ SUREFOOT_INLINE Eigen::VectorXd raw_residuals(const BoundSimulator& bound, std::
   return residuals;
 }
 
-SUREFOOT_INLINE Eigen::VectorXd weighed_residuals(const BoundSimulator& bound, std::size_t r,
-                                                  const SimulatedRun& trajectory, const std::vector<Cell>& cells,
-                                                  const Weighting& weighting) {
+SUREFOOT_INLINE Eigen::VectorXd weighted_residuals(const BoundSimulator& bound, std::size_t r,
+                                                   const SimulatedRun& trajectory, const std::vector<Cell>& cells,
+                                                   const Weighting& weighting) {
   Eigen::VectorXd residuals = raw_residuals(bound, r, trajectory, cells);
   if (!weighting.whitening.empty() && weighting.whitening[r].rows() == residuals.size()) {
     return weighting.whitening[r] * residuals;
@@ -58,6 +58,9 @@ SUREFOOT_INLINE Eigen::VectorXd weighed_residuals(const BoundSimulator& bound, s
 
 SUREFOOT_INLINE Eigen::VectorXd residual_sizes(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
                                                const std::vector<SimulatedRun>& trajectories) {
+  constexpr double outlier = 6;               // times the size so far
+  constexpr std::size_t common_percent = 99;  // of the residuals that are never left out
+  constexpr double smallest = 1e-12;          // in place of 0, so that a size may be divided by
   std::vector<std::vector<double>> by_output(bound.info.outputs.size());
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     const std::vector<Cell> cells = cells_of(bound.recordings[recordings[i]]);
@@ -70,20 +73,20 @@ SUREFOOT_INLINE Eigen::VectorXd residual_sizes(const BoundSimulator& bound, cons
   for (std::size_t k = 0; k < by_output.size(); ++k) {
     std::vector<double> absolute;
     for (const double value : by_output[k]) absolute.push_back(std::abs(value));
-    const auto rare = absolute.begin() + static_cast<std::ptrdiff_t>(absolute.size() * 99 / 100);
+    const auto rare = absolute.begin() + static_cast<std::ptrdiff_t>(absolute.size() * common_percent / 100);
     if (rare != absolute.end()) std::nth_element(absolute.begin(), rare, absolute.end());
     const double common = rare != absolute.end() ? *rare : 0;
     double size = std::numeric_limits<double>::infinity();
-    for (int round = 0; round < 3; ++round) {  // without what lies beyond six times the size so far
+    for (int round = 0; round < 3; ++round) {
       double sum = 0, count = 0;
       for (const double value : by_output[k]) {
-        if (std::abs(value) > std::max(6 * size, common)) continue;
+        if (std::abs(value) > std::max(outlier * size, common)) continue;
         sum += value * value;
         ++count;
       }
       size = count > 0 ? std::sqrt(sum / count) : 0;
     }
-    sizes[static_cast<Eigen::Index>(k)] = size > 0 ? size : 1e-12;
+    sizes[static_cast<Eigen::Index>(k)] = size > 0 ? size : smallest;
   }
   return sizes;
 }

@@ -1,5 +1,4 @@
-// What numbers the fit of an effect starts from: its own starting values in the units of the model, or what readings
-// suggest.
+// Starting values for the fit of an effect: its own, in the units of the model, or those that readings suggest.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,8 +28,8 @@ std::vector<Observed> observe(const BoundSimulator& bound, const std::vector<std
                               const std::vector<SimulatedRun>& runs);
 
 /// Every combination of the starting values, in units of the model.
-std::vector<Eigen::VectorXd> starts_of(const BoundSimulator& bound, const AttachedEffect& attached,
-                                       const std::vector<Observed>& observed);
+std::vector<Eigen::VectorXd> starting_values(const BoundSimulator& bound, const AttachedEffect& attached,
+                                             const std::vector<Observed>& observed);
 
 }  // namespace surefoot::diagnosis
 

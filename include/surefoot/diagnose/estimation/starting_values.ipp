@@ -61,8 +61,9 @@ SUREFOOT_INLINE std::vector<Observed> observe(const BoundSimulator& bound, const
   return result;
 }
 
-SUREFOOT_INLINE std::vector<Eigen::VectorXd> starts_of(const BoundSimulator& bound, const AttachedEffect& attached,
-                                                       const std::vector<Observed>& observed) {
+SUREFOOT_INLINE std::vector<Eigen::VectorXd> starting_values(const BoundSimulator& bound,
+                                                             const AttachedEffect& attached,
+                                                             const std::vector<Observed>& observed) {
   const auto& parameters = attached.effect->parameters;
   std::vector<Eigen::VectorXd> result{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters.size()))};
   for (std::size_t k = 0; k < parameters.size(); ++k) {

@@ -83,8 +83,8 @@ Comparison cross_validate_residual(const BoundSimulator& bound, const std::vecto
     for (const std::size_t i : held) {
       const std::size_t r = recordings[i];
       const std::vector<Cell> cells = cells_of(bound.recordings[r]);
-      append_losses(before, weighed_residuals(bound, r, runs[i], cells, weighting), weighting.robust);
-      append_losses(after, weighed_residuals(bound, r, corrected(bound, r, runs[i], model), cells, weighting),
+      append_losses(before, weighted_residuals(bound, r, runs[i], cells, weighting), weighting.robust);
+      append_losses(after, weighted_residuals(bound, r, corrected(bound, r, runs[i], model), cells, weighting),
                     weighting.robust);
     }
   }

@@ -1,4 +1,4 @@
-// Where effects may attach: every effect at every place of a simulator that it fits.
+// Candidates: every effect at every place of a simulator that it fits.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,13 +10,20 @@
 #include <vector>
 
 #include "surefoot/diagnose/estimation/hypothesis.hpp"
+#include "surefoot/diagnose/selection/criterion.hpp"
 
 namespace surefoot::diagnosis {
 
-/// Inputs and signals (after the inputs) that are worth an effect: they change, and are no mere multiple of one before.
+/// Inputs and signals (after the inputs) that are worth an effect: they change, and are no mere multiple of one before
+/// (a cosine beyond `collinear`, see SelectionCriteria).
 std::vector<bool> distinct_inputs(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                   const std::vector<std::size_t>& recordings,
-                                  const std::vector<SimulatedRun>& trajectories);
+                                  const std::vector<SimulatedRun>& trajectories,
+                                  double collinear = SelectionCriteria{}.collinear);
+
+/// Whether an effect on a velocity, or on another state, fits this state.
+bool fits_velocity(const BoundSimulator& bound, const Effect& effect, std::size_t state);
+bool fits_state(const BoundSimulator& bound, const Effect& effect, std::size_t state);
 
 /// Every (effect, place) that fits the simulator; `distinct` as above.
 std::vector<AttachedEffect> attachments(const BoundSimulator& bound, const std::vector<Effect>& effects,

@@ -17,7 +17,7 @@ namespace surefoot::diagnosis {
 
 SUREFOOT_INLINE std::vector<bool> distinct_inputs(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                                   const std::vector<std::size_t>& recordings,
-                                                  const std::vector<SimulatedRun>& trajectories) {
+                                                  const std::vector<SimulatedRun>& trajectories, double collinear) {
   const std::size_t inputs = bound.info.inputs.size(), count = inputs + bound.info.signals.size();
   Eigen::MatrixXd products = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count));
   std::vector<bool> changes(count, false);
@@ -41,11 +41,30 @@ SUREFOOT_INLINE std::vector<bool> distinct_inputs(const BoundSimulator& bound, c
     for (std::size_t j = 0; j < k; ++j) {
       const auto b = static_cast<Eigen::Index>(j);
       if (!distinct[j]) continue;
-      const double cosine = products(a, b) / std::sqrt(std::max(products(a, a) * products(b, b), 1e-300));
-      if (std::abs(cosine) > 1 - 1e-9) distinct[k] = false;
+      const double cosine = products(a, b) / std::sqrt(std::max(products(a, a) * products(b, b), never_zero));
+      if (std::abs(cosine) > collinear) distinct[k] = false;
     }
   }
   return distinct;
+}
+
+SUREFOOT_INLINE bool fits_velocity(const BoundSimulator& bound, const Effect& effect, std::size_t state) {
+  bool needs_position = effect.seen_position || effect.limit;
+  for (const EffectParameter& parameter : effect.parameters) {
+    needs_position = needs_position || parameter.measure.position != 0;
+  }
+  return bound.structure.velocity[state] && (bound.structure.position_of[state] >= 0 || !needs_position);
+}
+
+SUREFOOT_INLINE bool fits_state(const BoundSimulator& bound, const Effect& effect, std::size_t state) {
+  const SimulatorInfo& info = bound.info;
+  const auto i = static_cast<int>(state);
+  const bool is_position = std::ranges::find(bound.structure.position_of, i) != bound.structure.position_of.end();
+  const bool pose = info.planar && (i == info.planar->x || i == info.planar->y || i == info.planar->heading);
+  if (is_position || bound.structure.velocity[state] || pose) return false;  // there forces act, or walking effects
+  const std::string& unit = info.states[state].unit;
+  const bool angle = unit == "rad" || unit == "deg";
+  return !effect.needs_conserved_state || (!angle && bound.structure.matters[state]);
 }
 
 SUREFOOT_INLINE std::vector<AttachedEffect> attachments(const BoundSimulator& bound, const std::vector<Effect>& effects,
@@ -63,31 +82,14 @@ SUREFOOT_INLINE std::vector<AttachedEffect> attachments(const BoundSimulator& bo
     switch (effect.place) {
       case Place::velocity:
         for (std::size_t i = 0; i < info.states.size(); ++i) {
-          const bool positioned = bound.structure.position_of[i] >= 0;
-          bool needs_position = effect.seen_position || effect.limit;
-          for (const EffectParameter& parameter : effect.parameters) {
-            needs_position = needs_position || parameter.measure.position != 0;
-          }
-          if (bound.structure.velocity[i] && (positioned || !needs_position)) attach(i, info.states[i].name);
+          if (fits_velocity(bound, effect, i)) attach(i, info.states[i].name);
         }
         break;
       case Place::state:
         for (std::size_t i = 0; i < info.states.size(); ++i) {
-          bool is_position = false;
-          for (const int position : bound.structure.position_of)
-            is_position = is_position || position == static_cast<int>(i);
-          const bool pose =
-              info.planar && (static_cast<int>(i) == info.planar->x || static_cast<int>(i) == info.planar->y ||
-                              static_cast<int>(i) == info.planar->heading);
-          if (is_position || bound.structure.velocity[i] || pose) continue;  // there forces act, or walking effects
-          const std::string& unit = info.states[i].unit;
-          const bool angle = unit == "rad" || unit == "deg";
-          if (effect.needs_conserved_state && (angle || !bound.structure.matters[i])) continue;
-          if (!effect.has_overflow_target) {
-            attach(i, info.states[i].name);
-            continue;
-          }
-          for (std::size_t j = 0; j < info.states.size(); ++j) {
+          if (!fits_state(bound, effect, i)) continue;
+          if (!effect.has_overflow_target) attach(i, info.states[i].name);
+          for (std::size_t j = 0; j < info.states.size() && effect.has_overflow_target; ++j) {
             if (j != i) attach(i, info.states[i].name, static_cast<int>(j));
           }
         }

@@ -1,38 +1,65 @@
-// Proposes effects: every effect at every place where it may attach, ranked by how much of the residuals the change of
-// the simulation that it causes would explain, apart from what the model's own parameters could do.
+// Proposals: every effect at every place where it may attach, ranked by how much of the residuals the change of the
+// simulation that it causes would explain, apart from what the model's own parameters could do.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/QR>
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <functional>
-#include <utility>
 #include <vector>
 
 #include "surefoot/diagnose/estimation/fit.hpp"
-#include "surefoot/diagnose/estimation/starting_values.hpp"
 #include "surefoot/diagnose/selection/candidates.hpp"
 
 namespace surefoot::diagnosis {
 
-/// An effect that is worth a fit, with the numbers to start it from.
+/// Limits of a linear prediction of what an effect explains.
+struct ProposalCriteria {
+  double visible_share = 0.05;          // of the residuals' squares, that an effect must take away to be seen
+  double negligible_signature = 1e-12;  // of the residuals' squares: rounding, the effect does nothing here
+  double ridge = 1e-12;                 // of the signatures' squares: where two strengths do the same
+};
+
+/// An effect that is worth a fit, with the parameters to start it from.
 struct Proposal {
   AttachedEffect effect;
   Eigen::VectorXd start;
   double gain = 0;                           // share of the squared residuals it would explain
-  double distinct = 0;                       // share of its mark that the parameters cannot imitate
-  Eigen::VectorXd tried;                     // the numbers it was screened with
+  double distinct = 0;                       // share of its signature that the model's parameters cannot imitate
+  Eigen::VectorXd tried;                     // the parameters it was screened with
   std::vector<Eigen::VectorXd> more_starts;  // worse ones; for effects without a strength the order means little
-  double visible = 0;  // multiple of those that would take away a twentieth of the residuals' squares
+  double visible = 0;                        // multiple of those that could just be seen; 0: none
 };
 
+/// Residuals of a fitted hypothesis, and the part of them that its parameters cannot change.
+struct OpenResiduals {
+  Eigen::VectorXd residuals;
+  Eigen::MatrixXd basis;  // of what the parameters can do, orthonormal
+  Eigen::VectorXd open;   // beyond it; cut off at the robust limit
+  double energy = 0;      // squares of the open ones
+
+  Eigen::VectorXd beyond_parameters(const Eigen::VectorXd& change) const;
+};
+
+OpenResiduals open_residuals(const BoundSimulator& bound, const Hypothesis& base, const FitProblem& problem,
+                             const Parallel& parallel);
+
+/// Places of the strengths among the parameters of an effect.
+std::vector<Eigen::Index> strengths_of(const Effect& effect);
+
+/// Changes of the residuals that an effect with these parameters causes, a column for each of its strengths alone (one
+/// column if it has none); empty if the simulation runs away.
+Eigen::MatrixXd signatures(const BoundSimulator& bound, const Hypothesis& base, const FitProblem& problem,
+                           const Eigen::VectorXd& residuals, const AttachedEffect& candidate,
+                           const Eigen::VectorXd& start);
+
+/// Predicts what an effect would explain; no effect in it if its signatures are empty.
+Proposal predict_gain(const BoundSimulator& bound, const OpenResiduals& open, const AttachedEffect& candidate,
+                      const Eigen::VectorXd& start, const Eigen::MatrixXd& signatures,
+                      const ProposalCriteria& criteria);
+
 /// Ranks candidates, best first. `base` is fitted; only `problem.recordings` are simulated, once per candidate, start
-/// and strength. Residuals beyond the robust limit are cut off there.
+/// and strength.
 std::vector<Proposal> propose(const BoundSimulator& bound, const Hypothesis& base, const FitProblem& problem,
-                              const std::vector<AttachedEffect>& candidates, const Parallel& parallel);
+                              const std::vector<AttachedEffect>& candidates, const Parallel& parallel,
+                              const ProposalCriteria& criteria = {});
 
 }  // namespace surefoot::diagnosis
 

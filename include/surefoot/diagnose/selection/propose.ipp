@@ -19,100 +19,108 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE std::vector<Proposal> propose(const BoundSimulator& bound, const Hypothesis& base,
-                                              const FitProblem& problem, const std::vector<AttachedEffect>& candidates,
-                                              const Parallel& parallel) {
+SUREFOOT_INLINE Eigen::VectorXd OpenResiduals::beyond_parameters(const Eigen::VectorXd& change) const {
+  if (basis.cols() == 0) return change;
+  return change - basis * (basis.transpose() * change);
+}
+
+SUREFOOT_INLINE OpenResiduals open_residuals(const BoundSimulator& bound, const Hypothesis& base,
+                                             const FitProblem& problem, const Parallel& parallel) {
   const FitFunctions functions(bound, base, problem, parallel);
   const Eigen::VectorXd z = functions.start();
   const double limit = problem.weighting.robust;
-  const auto clipped = [limit](const Eigen::VectorXd& r) -> Eigen::VectorXd {
-    return r.unaryExpr([limit](double value) { return std::isfinite(value) ? std::clamp(value, -limit, limit) : 0.0; });
-  };
-  const Eigen::VectorXd residuals = functions.residuals(z);
-  Eigen::MatrixXd basis;
+  OpenResiduals result;
+  result.residuals = functions.residuals(z);
   if (z.size() > 0) {
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(functions.jacobian(z, residuals));
-    basis = qr.householderQ() * Eigen::MatrixXd::Identity(residuals.size(), qr.rank());
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(functions.jacobian(z, result.residuals));
+    result.basis = qr.householderQ() * Eigen::MatrixXd::Identity(result.residuals.size(), qr.rank());
   }
-  const auto beyond_parameters = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
-    if (basis.cols() == 0) return v;
-    return v - basis * (basis.transpose() * v);
-  };
-  const Eigen::VectorXd open = beyond_parameters(clipped(residuals));
-  const double energy = std::max(open.squaredNorm(), 1e-300);
+  const Eigen::VectorXd clipped = result.residuals.unaryExpr(
+      [limit](double value) { return std::isfinite(value) ? std::clamp(value, -limit, limit) : 0.0; });
+  result.open = result.beyond_parameters(clipped);
+  result.energy = std::max(result.open.squaredNorm(), never_zero);
+  return result;
+}
 
-  struct Job {
-    std::size_t candidate;
-    Eigen::VectorXd start;
-  };
-  const auto observed =
-      observe(bound, problem.recordings, simulate_all(bound, base, problem.recordings, problem.integration, parallel));
-  std::vector<std::vector<Eigen::VectorXd>> starts(candidates.size());
-  parallel(candidates.size(), [&](std::size_t c) { starts[c] = starts_of(bound, candidates[c], observed); });
-  std::vector<Job> jobs;
-  for (std::size_t c = 0; c < candidates.size(); ++c) {
-    for (const Eigen::VectorXd& start : starts[c]) jobs.push_back({c, start});
+SUREFOOT_INLINE std::vector<Eigen::Index> strengths_of(const Effect& effect) {
+  std::vector<Eigen::Index> strengths;
+  for (std::size_t k = 0; k < effect.parameters.size(); ++k) {
+    if (effect.parameters[k].strength) strengths.push_back(static_cast<Eigen::Index>(k));
   }
-  std::vector<Proposal> tried(jobs.size());
-  parallel(jobs.size(), [&](std::size_t j) {
-    const AttachedEffect& candidate = candidates[jobs[j].candidate];
-    const auto& parameters = candidate.effect->parameters;
-    std::vector<Eigen::Index> strengths;
-    for (std::size_t k = 0; k < parameters.size(); ++k) {
-      if (parameters[k].strength) strengths.push_back(static_cast<Eigen::Index>(k));
+  return strengths;
+}
+
+SUREFOOT_INLINE Eigen::MatrixXd signatures(const BoundSimulator& bound, const Hypothesis& base,
+                                           const FitProblem& problem, const Eigen::VectorXd& residuals,
+                                           const AttachedEffect& candidate, const Eigen::VectorXd& start) {
+  const std::vector<Eigen::Index> strengths = strengths_of(*candidate.effect);
+  const auto count = static_cast<Eigen::Index>(std::max<std::size_t>(1, strengths.size()));
+  Eigen::MatrixXd result(residuals.size(), count);
+  for (Eigen::Index m = 0; m < count; ++m) {
+    Hypothesis with = base;
+    with.effects.push_back(candidate);
+    with.values.push_back(start);
+    for (const Eigen::Index k : strengths) {
+      if (k != strengths[static_cast<std::size_t>(m)]) with.values.back()[k] = 0;
     }
-    const auto marks = static_cast<Eigen::Index>(std::max<std::size_t>(1, strengths.size()));
-    Eigen::MatrixXd marked(residuals.size(), marks);
-    double all = 0;
-    for (Eigen::Index m = 0; m < marks; ++m) {
-      Eigen::VectorXd values = jobs[j].start;
-      if (!strengths.empty()) {
-        for (const Eigen::Index k : strengths) {
-          if (k != strengths[static_cast<std::size_t>(m)]) values[k] = 0;
-        }
-      }
-      Hypothesis with = base;
-      with.effects.push_back(candidate);
-      with.values.push_back(values);
-      const FitFunctions changed(bound, with, problem, serially());
-      const Eigen::VectorXd after = changed.residuals(changed.start());
-      if (!after.allFinite()) return;
-      const Eigen::VectorXd mark = after - residuals;
-      all += mark.squaredNorm();
-      marked.col(m) = beyond_parameters(mark);
+    const FitFunctions changed(bound, with, problem, serially());
+    const Eigen::VectorXd after = changed.residuals(changed.start());
+    if (!after.allFinite()) return {};
+    result.col(m) = after - residuals;
+  }
+  return result;
+}
+
+SUREFOOT_INLINE Proposal predict_gain(const BoundSimulator& bound, const OpenResiduals& open,
+                                      const AttachedEffect& candidate, const Eigen::VectorXd& start,
+                                      const Eigen::MatrixXd& signatures, const ProposalCriteria& criteria) {
+  Proposal proposal;
+  if (signatures.cols() == 0) return proposal;
+  proposal.effect = candidate;
+  proposal.start = start;
+  proposal.tried = start;
+  const Eigen::Index count = signatures.cols();
+  Eigen::MatrixXd distinct(signatures.rows(), count);
+  double all = 0;
+  for (Eigen::Index m = 0; m < count; ++m) {
+    const Eigen::VectorXd signature = signatures.col(m);
+    all += signature.squaredNorm();
+    distinct.col(m) = open.beyond_parameters(signature);
+  }
+  const double left = distinct.squaredNorm();
+  proposal.distinct = all > 0 ? std::sqrt(left / all) : 0;
+  if (!(left > criteria.negligible_signature * open.energy)) return proposal;
+  proposal.visible = std::sqrt(criteria.visible_share * open.energy / left);
+  Eigen::VectorXd share =
+      (distinct.transpose() * distinct + criteria.ridge * left * Eigen::MatrixXd::Identity(count, count))
+          .ldlt()
+          .solve(-distinct.transpose() * open.open);
+  const std::vector<Eigen::Index> strengths = strengths_of(*candidate.effect);
+  for (Eigen::Index m = 0; m < count; ++m) {
+    if (strengths.empty()) {
+      share[m] = std::clamp(share[m], 0.0, 1.0);
+      continue;
     }
-    Proposal& proposal = tried[j];
-    proposal.effect = candidate;
-    proposal.start = jobs[j].start;
-    proposal.tried = jobs[j].start;
-    const double left = marked.squaredNorm();
-    proposal.distinct = all > 0 ? std::sqrt(left / all) : 0;
-    if (!(left > 1e-12 * energy)) return;
-    proposal.visible = std::sqrt(0.05 * energy / left);
-    Eigen::VectorXd share = (marked.transpose() * marked + 1e-12 * left * Eigen::MatrixXd::Identity(marks, marks))
-                                .ldlt()
-                                .solve(-marked.transpose() * open);
-    for (Eigen::Index m = 0; m < marks; ++m) {
-      if (strengths.empty()) {
-        share[m] = std::clamp(share[m], 0.0, 1.0);
-        continue;
-      }
-      if (candidate.effect->is_impulsive) {
-        share[m] = 1;
-        continue;
-      }
-      const Eigen::Index k = strengths[static_cast<std::size_t>(m)];
-      const EffectParameter& parameter = parameters[static_cast<std::size_t>(k)];
-      const double unit = measure_size(bound, candidate, parameter.measure), start = jobs[j].start[k];
-      const double a = parameter.low * unit / start, b = parameter.high * unit / start;
-      share[m] = std::clamp(share[m], std::min(a, b), std::max(a, b));
-      proposal.start[k] = share[m] * start;
+    if (candidate.effect->is_impulsive) {
+      share[m] = 1;
+      continue;
     }
-    proposal.gain = 1 - (open + marked * share).squaredNorm() / energy;
-  });
+    const Eigen::Index k = strengths[static_cast<std::size_t>(m)];
+    const EffectParameter& parameter = candidate.effect->parameters[static_cast<std::size_t>(k)];
+    const double unit = measure_size(bound, candidate, parameter.measure);
+    const double a = parameter.low * unit / start[k], b = parameter.high * unit / start[k];
+    share[m] = std::clamp(share[m], std::min(a, b), std::max(a, b));
+    proposal.start[k] = share[m] * start[k];
+  }
+  proposal.gain = 1 - (open.open + distinct * share).squaredNorm() / open.energy;
+  return proposal;
+}
+
+/// The best proposal of each effect, with its other starts in their order.
+SUREFOOT_INLINE std::vector<Proposal> best_of_each_effect(std::vector<Proposal> tried) {
   std::erase_if(tried, [](const Proposal& one) { return !one.effect.effect; });
   std::ranges::sort(tried, std::greater{}, &Proposal::gain);
-  std::vector<Proposal> best;  // of each effect, with its other starts in their order
+  std::vector<Proposal> best;
   for (const Proposal& one : tried) {
     const auto same = std::find_if(best.begin(), best.end(),
                                    [&](const Proposal& other) { return same_effect(other.effect, one.effect); });
@@ -123,6 +131,28 @@ SUREFOOT_INLINE std::vector<Proposal> propose(const BoundSimulator& bound, const
     }
   }
   return best;
+}
+
+SUREFOOT_INLINE std::vector<Proposal> propose(const BoundSimulator& bound, const Hypothesis& base,
+                                              const FitProblem& problem, const std::vector<AttachedEffect>& candidates,
+                                              const Parallel& parallel, const ProposalCriteria& criteria) {
+  const OpenResiduals open = open_residuals(bound, base, problem, parallel);
+  const auto observed =
+      observe(bound, problem.recordings, simulate_all(bound, base, problem.recordings, problem.integration, parallel));
+  std::vector<std::vector<Eigen::VectorXd>> starts(candidates.size());
+  parallel(candidates.size(), [&](std::size_t c) { starts[c] = starting_values(bound, candidates[c], observed); });
+  std::vector<std::pair<std::size_t, Eigen::VectorXd>> jobs;  // candidate and start
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    for (const Eigen::VectorXd& start : starts[c]) jobs.emplace_back(c, start);
+  }
+  std::vector<Proposal> tried(jobs.size());
+  parallel(jobs.size(), [&](std::size_t j) {
+    const AttachedEffect& candidate = candidates[jobs[j].first];
+    const Eigen::VectorXd& start = jobs[j].second;
+    tried[j] = predict_gain(bound, open, candidate, start,
+                            signatures(bound, base, problem, open.residuals, candidate, start), criteria);
+  });
+  return best_of_each_effect(std::move(tried));
 }
 
 }  // namespace surefoot::diagnosis

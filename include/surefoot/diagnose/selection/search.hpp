@@ -1,13 +1,10 @@
-// Selects effects by a floating forward-backward search (Pudil, Novovicova & Kittler, "Floating search methods in
-// feature selection", 1994) on held-out recordings. Effects mask each other: proposals are ranked anew after every
-// step, and pairs are tried where no single effect is worth its parameters. Each fit starts from that of its parent.
+// Selection of effects by a floating forward-backward search (Pudil, Novovicova & Kittler, "Floating search methods in
+// feature selection", 1994) with cross-validation. Effects mask each other: proposals are ranked anew after every step,
+// and pairs are tried where no single effect is worth its parameters. Each fit starts from that of its parent.
 #pragma once
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "surefoot/diagnose/estimation/calibrate.hpp"
@@ -24,31 +21,35 @@ struct Selection {
   std::size_t candidates = 0;                     // how many were tried
 };
 
+/// Fits a parent with some proposals added, on the recordings for screening, from several starts; not ok if none of
+/// them can be simulated.
+Fit fit_child(const BoundSimulator& bound, const Hypothesis& parent, const std::vector<Proposal>& additions,
+              const SearchProblem& problem);
+
 /// Fits parent plus proposals, all at once in parallel; the weakest are given up after a few iterations.
 std::vector<Fit> fit_children(const BoundSimulator& bound, const Hypothesis& parent,
                               const std::vector<std::vector<Proposal>>& additions, const SearchProblem& problem,
                               std::size_t keep, const Parallel& parallel);
 
+/// Cross-validates the first `keep` fits and what ties with them; those with undetermined parameters are left out.
 std::vector<EvaluatedHypothesis> evaluate_all(const BoundSimulator& bound, const std::vector<Fit>& fits,
                                               const EvaluatedHypothesis& parent, const SearchProblem& problem,
                                               std::size_t keep, const Parallel& parallel);
 
+/// The best proposals beside `base`. Unless its residuals are `structured` only strong ones.
 std::vector<Proposal> shortlisted(const BoundSimulator& bound, const Hypothesis& base, const SearchProblem& problem,
-                                  const std::vector<AttachedEffect>& candidates, std::size_t count, double least_gain,
+                                  const std::vector<AttachedEffect>& candidates, std::size_t count, bool structured,
                                   const Parallel& parallel);
 
 Hypothesis without_effect(const Hypothesis& whole, std::size_t effect);
 
-/// What a proposal must explain of the squared residuals before it gets a fit.
-inline double least_gain(bool structured) { return structured ? 0.002 : 0.012; }
-
-/// One round: the effects (or pairs) that would come next after `parent`, judged; best first.
+/// One round: the effects that would come next after `parent`, cross-validated; best fit first.
 std::vector<EvaluatedHypothesis> next_effects(const BoundSimulator& bound, const EvaluatedHypothesis& parent,
                                               const SearchProblem& problem,
-                                              const std::vector<AttachedEffect>& candidates,
-                                              const SelectionCriteria& options, double least, const Parallel& parallel);
+                                              const std::vector<AttachedEffect>& candidates, bool structured,
+                                              const Parallel& parallel);
 
-/// The same for pairs of the six best proposals.
+/// The same for pairs of the best proposals.
 std::vector<EvaluatedHypothesis> next_pairs(const BoundSimulator& bound, const EvaluatedHypothesis& parent,
                                             const SearchProblem& problem, const std::vector<AttachedEffect>& candidates,
                                             const Parallel& parallel);
@@ -58,26 +59,29 @@ struct Search {
   const BoundSimulator& bound;
   const SearchProblem& problem;
   const std::vector<AttachedEffect>& candidates;
-  const SelectionCriteria& options;
   const Parallel& parallel;
 
   std::size_t effects(const EvaluatedHypothesis& one) const { return one.hypothesis.effects.size() - problem.known; }
+  /// Error of a hypothesis as a share of the error without effects.
   double share(const EvaluatedHypothesis& one, const EvaluatedHypothesis& nominal) const {
-    return one.heldout.rms() / std::max(nominal.heldout.rms(), 1e-300);
+    return one.cross_validated.rms() / std::max(nominal.cross_validated.rms(), never_zero);
   }
-  EvaluatedHypothesis without(const EvaluatedHypothesis& whole, std::size_t effect) const {
-    return judge(bound, fit(bound, without_effect(whole.hypothesis, effect), problem.fit, parallel), problem, parallel);
-  }
+  double tests() const { return static_cast<double>(candidates.size()); }
+  EvaluatedHypothesis without(const EvaluatedHypothesis& whole, std::size_t effect) const;
 };
 
-/// Whatever is no longer worth its numbers goes.
+/// Whatever is no longer worth its parameters goes.
 void drop_idle_effects(const Search& search, EvaluatedHypothesis& chosen);
 
-/// Adds effects until none is worth its numbers.
-void grow(const Search& search, Selection& selection);
+/// Adds effects until none is worth its parameters.
+void add_effects(const Search& search, Selection& selection);
 
 /// One effect that leaves something open may have hidden two that do better.
 void try_pair_instead(const Search& search, Selection& selection);
+
+/// What else might stand in the place of one effect beside the `rest`.
+std::vector<EvaluatedHypothesis> rivals_of(const Search& search, const EvaluatedHypothesis& rest,
+                                           const AttachedEffect& effect);
 
 /// Each effect against what else might stand in its place; true if one was replaced. Fills in evidence and
 /// alternatives.
@@ -85,8 +89,7 @@ bool compare_with_others(const Search& search, Selection& selection, bool replac
 
 /// The whole search, from a fitted hypothesis without effects.
 Selection select_effects(const BoundSimulator& bound, const Fit& calibrated, const SearchProblem& problem,
-                         const std::vector<AttachedEffect>& candidates, const SelectionCriteria& options,
-                         const Parallel& parallel);
+                         const std::vector<AttachedEffect>& candidates, const Parallel& parallel);
 
 }  // namespace surefoot::diagnosis
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -16,45 +17,51 @@
 
 namespace surefoot::diagnosis {
 
+SUREFOOT_INLINE Fit fit_child(const BoundSimulator& bound, const Hypothesis& parent,
+                              const std::vector<Proposal>& additions, const SearchProblem& problem) {
+  const SearchEffort& effort = problem.effort;
+  FitProblem quick = problem.fit;
+  quick.recordings = problem.screened;
+  quick.max_iterations = effort.first_iterations;
+  Fit best;
+  const auto attempt = [&](const std::vector<Eigen::VectorXd>& starts, bool settle = false) {
+    Hypothesis child = parent;
+    for (std::size_t k = 0; k < starts.size(); ++k) {
+      child.effects.push_back(additions[k].effect);
+      child.values.push_back(starts[k]);
+    }
+    if (settle) {
+      FitProblem around = quick;
+      around.free = Free::all_but_effects;
+      child = fit(bound, child, around, serially()).hypothesis;
+    }
+    const Fit one = fit(bound, child, quick, serially());
+    if (one.ok && one.loss < best.loss) best = one;
+  };
+  std::vector<Eigen::VectorXd> predicted, weak;
+  for (const Proposal& addition : additions) {
+    predicted.push_back(addition.start);
+    weak.push_back(addition.start);
+    for (const Eigen::Index k : strengths_of(*addition.effect.effect)) weak.back()[k] *= effort.weak_start;
+  }
+  const bool scalable = predicted != weak;
+  attempt(predicted, !scalable);  // what cannot grow from nothing begins with everything else settled around it
+  if (scalable && !(best.loss < effort.bold_loss)) attempt(weak);
+  if (!scalable && additions.size() == 1) {
+    const auto& others = additions.front().more_starts;
+    for (std::size_t k = 0; k < std::min(effort.more_starts, others.size()); ++k) attempt({others[k]}, true);
+  }
+  return best;
+}
+
 SUREFOOT_INLINE std::vector<Fit> fit_children(const BoundSimulator& bound, const Hypothesis& parent,
                                               const std::vector<std::vector<Proposal>>& additions,
                                               const SearchProblem& problem, std::size_t keep,
                                               const Parallel& parallel) {
+  constexpr std::uint64_t scatter_seed = 1;
   std::vector<Fit> fits(additions.size());
   parallel(additions.size(), [&](std::size_t i) {
-    if (problem.stopped()) return;
-    FitProblem quick = problem.fit;
-    quick.recordings = problem.screened;
-    quick.max_iterations = 3;
-    const auto attempt = [&](const std::vector<Eigen::VectorXd>& starts, bool settle = false) {
-      Hypothesis child = parent;
-      for (std::size_t k = 0; k < starts.size(); ++k) {
-        child.effects.push_back(additions[i][k].effect);
-        child.values.push_back(starts[k]);
-      }
-      if (settle) {
-        FitProblem around = quick;
-        around.free = Free::all_but_effects;
-        child = fit(bound, child, around, serially()).hypothesis;
-      }
-      const Fit one = fit(bound, child, quick, serially());
-      if (one.ok && one.loss < fits[i].loss) fits[i] = one;
-    };
-    std::vector<Eigen::VectorXd> best, weak;
-    for (const Proposal& addition : additions[i]) {
-      best.push_back(addition.start);
-      weak.push_back(addition.start);
-      for (std::size_t k = 0; k < addition.effect.effect->parameters.size(); ++k) {
-        if (addition.effect.effect->parameters[k].strength) weak.back()[static_cast<Eigen::Index>(k)] *= 0.3;
-      }
-    }
-    const bool scalable = best != weak;
-    attempt(best, !scalable);  // what cannot grow from nothing begins with everything else settled around it
-    if (scalable && !(fits[i].loss < 0.97)) attempt(weak);  // the linear guess may have been too bold
-    if (!scalable && additions[i].size() == 1) {
-      const auto& others = additions[i].front().more_starts;
-      for (std::size_t k = 0; k < std::min<std::size_t>(2, others.size()); ++k) attempt({others[k]}, true);
-    }
+    if (!problem.stopped()) fits[i] = fit_child(bound, parent, additions[i], problem);
   });
   std::erase_if(fits, [](const Fit& one) { return !one.ok; });
   std::ranges::sort(fits, [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
@@ -64,7 +71,8 @@ SUREFOOT_INLINE std::vector<Fit> fit_children(const BoundSimulator& bound, const
     fits[i] = fit(bound, fits[i].hypothesis, problem.fit, serially());
     // what is missing may have pushed the calibrated parameters where no fit finds back from
     if (parent.effects.size() == problem.known) {
-      fits[i] = scattered_fit(bound, fits[i], fits[i].hypothesis, problem.fit, 12, 1, serially());
+      fits[i] = scattered_fit(bound, fits[i], fits[i].hypothesis, problem.fit, problem.effort.scattered_points,
+                              scatter_seed, serially());
     }
   });
   std::ranges::sort(fits, [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
@@ -75,23 +83,27 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> evaluate_all(const BoundSimulat
                                                               const EvaluatedHypothesis& parent,
                                                               const SearchProblem& problem, std::size_t keep,
                                                               const Parallel& parallel) {
-  while (keep < fits.size() && fits[keep].loss < 1.05 * fits.front().loss + 1e-300 && keep < 9) ++keep;  // near ties
-  std::vector<EvaluatedHypothesis> judged(std::min(keep, fits.size()));
-  parallel(judged.size(), [&](std::size_t i) {
+  const SearchEffort& effort = problem.effort;
+  const auto ties = [&](const Fit& one) { return one.loss < effort.near_tie * fits.front().loss + never_zero; };
+  while (keep < fits.size() && ties(fits[keep]) && keep < effort.max_finalists) ++keep;
+  std::vector<EvaluatedHypothesis> evaluated(std::min(keep, fits.size()));
+  parallel(evaluated.size(), [&](std::size_t i) {
     if (problem.stopped()) return;
-    judged[i] = judge(bound, fits[i], problem, serially());
-    judged[i].gain = compare_losses(parent.heldout, judged[i].heldout);
-    // numbers that cannot be told from zero speak against what was added, and against what that leaves undetermined
-    if (!determined(bound, fits[i].hypothesis, problem.known, problem.fit, serially())) judged[i].heldout = {};
+    evaluated[i] = evaluate_fit(bound, fits[i], problem, serially());
+    evaluated[i].gain = compare_losses(parent.cross_validated, evaluated[i].cross_validated);
+    // parameters that cannot be told from zero speak against what was added, and against what that leaves undetermined
+    if (!determined(bound, fits[i].hypothesis, problem.known, problem.fit, serially(), problem.criteria)) {
+      evaluated[i].cross_validated = {};
+    }
   });
-  std::erase_if(judged, [](const EvaluatedHypothesis& one) { return one.heldout.blocks.empty(); });
-  return judged;
+  std::erase_if(evaluated, [](const EvaluatedHypothesis& one) { return one.cross_validated.blocks.empty(); });
+  return evaluated;
 }
 
 SUREFOOT_INLINE std::vector<Proposal> shortlisted(const BoundSimulator& bound, const Hypothesis& base,
                                                   const SearchProblem& problem,
                                                   const std::vector<AttachedEffect>& candidates, std::size_t count,
-                                                  double least_gain, const Parallel& parallel) {
+                                                  bool structured, const Parallel& parallel) {
   FitProblem screened = problem.fit;
   screened.recordings = problem.screened;
   std::vector<AttachedEffect> open;
@@ -102,9 +114,10 @@ SUREFOOT_INLINE std::vector<Proposal> shortlisted(const BoundSimulator& bound, c
     if (!used) open.push_back(candidate);
   }
   std::vector<Proposal> proposals = propose(bound, base, screened, open, parallel);
-  // A mark that does not help as it is may do so once everything is fitted: such proposals fill what room is left.
-  std::erase_if(proposals, [least_gain](const Proposal& one) {
-    return one.distinct < 0.01 || (one.gain < least_gain && least_gain > 0.01);
+  // A signature that does not help as it is may do so once everything is fitted: such proposals fill what room is left.
+  std::erase_if(proposals, [&](const Proposal& one) {
+    return one.distinct < problem.criteria.least_distinct ||
+           (!structured && one.gain < problem.criteria.unstructured_proposal_gain);
   });
   if (proposals.size() > count) proposals.resize(count);
   for (Proposal& one : proposals) {
@@ -124,15 +137,15 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> next_effects(const BoundSimulat
                                                               const EvaluatedHypothesis& parent,
                                                               const SearchProblem& problem,
                                                               const std::vector<AttachedEffect>& candidates,
-                                                              const SelectionCriteria& options, double least,
-                                                              const Parallel& parallel) {
+                                                              bool structured, const Parallel& parallel) {
+  const SearchEffort& effort = problem.effort;
   const std::vector<Proposal> proposals =
-      shortlisted(bound, parent.hypothesis, problem, candidates, options.shortlist, least, parallel);
+      shortlisted(bound, parent.hypothesis, problem, candidates, effort.shortlist, structured, parallel);
   std::vector<std::vector<Proposal>> singles;
   for (const Proposal& proposal : proposals) singles.push_back({proposal});
   const std::vector<Fit> fits =
-      fit_children(bound, parent.hypothesis, singles, problem, options.finalists + 4, parallel);
-  return evaluate_all(bound, fits, parent, problem, options.finalists, parallel);
+      fit_children(bound, parent.hypothesis, singles, problem, effort.finalists + effort.reserve, parallel);
+  return evaluate_all(bound, fits, parent, problem, effort.finalists, parallel);
 }
 
 SUREFOOT_INLINE std::vector<EvaluatedHypothesis> next_pairs(const BoundSimulator& bound,
@@ -140,8 +153,9 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> next_pairs(const BoundSimulator
                                                             const SearchProblem& problem,
                                                             const std::vector<AttachedEffect>& candidates,
                                                             const Parallel& parallel) {
+  const SearchEffort& effort = problem.effort;
   const std::vector<Proposal> proposals =
-      shortlisted(bound, parent.hypothesis, problem, candidates, 6, least_gain(true), parallel);
+      shortlisted(bound, parent.hypothesis, problem, candidates, effort.paired, true, parallel);
   std::vector<std::vector<Proposal>> pairs;
   for (std::size_t i = 0; i < proposals.size(); ++i) {
     for (std::size_t j = i + 1; j < proposals.size(); ++j) {
@@ -149,16 +163,21 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> next_pairs(const BoundSimulator
       pairs.push_back({proposals[i], proposals[j]});
     }
   }
-  const std::vector<Fit> fits = fit_children(bound, parent.hypothesis, pairs, problem, 4, parallel);
-  return evaluate_all(bound, fits, parent, problem, 2, parallel);
+  const std::vector<Fit> fits = fit_children(bound, parent.hypothesis, pairs, problem, effort.pair_reserve, parallel);
+  return evaluate_all(bound, fits, parent, problem, effort.pair_finalists, parallel);
+}
+
+SUREFOOT_INLINE EvaluatedHypothesis Search::without(const EvaluatedHypothesis& whole, std::size_t effect) const {
+  const Fit rest = fit(bound, without_effect(whole.hypothesis, effect), problem.fit, parallel);
+  return evaluate_fit(bound, rest, problem, parallel);
 }
 
 SUREFOOT_INLINE void drop_idle_effects(const Search& search, EvaluatedHypothesis& chosen) {
   std::size_t i = search.problem.known;
   while (search.effects(chosen) > 1 && i < chosen.hypothesis.effects.size() && !search.problem.stopped()) {
     const EvaluatedHypothesis less = search.without(chosen, i);
-    const Comparison worth = compare_losses(less.heldout, chosen.heldout);
-    if (worth.gain < search.options.min_gain / 2 || worth.t < 1.5) {
+    const Comparison worth = compare_losses(less.cross_validated, chosen.cross_validated);
+    if (idle(worth, search.problem.criteria)) {
       chosen = less;
     } else {
       ++i;
@@ -166,21 +185,22 @@ SUREFOOT_INLINE void drop_idle_effects(const Search& search, EvaluatedHypothesis
   }
 }
 
-SUREFOOT_INLINE void grow(const Search& search, Selection& selection) {
-  const auto& [bound, problem, candidates, options, parallel] = search;
-  const auto most = static_cast<std::size_t>(options.max_effects);
+SUREFOOT_INLINE void add_effects(const Search& search, Selection& selection) {
+  const auto& [bound, problem, candidates, parallel] = search;
+  const SelectionCriteria& criteria = problem.criteria;
+  const auto most = static_cast<std::size_t>(criteria.max_effects);
   while (search.effects(selection.chosen) < most && !problem.stopped()) {
     const std::size_t depth = search.effects(selection.chosen);
-    problem.progress("searching effect " + std::to_string(depth + 1),
-                     static_cast<double>(depth) / static_cast<double>(most));
+    problem.on_progress("searching effect " + std::to_string(depth + 1),
+                        static_cast<double>(depth) / static_cast<double>(most));
     const bool structured = problem.structured(selection.chosen.hypothesis);
     std::vector<EvaluatedHypothesis> next =
-        next_effects(bound, selection.chosen, problem, candidates, options, least_gain(structured), parallel);
+        next_effects(bound, selection.chosen, problem, candidates, structured, parallel);
     const double share = search.share(selection.chosen, selection.nominal);
-    std::optional<std::size_t> choice = most_plausible_accepted(next, candidates.size(), share, options);
+    std::optional<std::size_t> choice = most_plausible_accepted(next, search.tests(), share, criteria);
     if (!choice && structured && depth + 2 <= most && !problem.stopped()) {
       const std::vector<EvaluatedHypothesis> pairs = next_pairs(bound, selection.chosen, problem, candidates, parallel);
-      choice = most_plausible_accepted(pairs, 15 * candidates.size(), share, options);
+      choice = most_plausible_accepted(pairs, criteria.tests_per_pair * search.tests(), share, criteria);
       if (choice) next = pairs;
     }
     if (!choice) {
@@ -195,61 +215,64 @@ SUREFOOT_INLINE void grow(const Search& search, Selection& selection) {
 }
 
 SUREFOOT_INLINE void try_pair_instead(const Search& search, Selection& selection) {
-  const auto& [bound, problem, candidates, options, parallel] = search;
-  if (search.effects(selection.chosen) != 1 || options.max_effects < 2 || problem.stopped()) return;
+  const auto& [bound, problem, candidates, parallel] = search;
+  if (search.effects(selection.chosen) != 1 || problem.criteria.max_effects < 2 || problem.stopped()) return;
   if (!problem.structured(selection.chosen.hypothesis)) return;
   const std::vector<EvaluatedHypothesis> pairs = next_pairs(bound, selection.nominal, problem, candidates, parallel);
   if (pairs.empty()) return;
-  const EvaluatedHypothesis& pair = pairs[most_plausible(pairs)];
-  if (accepted(compare_losses(selection.chosen.heldout, pair.heldout), candidates.size(), 1, options)) {
-    selection.chosen = pair;
-  }
+  const EvaluatedHypothesis& pair = pairs[most_plausible(pairs, problem.criteria)];
+  const Comparison lead = compare_losses(selection.chosen.cross_validated, pair.cross_validated);
+  if (accepted(lead, search.tests(), 1, problem.criteria)) selection.chosen = pair;
+}
+
+SUREFOOT_INLINE std::vector<EvaluatedHypothesis> rivals_of(const Search& search, const EvaluatedHypothesis& rest,
+                                                           const AttachedEffect& effect) {
+  SearchProblem fewer = search.problem;
+  fewer.effort.shortlist = search.problem.effort.compared_shortlist;
+  fewer.effort.finalists = search.problem.effort.compared_finalists;
+  std::vector<EvaluatedHypothesis> rivals =
+      next_effects(search.bound, rest, fewer, search.candidates, true, search.parallel);
+  std::erase_if(rivals,
+                [&](const EvaluatedHypothesis& other) { return same_effect(other.hypothesis.effects.back(), effect); });
+  return rivals;
 }
 
 SUREFOOT_INLINE bool compare_with_others(const Search& search, Selection& selection, bool replace) {
-  const auto& [bound, problem, candidates, options, parallel] = search;
+  constexpr double progress = 0.8;  // of the search
+  const SearchProblem& problem = search.problem;
   bool replaced = false;
   selection.evidence.clear();
-  const bool alone = search.effects(selection.chosen) == 1;  // its rivals were judged when it was chosen
+  const bool alone = search.effects(selection.chosen) == 1;  // its rivals were evaluated when it was chosen
   if (!alone) selection.alternatives.clear();
   for (std::size_t i = problem.known; i < selection.chosen.hypothesis.effects.size() && !problem.stopped(); ++i) {
-    problem.progress("comparing alternatives", 0.8);
+    problem.on_progress("comparing alternatives", progress);
     const EvaluatedHypothesis rest = alone ? selection.nominal : search.without(selection.chosen, i);
     if (!alone) {
-      SelectionCriteria fewer = options;
-      fewer.shortlist = 8;
-      fewer.finalists = 3;
-      std::vector<EvaluatedHypothesis> others =
-          next_effects(bound, rest, problem, candidates, fewer, least_gain(true), parallel);
-      std::erase_if(others, [&](const EvaluatedHypothesis& other) {
-        return same_effect(other.hypothesis.effects.back(), selection.chosen.hypothesis.effects[i]);
-      });
       const double before = search.share(rest, selection.nominal);
-      for (EvaluatedHypothesis& other : others) {
-        const Comparison lead = compare_losses(selection.chosen.heldout, other.heldout);
-        if (replace && lead.t > 2 && lead.gain > 0.03 &&
-            lead.gain * search.share(selection.chosen, selection.nominal) > 0.015 &&
-            accepted(other.gain, candidates.size(), before, options)) {
+      for (EvaluatedHypothesis& other : rivals_of(search, rest, selection.chosen.hypothesis.effects[i])) {
+        const Comparison lead = compare_losses(selection.chosen.cross_validated, other.cross_validated);
+        if (replace && replaces(lead, search.share(selection.chosen, selection.nominal), problem.criteria) &&
+            accepted(other.gain, search.tests(), before, problem.criteria)) {
           std::swap(selection.chosen, other);
           replaced = true;
         }
         selection.alternatives.push_back(other);
       }
     }
-    selection.evidence.push_back(compare_losses(rest.heldout, selection.chosen.heldout));
+    selection.evidence.push_back(compare_losses(rest.cross_validated, selection.chosen.cross_validated));
   }
   return replaced;
 }
 
 SUREFOOT_INLINE Selection select_effects(const BoundSimulator& bound, const Fit& calibrated,
                                          const SearchProblem& problem, const std::vector<AttachedEffect>& candidates,
-                                         const SelectionCriteria& options, const Parallel& parallel) {
-  const Search search{bound, problem, candidates, options, parallel};
+                                         const Parallel& parallel) {
+  const Search search{bound, problem, candidates, parallel};
   Selection selection;
   selection.candidates = candidates.size();
-  selection.nominal = judge(bound, calibrated, problem, parallel);
+  selection.nominal = evaluate_fit(bound, calibrated, problem, parallel);
   selection.chosen = selection.nominal;
-  grow(search, selection);
+  add_effects(search, selection);
   try_pair_instead(search, selection);
   if (search.effects(selection.chosen) == 0) return selection;
   if (compare_with_others(search, selection, true)) {

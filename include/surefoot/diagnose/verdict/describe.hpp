@@ -1,33 +1,43 @@
-// Describes what was fitted: parameters, effects and how sure each is.
+// Description of a diagnosis in values with intervals and in sentences.
 #pragma once
 
-#include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/diagnosis.hpp"
-#include "surefoot/diagnose/estimation/fit.hpp"
-#include "surefoot/diagnose/selection/criterion.hpp"
-#include "surefoot/diagnose/text.hpp"
+#include "surefoot/diagnose/estimation/noise_regime.hpp"
+#include "surefoot/diagnose/estimation/standard_errors.hpp"
 
 namespace surefoot::diagnosis {
 
+struct DescriptionCriteria {
+  double bound_share = 1e-3;  // of a parameter's range: nearer to a bound it is said to be at the bound
+  double correlation = 0.95;  // of two parameters, from which on they are named: errors are three times as large
+};
+
 std::vector<CalibratedParameter> calibrated_parameters(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                                       const StandardErrors& errors);
+                                                       const StandardErrors& errors,
+                                                       const DescriptionCriteria& criteria = {});
 
-std::vector<std::string> correlated_pairs(const BoundSimulator& bound, const StandardErrors& errors);
+/// Pairs of parameters that the recordings hardly separate.
+std::vector<std::string> correlated_pairs(const BoundSimulator& bound, const StandardErrors& errors,
+                                          const DescriptionCriteria& criteria = {});
 
-FoundEffect describe(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t e,
+/// One effect of a hypothesis; without `errors` its intervals are its values.
+FoundEffect describe(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t effect,
                      const StandardErrors* errors);
 
-/// Share of bootstrap repetitions (over blocks) in which `chosen` beats the parent and every alternative.
-double bootstrap_confidence(const EvaluatedHypothesis& chosen, const BlockLosses& parent,
-                            const std::vector<EvaluatedHypothesis>& others, std::uint64_t seed);
+std::string noise_sentence(NoiseKind noise);
+
+/// For effects that held-out recordings rejected.
+std::string rejection_sentence();
+
+/// How to tell the last of the chosen effects from the last of another choice.
+std::string next_experiment(const Hypothesis& chosen, const Hypothesis& other);
+
+/// The diagnosis in one sentence, or two; `ties`: names of choices that cannot be told from the one made.
+std::string verdict_sentence(const Diagnosis& diagnosis, const std::vector<std::string>& ties);
 
 }  // namespace surefoot::diagnosis
 

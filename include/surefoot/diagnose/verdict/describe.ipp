@@ -5,15 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
-#include "surefoot/core/rng.hpp"
-#include "surefoot/diagnose/diagnosis.hpp"
-#include "surefoot/diagnose/estimation/fit.hpp"
-#include "surefoot/diagnose/selection/criterion.hpp"
+#include "surefoot/diagnose/estimation/cross_validation.hpp"
 #include "surefoot/diagnose/text.hpp"
 #include "surefoot/diagnose/verdict/describe.hpp"
 
@@ -21,7 +17,8 @@ namespace surefoot::diagnosis {
 
 SUREFOOT_INLINE std::vector<CalibratedParameter> calibrated_parameters(const BoundSimulator& bound,
                                                                        const Hypothesis& hypothesis,
-                                                                       const StandardErrors& errors) {
+                                                                       const StandardErrors& errors,
+                                                                       const DescriptionCriteria& criteria) {
   std::vector<CalibratedParameter> result;
   for (std::size_t i = 0; i < bound.info.parameters.size(); ++i) {
     const ParameterInfo& info = bound.info.parameters[i];
@@ -30,10 +27,10 @@ SUREFOOT_INLINE std::vector<CalibratedParameter> calibrated_parameters(const Bou
     for (std::size_t v = 0; v < errors.variables.size(); ++v) {
       const Variable& variable = errors.variables[v];
       if (variable.kind != Variable::Kind::parameter || variable.index != i) continue;
-      const double half = 1.96 * errors.deviation[static_cast<Eigen::Index>(v)];
+      const double half = normal_quantile_95 * errors.deviation[static_cast<Eigen::Index>(v)];
       one.fit.low = std::max(value - half, info.low);
       one.fit.high = std::min(value + half, info.high);
-      const double near = 1e-3 * (info.high - info.low);
+      const double near = criteria.bound_share * (info.high - info.low);
       one.at_bound =
           value <= info.low + near * (variable.logarithmic ? value / info.high : 1) || value >= info.high - near;
     }
@@ -42,7 +39,8 @@ SUREFOOT_INLINE std::vector<CalibratedParameter> calibrated_parameters(const Bou
   return result;
 }
 
-SUREFOOT_INLINE std::vector<std::string> correlated_pairs(const BoundSimulator& bound, const StandardErrors& errors) {
+SUREFOOT_INLINE std::vector<std::string> correlated_pairs(const BoundSimulator& bound, const StandardErrors& errors,
+                                                          const DescriptionCriteria& criteria) {
   std::vector<std::string> result;
   for (std::size_t a = 0; a < errors.variables.size(); ++a) {
     for (std::size_t b = a + 1; b < errors.variables.size(); ++b) {
@@ -50,7 +48,7 @@ SUREFOOT_INLINE std::vector<std::string> correlated_pairs(const BoundSimulator& 
           errors.variables[b].kind != Variable::Kind::parameter)
         continue;
       const double r = errors.correlation(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
-      if (std::abs(r) < 0.95) continue;
+      if (std::abs(r) < criteria.correlation) continue;
       result.push_back(bound.info.parameters[errors.variables[a].index].name + " and " +
                        bound.info.parameters[errors.variables[b].index].name + " (correlation " + in_digits(r) + ")");
     }
@@ -58,9 +56,9 @@ SUREFOOT_INLINE std::vector<std::string> correlated_pairs(const BoundSimulator& 
   return result;
 }
 
-SUREFOOT_INLINE FoundEffect describe(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t e,
+SUREFOOT_INLINE FoundEffect describe(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t effect,
                                      const StandardErrors* errors) {
-  const AttachedEffect& attached = hypothesis.effects[e];
+  const AttachedEffect& attached = hypothesis.effects[effect];
   FoundEffect found;
   found.name = attached.effect->name;
   found.attached_to = attached.place;
@@ -68,16 +66,14 @@ SUREFOOT_INLINE FoundEffect describe(const BoundSimulator& bound, const Hypothes
   if (attached.other >= 0) found.other = bound.info.states[static_cast<std::size_t>(attached.other)].name;
   const auto& parameters = attached.effect->parameters;
   for (std::size_t k = 0; k < parameters.size(); ++k) {
-    const double value = hypothesis.values[e][static_cast<Eigen::Index>(k)];
+    const double value = hypothesis.values[effect][static_cast<Eigen::Index>(k)];
     FittedValue one{parameters[k].name, measure_unit(bound, attached, parameters[k].measure), value, value, value};
-    if (errors != nullptr) {
-      for (std::size_t v = 0; v < errors->variables.size(); ++v) {
-        const Variable& variable = errors->variables[v];
-        if (variable.kind != Variable::Kind::effect || variable.index != e || variable.item != k) continue;
-        const double half = 1.96 * errors->deviation[static_cast<Eigen::Index>(v)];
-        one.low = value - half;
-        one.high = value + half;
-      }
+    for (std::size_t v = 0; errors != nullptr && v < errors->variables.size(); ++v) {
+      const Variable& variable = errors->variables[v];
+      if (variable.kind != Variable::Kind::effect || variable.index != effect || variable.item != k) continue;
+      const double half = normal_quantile_95 * errors->deviation[static_cast<Eigen::Index>(v)];
+      one.low = value - half;
+      one.high = value + half;
     }
     found.parameters.push_back(one);
   }
@@ -85,30 +81,52 @@ SUREFOOT_INLINE FoundEffect describe(const BoundSimulator& bound, const Hypothes
   return found;
 }
 
-SUREFOOT_INLINE double bootstrap_confidence(const EvaluatedHypothesis& chosen, const BlockLosses& parent,
-                                            const std::vector<EvaluatedHypothesis>& others, std::uint64_t seed) {
-  const std::size_t n = chosen.heldout.blocks.size();
-  if (n == 0) return 0;
-  Rng rng(seed, 0xb007u);
-  int wins = 0;
-  constexpr int rounds = 400;
-  for (int round = 0; round < rounds; ++round) {
-    std::vector<double> sums(others.size() + 2);
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t b = rng.below(static_cast<std::uint32_t>(n));
-      sums[0] += chosen.heldout.blocks[b];
-      sums[1] += parent.blocks[b];
-      for (std::size_t o = 0; o < others.size(); ++o) sums[o + 2] += others[o].heldout.blocks[b];
-    }
-    bool best = sums[0] < sums[1];
-    for (std::size_t o = 0; o < others.size(); ++o) {
-      // a model with more numbers has to be better by more than one per cent
-      const double margin = others[o].numbers() > chosen.numbers() ? 0.99 : 1;
-      best = best && sums[0] <= sums[o + 2] / margin;
-    }
-    wins += best ? 1 : 0;
+SUREFOOT_INLINE std::string noise_sentence(NoiseKind noise) {
+  switch (noise) {
+    case NoiseKind::measurement:
+      return "measurement noise: whole recordings are simulated";
+    case NoiseKind::process:
+      return "process noise accumulates: each row is predicted from the one before";
+    case NoiseKind::final_pose:
+      break;
   }
-  return static_cast<double>(wins) / rounds;
+  return "process noise accumulates until the final pose: poses are weighted by its covariance";
+}
+
+SUREFOOT_INLINE std::string rejection_sentence() {
+  return "effects that seemed to explain the mismatch did not lower the error on the held-out recordings, and were "
+         "dropped";
+}
+
+SUREFOOT_INLINE std::string next_experiment(const Hypothesis& chosen, const Hypothesis& other) {
+  const Effect& mine = *chosen.effects.back().effect;
+  const Effect& theirs = *other.effects.back().effect;
+  std::string text = mine.experiment + ": separates " + mine.name + " from " + theirs.name;
+  if (!theirs.experiment.empty() && theirs.experiment != mine.experiment) text += "; or " + theirs.experiment;
+  return text;
+}
+
+SUREFOOT_INLINE std::string verdict_sentence(const Diagnosis& diagnosis, const std::vector<std::string>& ties) {
+  std::vector<std::string> effects;
+  for (const FoundEffect& effect : diagnosis.effects) effects.push_back(effect.sentence);
+  std::string text;
+  switch (diagnosis.verdict) {
+    case Verdict::adequate:
+      return "Nothing is missing: with its nominal parameters the model agrees with the recordings.";
+    case Verdict::parameters_only:
+      return "Nothing is missing: with calibrated parameters the model agrees with the recordings.";
+    case Verdict::missing_physics:
+      text = "Left out of the model: " + in_list(effects) + ". With that, the error on held-out recordings falls by " +
+             in_digits(100 * (1 - diagnosis.held_out_after / std::max(diagnosis.held_out_before, never_zero))) + " %.";
+      if (!ties.empty()) text += " These recordings cannot tell it from " + in_list(ties) + ".";
+      return text;
+    case Verdict::unexplained:
+      break;
+  }
+  text = "The model leaves something out that no known effect explains";
+  if (!effects.empty()) text += "; a part of it: " + in_list(effects);
+  if (!diagnosis.regions.empty()) text += "; it shows where " + diagnosis.regions.front().rule;
+  return text + ".";
 }
 
 }  // namespace surefoot::diagnosis

@@ -1,40 +1,48 @@
-// Proves a diagnosis on recordings that were used neither to fit nor to choose (they may veto, see confirm.hpp): errors
-// before and after, against the noise and against a forest in place of physics.
+// Evaluation on the held-out recordings: errors before and after, against the noise and against a forest in place of
+// physics.
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
-#include <stop_token>
 #include <utility>
 #include <vector>
 
-#include "surefoot/core/rng.hpp"
-#include "surefoot/diagnose/estimation/calibrate.hpp"
-#include "surefoot/diagnose/estimation/recording_error.hpp"
-#include "surefoot/diagnose/residual_tests/forest_correction.hpp"
-#include "surefoot/diagnose/residual_tests/mismatch.hpp"
-#include "surefoot/diagnose/verdict/investigation.hpp"
+#include "surefoot/diagnose/verdict/fitted_model.hpp"
 
 namespace surefoot::diagnosis {
 
-/// Executor on top of Parallel, for the forest.
-struct ParallelExecutor {
-  const Parallel* parallel;
-  std::size_t width() const { return 1; }
-  template <class Job>
-  bool run(std::size_t count, Job&& job, std::stop_token = {}) const {
-    (*parallel)(count, [&](std::size_t i) { job(i); });
-    return true;
-  }
+struct EvaluationCriteria {
+  std::uint32_t rounds = 400;     // of the bootstrap
+  std::uint32_t tail = 10;        // rounds beyond each end of its 95 % interval (2.5 %)
+  double min_forest_gain = 0.03;  // share of the cross-validated error: as much as an effect must gain
+  double min_forest_t = 2.5;      // in standard errors, as for an effect
 };
 
-/// Errors on the test recordings, of which both hypotheses need the initial states: whole recordings are simulated,
-/// whatever the fit did.
-void prove(Investigation& investigation, const Hypothesis& calibrated, const Hypothesis& chosen,
-           const Parallel& parallel, std::uint64_t seed);
+/// 95 % interval of the ratio of two root mean square errors, over recordings (bootstrap); `counts`: cells of each.
+std::pair<double, double> ratio_interval(const std::vector<double>& before, const std::vector<double>& after,
+                                         const std::vector<double>& counts, std::uint64_t seed,
+                                         const EvaluationCriteria& criteria = {});
+
+/// Whether a forest beside the effects is worth keeping.
+bool forest_helps(const Comparison& cross_validated, double held_out_before, double held_out_after,
+                  const EvaluationCriteria& criteria = {});
+
+/// Error of the held-out recordings with a forest on the residuals of the calibrated model instead of effects.
+double forest_error(const EstimationSetup& setup, const FittedModel& calibrated, const Parallel& parallel,
+                    std::uint64_t seed);
+
+/// A forest beside the effects. `held_out_before`: error of the held-out recordings without it.
+ForestResidual offer_forest(const EstimationSetup& setup, const FittedModel& chosen, double held_out_before,
+                            const Parallel& parallel, std::uint64_t seed, const EvaluationCriteria& criteria = {});
+
+std::vector<ChannelMismatch> mismatch_by_output(const EstimationSetup& setup, const FittedModels& models);
+
+/// Error that noise alone leaves, in units of `scale` (by output).
+double noise_floor(const std::vector<ChannelMismatch>& outputs, const Eigen::VectorXd& scale);
+
+/// Fills in errors, curves and forests of a diagnosis that has its verdict.
+void evaluate(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis, const Parallel& parallel,
+              std::uint64_t seed, const EvaluationCriteria& criteria = {});
 
 }  // namespace surefoot::diagnosis
 

@@ -7,128 +7,169 @@
 #include <cstddef>
 #include <cstdint>
 #include <stop_token>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/rng.hpp"
-#include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/residual_tests/forest_correction.hpp"
-#include "surefoot/diagnose/residual_tests/mismatch.hpp"
+#include "surefoot/diagnose/residual_tests/whiteness.hpp"
 #include "surefoot/diagnose/verdict/evaluate.hpp"
-#include "surefoot/diagnose/verdict/investigation.hpp"
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE void prove(Investigation& investigation, const Hypothesis& calibrated, const Hypothesis& chosen,
-                           const Parallel& parallel, std::uint64_t seed) {
-  const BoundSimulator& bound = investigation.bound;
-  Diagnosis& diagnosis = investigation.diagnosis;
-  const auto& training = investigation.split.training;
-  const auto& test = investigation.split.test;
-  Integration whole = bound.integration;
-  whole.restart = 0;
-  const Eigen::VectorXd scale = error_scale(bound);
-  const Hypothesis nominal =
-      with_estimated_starts(bound, investigation.nominal, test, investigation.problem.fit, parallel);
-  const Hypothesis* models[3] = {&nominal, &calibrated, &chosen};
-  std::vector<SimulatedRun> runs[3];
-  for (int m = 0; m < 3; ++m) runs[m] = simulate_all(bound, *models[m], test, whole, parallel);
-
-  std::vector<double> errors[3];
-  for (std::size_t i = 0; i < test.size(); ++i) {
-    for (int m = 0; m < 3; ++m) errors[m].push_back(recording_error(bound, test[i], runs[m][i], scale));
-    diagnosis.per_recording.push_back({bound.recordings[test[i]].name, errors[1][i], errors[2][i]});
-    diagnosis.curves.push_back({bound.recordings[test[i]].name, bound.recordings[test[i]].time,
-                                bound.recordings[test[i]].inputs, bound.recordings[test[i]].outputs, runs[0][i].outputs,
-                                runs[1][i].outputs, runs[2][i].outputs});
+/// Executor on top of Parallel, for the forest.
+struct ParallelExecutor {
+  const Parallel* parallel;
+  std::size_t width() const { return 1; }
+  template <class Job>
+  bool run(std::size_t count, Job&& job, std::stop_token = {}) const {
+    (*parallel)(count, [&](std::size_t i) { job(i); });
+    return true;
   }
-  const std::vector<double> counts = cell_counts(bound, test);
-  diagnosis.test_before = over_all(errors[1], counts);
-  diagnosis.test_after = over_all(errors[2], counts);
+};
 
-  std::vector<double> trained[2];
-  const auto before = simulate_all(bound, calibrated, training, whole, parallel);
-  const auto after = simulate_all(bound, chosen, training, whole, parallel);
-  for (std::size_t i = 0; i < training.size(); ++i) {
-    trained[0].push_back(recording_error(bound, training[i], before[i], scale));
-    trained[1].push_back(recording_error(bound, training[i], after[i], scale));
-  }
-  diagnosis.train_before = over_all(trained[0], cell_counts(bound, training));
-  diagnosis.train_after = over_all(trained[1], cell_counts(bound, training));
-
-  // 95 % interval of the ratio, over test recordings.
+SUREFOOT_INLINE std::pair<double, double> ratio_interval(const std::vector<double>& before,
+                                                         const std::vector<double>& after,
+                                                         const std::vector<double>& counts, std::uint64_t seed,
+                                                         const EvaluationCriteria& criteria) {
   Rng rng(seed, 0x7e57u);
   std::vector<double> ratios;
-  for (int round = 0; round < 400; ++round) {
+  for (std::uint32_t round = 0; round < criteria.rounds; ++round) {
     double a = 0, b = 0;
-    for (std::size_t i = 0; i < test.size(); ++i) {
-      const std::size_t j = rng.below(static_cast<std::uint32_t>(test.size()));
-      a += errors[1][j] * errors[1][j] * counts[j];
-      b += errors[2][j] * errors[2][j] * counts[j];
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const std::size_t j = rng.below(static_cast<std::uint32_t>(before.size()));
+      a += before[j] * before[j] * counts[j];
+      b += after[j] * after[j] * counts[j];
     }
     ratios.push_back(a > 0 ? std::sqrt(b / a) : 1);
   }
   std::sort(ratios.begin(), ratios.end());
-  diagnosis.gain_low = ratios[9];
-  diagnosis.gain_high = ratios[389];
+  return {ratios[criteria.tail - 1], ratios[criteria.rounds - criteria.tail - 1]};
+}
 
-  if (investigation.noise != NoiseKind::final_pose) {
-    const ParallelExecutor executor{&parallel};
-    const auto corrected_error = [&](const std::vector<SimulatedRun>& simulated, const ResidualModel& model) {
-      std::vector<double> left;
-      for (std::size_t i = 0; i < test.size(); ++i) {
-        left.push_back(recording_error(bound, test[i], corrected(bound, test[i], simulated[i], model), scale));
-      }
-      return over_all(left, counts);
-    };
-    // A forest on the residuals of the calibrated model instead of effects.
-    diagnosis.test_forest = corrected_error(runs[1], train_residual_model(bound, training, before, executor, seed));
-    // And beside them, where they do not explain everything.
-    if (diagnosis.verdict == Verdict::unexplained) {
-      ForestResidual& offer = diagnosis.forest_residual;
-      Weighting weighting = investigation.problem.fit.weighting;
-      weighting.sigma = residual_sizes(bound, training, after);
-      const Comparison unseen =
-          cross_validate_residual(bound, training, after, investigation.split.folds, weighting, executor, seed);
-      offer.tried = true;
-      offer.gain = unseen.gain;
-      offer.gain_stderr = unseen.stderr_;
-      offer.model = train_residual_model(bound, training, after, executor, seed);
-      offer.heldout_before = diagnosis.test_after;
-      offer.heldout_after = corrected_error(runs[2], offer.model);
-      offer.kept = unseen.gain > 0.03 && unseen.t > 2.5 && offer.heldout_after < offer.heldout_before;
-    }
+SUREFOOT_INLINE bool forest_helps(const Comparison& cross_validated, double held_out_before, double held_out_after,
+                                  const EvaluationCriteria& criteria) {
+  return cross_validated.gain > criteria.min_forest_gain && cross_validated.t > criteria.min_forest_t &&
+         held_out_after < held_out_before;
+}
+
+/// Error of the held-out recordings with what a forest expects taken off.
+SUREFOOT_INLINE double corrected_error(const EstimationSetup& setup, const FittedModel& model,
+                                       const ResidualModel& forest) {
+  const auto& held_out = setup.split.held_out;
+  std::vector<SimulatedRun> runs;
+  for (std::size_t i = 0; i < held_out.size(); ++i) {
+    runs.push_back(corrected(setup.bound, held_out[i], model.runs.whole_held_out[i], forest));
   }
+  return error_over_all(setup.bound, held_out, runs);
+}
 
-  // By output.
-  std::vector<WhitenessTest> structures;
-  measure_mismatch(bound, training, simulate_all(bound, calibrated, training, bound.integration, parallel),
-                   investigation.problem.fit.weighting.sigma, investigation.noise, &structures);
-  double floor = 0;
+SUREFOOT_INLINE double forest_error(const EstimationSetup& setup, const FittedModel& calibrated,
+                                    const Parallel& parallel, std::uint64_t seed) {
+  const ParallelExecutor executor{&parallel};
+  return corrected_error(
+      setup, calibrated,
+      train_residual_model(setup.bound, setup.split.training, calibrated.runs.whole_training, executor, seed));
+}
+
+SUREFOOT_INLINE ForestResidual offer_forest(const EstimationSetup& setup, const FittedModel& chosen,
+                                            double held_out_before, const Parallel& parallel, std::uint64_t seed,
+                                            const EvaluationCriteria& criteria) {
+  const ParallelExecutor executor{&parallel};
+  const auto& training = setup.split.training;
+  const std::vector<SimulatedRun>& runs = chosen.runs.whole_training;
+  Weighting weighting = setup.problem.weighting;
+  weighting.sigma = residual_sizes(setup.bound, training, runs);
+  const Comparison unseen =
+      cross_validate_residual(setup.bound, training, runs, setup.split.folds, weighting, executor, seed);
+  ForestResidual offer;
+  offer.tried = true;
+  offer.gain = unseen.gain;
+  offer.gain_stderr = unseen.stderr_;
+  offer.model = train_residual_model(setup.bound, training, runs, executor, seed);
+  offer.held_out_before = held_out_before;
+  offer.held_out_after = corrected_error(setup, chosen, offer.model);
+  offer.kept = forest_helps(unseen, offer.held_out_before, offer.held_out_after, criteria);
+  return offer;
+}
+
+SUREFOOT_INLINE std::vector<ChannelMismatch> mismatch_by_output(const EstimationSetup& setup,
+                                                                const FittedModels& models) {
+  const BoundSimulator& bound = setup.bound;
+  const auto& held_out = setup.split.held_out;
+  const FittedModel* all[3] = {&models.nominal, &models.calibrated, &models.chosen};
+  std::vector<ChannelMismatch> result;
   for (std::size_t k = 0; k < bound.info.outputs.size(); ++k) {
     const auto output = static_cast<Eigen::Index>(k);
     ChannelMismatch channel;
     channel.output = bound.info.outputs[k].name;
     channel.unit = bound.info.outputs[k].unit;
     double sums[3] = {}, count = 0;
-    for (std::size_t i = 0; i < test.size(); ++i) {
-      for (int m = 0; m < 3; ++m) sums[m] += series_of(bound, test[i], runs[m][i], output).squaredNorm();
-      for (const Cell& cell : cells_of(bound.recordings[test[i]])) count += cell.output == output ? 1 : 0;
+    for (std::size_t i = 0; i < held_out.size(); ++i) {
+      for (int m = 0; m < 3; ++m) {
+        sums[m] += series_of(bound, held_out[i], all[m]->runs.whole_held_out[i], output).squaredNorm();
+      }
+      for (const Cell& cell : cells_of(bound.recordings[held_out[i]])) count += cell.output == output ? 1 : 0;
     }
     count = std::max(count, 1.0);
     channel.rmse_nominal = std::sqrt(sums[0] / count);
     channel.rmse_calibrated = std::sqrt(sums[1] / count);
     channel.rmse_after = std::sqrt(sums[2] / count);
     const double stated = bound.info.outputs[k].noise;
-    channel.noise = stated > 0 ? stated : std::min(fast_noise(bound, training, output), channel.rmse_after);
-    channel.p_value = structures[k].p_value;
-    floor += channel.noise * channel.noise / (scale[output] * scale[output]) /
-             static_cast<double>(bound.info.outputs.size());
-    diagnosis.channels.push_back(channel);
+    channel.noise = stated > 0 ? stated : std::min(fast_noise(bound, setup.split.training, output), channel.rmse_after);
+    channel.p_value = models.calibrated.by_output[k].p_value;
+    result.push_back(channel);
   }
-  diagnosis.noise_floor = std::sqrt(floor);
+  return result;
+}
+
+SUREFOOT_INLINE double noise_floor(const std::vector<ChannelMismatch>& outputs, const Eigen::VectorXd& scale) {
+  double squares = 0;
+  for (std::size_t k = 0; k < outputs.size(); ++k) {
+    const double unit = scale[static_cast<Eigen::Index>(k)];
+    squares += outputs[k].noise * outputs[k].noise / (unit * unit) / static_cast<double>(outputs.size());
+  }
+  return std::sqrt(squares);
+}
+
+/// Errors of the training and the held-out recordings, and curves of the latter.
+SUREFOOT_INLINE void evaluate_recordings(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
+                                         std::uint64_t seed, const EvaluationCriteria& criteria) {
+  const BoundSimulator& bound = setup.bound;
+  const auto& [nominal, calibrated, chosen] = models;
+  const auto &held_out = setup.split.held_out, &training = setup.split.training;
+  const Eigen::VectorXd scale = error_scale(bound);
+  const std::vector<double> before = recording_errors(bound, held_out, calibrated.runs.whole_held_out, scale);
+  const std::vector<double> after = recording_errors(bound, held_out, chosen.runs.whole_held_out, scale);
+  for (std::size_t i = 0; i < held_out.size(); ++i) {
+    const Recording& one = bound.recordings[held_out[i]];
+    diagnosis.per_recording.push_back({one.name, before[i], after[i]});
+    diagnosis.curves.push_back({one.name, one.time, one.inputs, one.outputs, nominal.runs.whole_held_out[i].outputs,
+                                calibrated.runs.whole_held_out[i].outputs, chosen.runs.whole_held_out[i].outputs});
+  }
+  const std::vector<double> counts = cell_counts(bound, held_out);
+  diagnosis.held_out_before = over_all(before, counts);
+  diagnosis.held_out_after = over_all(after, counts);
+  diagnosis.training_before = error_over_all(bound, training, calibrated.runs.whole_training);
+  diagnosis.training_after = error_over_all(bound, training, chosen.runs.whole_training);
+  std::tie(diagnosis.gain_low, diagnosis.gain_high) = ratio_interval(before, after, counts, seed, criteria);
+}
+
+SUREFOOT_INLINE void evaluate(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
+                              const Parallel& parallel, std::uint64_t seed, const EvaluationCriteria& criteria) {
+  evaluate_recordings(setup, models, diagnosis, seed, criteria);
+  if (setup.noise != NoiseKind::final_pose) {
+    diagnosis.held_out_forest = forest_error(setup, models.calibrated, parallel, seed);
+    if (diagnosis.verdict == Verdict::unexplained) {
+      diagnosis.forest_residual =
+          offer_forest(setup, models.chosen, diagnosis.held_out_after, parallel, seed, criteria);
+    }
+  }
+  diagnosis.channels = mismatch_by_output(setup, models);
+  diagnosis.noise_floor = noise_floor(diagnosis.channels, error_scale(setup.bound));
 }
 
 }  // namespace surefoot::diagnosis

@@ -1,34 +1,49 @@
-// The veto of the test recordings: effects that they do not confirm are not named, and what they still miss is
-// admitted.
+// The final check on held-out recordings, which can reject: effects that they do not confirm are not named.
 #pragma once
 
-#include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-
-#include "surefoot/diagnose/estimation/calibrate.hpp"
-#include "surefoot/diagnose/estimation/cross_validation.hpp"
-#include "surefoot/diagnose/estimation/recording_error.hpp"
-#include "surefoot/diagnose/residual_tests/whiteness.hpp"
-#include "surefoot/diagnose/verdict/investigation.hpp"
+#include "surefoot/diagnose/selection/search.hpp"
+#include "surefoot/diagnose/verdict/fitted_model.hpp"
 
 namespace surefoot::diagnosis {
 
-/// Whether effects lower the error of the test recordings in the units in which they were chosen, and do not raise it
-/// where whole recordings are simulated. Both hypotheses need the initial states of those recordings.
-bool confirmed(const Investigation& investigation, const Hypothesis& before, const Hypothesis& after,
-               const Parallel& parallel);
-
-/// What effects leave of the test recordings' squared errors beyond noise.
-struct Remainder {
-  double share = 0;  // of what there was without them
-  double times = 0;  // root mean square, in units of the noise
+/// When held-out recordings confirm effects. Ratios of root mean square errors, with effects against without.
+struct HeldOutCriteria {
+  double error_ratio = 0.98;        // in the units in which effects were chosen: 2 % less at least
+  double whole_error_ratio = 1.02;  // of whole recordings: 2 % more at most, as errors may add up by chance
+  double least_noise = 1e-3;        // of an output's standard deviation, where no noise is stated and none is seen
 };
 
-/// Both hypotheses need the initial states of the test recordings.
-Remainder left_on_held_out(const Investigation& investigation, const Hypothesis& calibrated, const Hypothesis& chosen,
-                           const Parallel& parallel);
+/// Errors of a model on the held-out recordings.
+struct HeldOutErrors {
+  double weighted = 0;  // as the noise asks for, in units of the weighting
+  double whole = 0;     // of whole recordings, in units of error_scale()
+};
+
+HeldOutErrors held_out_errors(const EstimationSetup& setup, const FittedModel& model);
+
+/// Whether effects lower the error of the held-out recordings in the units in which they were chosen, and do not raise
+/// it where whole recordings are simulated.
+bool confirmed(const HeldOutErrors& without, const HeldOutErrors& with, const HeldOutCriteria& criteria);
+
+/// The choice after the check.
+struct CheckedChoice {
+  Selection selection;  // if rejected: nothing is chosen, and what was rejected is the alternative
+  FittedModel chosen;
+  bool rejected = false;
+};
+
+/// `calibrated` is the model without effects that `selection` began with.
+CheckedChoice check_on_held_out(const EstimationSetup& setup, const FittedModel& calibrated, const Selection& selection,
+                                const HeldOutCriteria& criteria, const Parallel& parallel);
+
+/// What effects leave of the held-out recordings' squared errors beyond noise.
+struct HeldOutExcess {
+  double share = 0;  // of what there was without them
+  double ratio = 0;  // root mean square, in units of the noise
+};
+
+HeldOutExcess held_out_excess(const EstimationSetup& setup, const FittedModel& calibrated, const FittedModel& chosen,
+                              const HeldOutCriteria& criteria);
 
 }  // namespace surefoot::diagnosis
 

@@ -7,40 +7,53 @@
 #include <cstddef>
 
 #include "surefoot/core/compiled.hpp"
-#include "surefoot/diagnose/estimation/calibrate.hpp"
-#include "surefoot/diagnose/estimation/cross_validation.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
+#include "surefoot/diagnose/estimation/typical_sizes.hpp"
 #include "surefoot/diagnose/residual_tests/whiteness.hpp"
 #include "surefoot/diagnose/verdict/held_out_check.hpp"
-#include "surefoot/diagnose/verdict/investigation.hpp"
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE bool confirmed(const Investigation& investigation, const Hypothesis& before, const Hypothesis& after,
-                               const Parallel& parallel) {
-  const BoundSimulator& bound = investigation.bound;
-  const FitProblem& problem = investigation.problem.fit;
-  const auto& test = investigation.split.test;
-  const auto error = [&](const Hypothesis& one) {
-    return block_losses(bound, one, test, problem.weighting, problem.integration, parallel).rms();
-  };
-  const auto whole = [&](const Hypothesis& one) { return whole_error(bound, one, test, bound.integration, parallel); };
-  return error(after) < 0.98 * error(before) && whole(after) < 1.02 * whole(before);
+SUREFOOT_INLINE HeldOutErrors held_out_errors(const EstimationSetup& setup, const FittedModel& model) {
+  const auto& held_out = setup.split.held_out;
+  return {block_losses(setup.bound, held_out, model.runs.held_out, setup.problem.weighting).rms(),
+          error_over_all(setup.bound, held_out, model.runs.whole_held_out)};
 }
 
-SUREFOOT_INLINE Remainder left_on_held_out(const Investigation& investigation, const Hypothesis& calibrated,
-                                           const Hypothesis& chosen, const Parallel& parallel) {
-  const BoundSimulator& bound = investigation.bound;
-  const FitProblem& problem = investigation.problem.fit;
-  const auto& test = investigation.split.test;
-  const auto sizes = [&](const Hypothesis& hypothesis) {
-    return residual_sizes(bound, test, simulate_all(bound, hypothesis, test, problem.integration, parallel));
-  };
-  const Eigen::VectorXd before = sizes(calibrated), after = sizes(chosen), spreads = output_spreads(bound, test);
+SUREFOOT_INLINE bool confirmed(const HeldOutErrors& without, const HeldOutErrors& with,
+                               const HeldOutCriteria& criteria) {
+  return with.weighted < criteria.error_ratio * without.weighted &&
+         with.whole < criteria.whole_error_ratio * without.whole;
+}
+
+SUREFOOT_INLINE CheckedChoice check_on_held_out(const EstimationSetup& setup, const FittedModel& calibrated,
+                                                const Selection& selection, const HeldOutCriteria& criteria,
+                                                const Parallel& parallel) {
+  if (selection.chosen.hypothesis.effects.size() == calibrated.hypothesis.effects.size()) {
+    return {selection, calibrated};
+  }
+  const FittedModel chosen = fitted_model(setup, selection.chosen.hypothesis, parallel);
+  if (confirmed(held_out_errors(setup, calibrated), held_out_errors(setup, chosen), criteria)) {
+    return {selection, chosen};
+  }
+  CheckedChoice none{selection, calibrated, true};
+  none.selection.alternatives.assign(1, selection.chosen);
+  none.selection.chosen = selection.nominal;
+  return none;
+}
+
+SUREFOOT_INLINE HeldOutExcess held_out_excess(const EstimationSetup& setup, const FittedModel& calibrated,
+                                              const FittedModel& chosen, const HeldOutCriteria& criteria) {
+  const BoundSimulator& bound = setup.bound;
+  const auto& held_out = setup.split.held_out;
+  const Eigen::VectorXd before = residual_sizes(bound, held_out, calibrated.runs.held_out);
+  const Eigen::VectorXd after = residual_sizes(bound, held_out, chosen.runs.held_out);
+  const Eigen::VectorXd deviations = output_deviations(bound, held_out);
   double missed = 0, left = 0, squares = 0;
   for (Eigen::Index k = 0; k < before.size(); ++k) {
     const bool stated = bound.info.outputs[static_cast<std::size_t>(k)].noise > 0;
-    const double noise = stated ? noise_of(bound, test, k) : std::max(noise_of(bound, test, k), 1e-3 * spreads[k]);
+    const double seen = noise_of(bound, held_out, k);
+    const double noise = stated ? seen : std::max(seen, criteria.least_noise * deviations[k]);
     const double a = before[k] / noise, b = after[k] / noise;
     missed += std::max(0.0, a * a - 1);
     left += std::max(0.0, b * b - 1);

@@ -3,214 +3,272 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <stop_token>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
-#include "surefoot/diagnose/estimation/data_split.hpp"
-#include "surefoot/diagnose/estimation/noise_regime.hpp"
-#include "surefoot/diagnose/options.hpp"
-#include "surefoot/diagnose/residual_tests/whiteness.hpp"
+#include "surefoot/diagnose/estimation/choose_integration.hpp"
+#include "surefoot/diagnose/estimation/standard_errors.hpp"
+#include "surefoot/diagnose/residual_tests/noise.hpp"
 #include "surefoot/diagnose/screening.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
+#include "surefoot/diagnose/verdict/describe.hpp"
+#include "surefoot/diagnose/verdict/detection_limits.hpp"
+#include "surefoot/diagnose/verdict/evaluate.hpp"
+#include "surefoot/diagnose/verdict/evidence.hpp"
+#include "surefoot/diagnose/verdict/locate_mismatch.hpp"
 #include "surefoot/diagnose/verdict/pipeline.hpp"
-#include "surefoot/diagnose/verdict/verdict.hpp"
+#include "surefoot/diagnose/verdict/prepare.hpp"
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE std::vector<Recording> cut_recordings(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                                      const std::vector<SimulatedRun>& trajectories,
-                                                      std::size_t parts) {
-  std::vector<Recording> result;
-  for (std::size_t r = 0; r < bound.recordings.size(); ++r) {
-    const Recording& whole = bound.recordings[r];
-    const Eigen::MatrixXd& states = trajectories[r].states;
-    for (std::size_t part = 0; part < parts; ++part) {
-      const auto count = static_cast<Eigen::Index>(parts), k = static_cast<Eigen::Index>(part);
-      const Eigen::Index from = whole.rows() * k / count, to = whole.rows() * (k + 1) / count;
-      if (to - from < 20) continue;
-      Eigen::VectorXd initial = states.col(from), scale(initial.size());
-      for (Eigen::Index i = 0; i < initial.size(); ++i) {
-        scale[i] = std::max(0.2 * root_mean_square(states.row(i)), 1e-6);
-        const int output = bound.structure.output_of[static_cast<std::size_t>(i)];
-        if (output < 0) continue;
-        const double measured = whole.outputs(output, from);
-        if (std::isfinite(measured)) initial[i] = measured;
-      }
-      Recording one = part_of(whole, from, to, initial, scale);
-      if (part == 0) one.initial = hypothesis.initial[r];
-      result.push_back(std::move(one));
-    }
-  }
-  return result;
-}
+/// Shares of the work done at the begin of a stage, as far as it is known beforehand.
+inline constexpr double progress_calibration = 0.05, progress_search = 0.15, progress_evaluation = 0.85;
 
-SUREFOOT_INLINE void free_measured_starts(BoundSimulator& bound, const std::vector<std::size_t>& training) {
-  const Eigen::VectorXd spreads = output_spreads(bound, training);
-  for (std::size_t i = 0; i < bound.info.states.size(); ++i) {
-    const int output = bound.structure.output_of[i];
-    if (output < 0) continue;
-    const double noise = noise_of(bound, training, output), spread = spreads[output];
-    for (Recording& recording : bound.recordings) {
-      const auto state = static_cast<Eigen::Index>(i);
-      if (recording.initial_scale[state] > 0 || recording.initial[state] != recording.outputs(output, 0)) continue;
-      if (noise > 1e-6 * spread) recording.initial_scale[state] = noise;
-    }
-  }
-}
-
-SUREFOOT_INLINE std::vector<std::size_t> some_of(const std::vector<std::size_t>& recordings, std::size_t count) {
-  if (recordings.size() <= count) return recordings;
-  std::vector<std::size_t> result;
-  for (std::size_t i = 0; i < count; ++i) result.push_back(recordings[i * recordings.size() / count]);
-  return result;
-}
-
-SUREFOOT_INLINE Investigation run_pipeline(const std::function<BoundSimulator(std::vector<Recording>)>& make,
-                                           const SimulatorInfo& info, std::vector<Recording> recordings,
-                                           const DiagnoseOptions& options, const Parallel& parallel, std::uint64_t seed,
-                                           std::stop_token stop) {
-  const auto began = std::chrono::steady_clock::now();
-  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); };
-  const auto progress = [&](std::string_view stage, double share, const std::string& best) {
-    if (options.progress) options.progress(stage, share, best);
-  };
-  Investigation result;
-  Diagnosis& diagnosis = result.diagnosis;
-  diagnosis.model = info.name;
-  diagnosis.seed = seed;
-
-  // Screen.
-  progress("screening", 0.0, "");
+SUREFOOT_INLINE std::vector<Remark> screen_recordings(const SimulatorInfo& info, std::vector<Recording>& recordings) {
   if (recordings.empty()) throw DiagnoseError("there is no recording to diagnose");
+  std::vector<Remark> remarks;
   for (Recording& recording : recordings) {
     check_recording(info, recording);
-    const auto wild = remove_outliers(info, recording);
-    diagnosis.remarks.insert(diagnosis.remarks.end(), wild.begin(), wild.end());
+    const auto outliers = remove_outliers(info, recording);
+    remarks.insert(remarks.end(), outliers.begin(), outliers.end());
   }
   const auto screened = screen(info, recordings);
-  diagnosis.remarks.insert(diagnosis.remarks.end(), screened.begin(), screened.end());
+  remarks.insert(remarks.end(), screened.begin(), screened.end());
+  return remarks;
+}
 
-  const std::vector<Effect> every = [&] {
-    std::vector<Effect> list = all_effects();
-    list.insert(list.end(), options.more_effects.begin(), options.more_effects.end());
-    return list;
-  }();
-  const auto with_known = [&](Hypothesis hypothesis) {
-    for (const NamedEffect& named : options.known) {
-      hypothesis.effects.push_back(attach(info, named, every));
-      hypothesis.values.emplace_back(
-          Eigen::Map<const Eigen::VectorXd>(named.values.data(), static_cast<Eigen::Index>(named.values.size())));
-    }
-    return hypothesis;
-  };
+SUREFOOT_INLINE std::vector<Effect> nameable_effects(const DiagnoseOptions& options) {
+  std::vector<Effect> effects = all_effects();
+  effects.insert(effects.end(), options.more_effects.begin(), options.more_effects.end());
+  return effects;
+}
 
-  // Few recordings are cut into parts.
-  if (recordings.size() < 4 && options.test.empty()) {
-    BoundSimulator whole = make(recordings);
-    FitProblem quick;
-    for (std::size_t r = 0; r < recordings.size(); ++r) quick.recordings.push_back(r);
-    quick.integration = whole.integration;
-    const Fit fitted = calibrate(whole, with_known(nominal_hypothesis(whole)), quick, options.starts, seed, parallel);
-    const auto trajectories = simulate_all(whole, fitted.hypothesis, quick.recordings, whole.integration, parallel);
-    const std::size_t parts = (5 + recordings.size() - 1) / recordings.size();
-    std::vector<Recording> cut = cut_recordings(whole, fitted.hypothesis, trajectories, parts);
-    if (cut.size() >= 3) recordings = std::move(cut);
+SUREFOOT_INLINE Hypothesis nominal_with_known(const BoundSimulator& bound, const DiagnoseOptions& options) {
+  const std::vector<Effect> effects = nameable_effects(options);
+  Hypothesis hypothesis = nominal_hypothesis(bound);
+  for (const NamedEffect& named : options.known) {
+    hypothesis.effects.push_back(attach(bound.info, named, effects));
+    hypothesis.values.emplace_back(
+        Eigen::Map<const Eigen::VectorXd>(named.values.data(), static_cast<Eigen::Index>(named.values.size())));
+  }
+  return hypothesis;
+}
+
+SUREFOOT_INLINE std::vector<Recording> cut_few_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
+                                                          const RunContext& run) {
+  const PreparationCriteria criteria;
+  if (recordings.size() < criteria.enough && run.options.held_out.empty()) {
+    const BoundSimulator whole = bind(recordings);
+    FitProblem problem;
+    for (std::size_t r = 0; r < recordings.size(); ++r) problem.recordings.push_back(r);
+    problem.integration = whole.integration;
+    const Fit fitted =
+        calibrate(whole, nominal_with_known(whole, run.options), problem, run.options.starts, run.seed, run.parallel);
+    const auto runs = simulate_all(whole, fitted.hypothesis, problem.recordings, whole.integration, run.parallel);
+    const std::size_t parts = (criteria.parts + recordings.size() - 1) / recordings.size();
+    std::vector<Recording> cut = cut_recordings(whole, fitted.hypothesis, runs, parts, criteria);
+    if (cut.size() >= criteria.fewest) recordings = std::move(cut);
   }
   if (recordings.size() < 2) {
     throw DiagnoseError(
         "one short recording is not enough to tell what is missing: record at least two, or one of 60 rows");
   }
-  BoundSimulator& bound = result.bound;
-  bound = make(recordings);
-  const RecordingSplit split = split_recordings(bound.recordings, options.test, options.test_share, 4, seed);
-  result.split = split;
-  for (const std::size_t r : split.training) diagnosis.fit.push_back(bound.recordings[r].name);
-  diagnosis.select = diagnosis.fit;  // cross-validated: each is held out once
-  for (const std::size_t r : split.test) diagnosis.test.push_back(bound.recordings[r].name);
+  return recordings;
+}
 
-  // Calibrate, with an integration that is fine enough and in the way the noise asks for.
-  progress("calibrating", 0.05, "");
-  SearchProblem problem;
-  problem.fit.recordings = split.training;
-  Hypothesis nominal = with_known(nominal_hypothesis(bound));
-  result.noise = noise_kind(bound, nominal, split.training);
-  bound.integration.restart = result.noise == NoiseKind::process ? 1 : 0;
-  if (result.noise == NoiseKind::measurement) free_measured_starts(bound, split.training);
-  problem.fit.integration = bound.integration;
-  Fit calibrated = calibrate(bound, nominal, problem.fit, options.starts, seed, parallel);
-  bound.integration = choose_integration(bound, calibrated.hypothesis, problem.fit.weighting.sigma, bound.integration,
+SUREFOOT_INLINE EstimationSetup hold_out_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
+                                                    const RunContext& run) {
+  EstimationSetup setup{bind(std::move(recordings)), {}};
+  setup.split = split_recordings(setup.bound.recordings, run.options.held_out, run.options.held_out_share,
+                                 PreparationCriteria{}.folds, run.seed);
+  setup.problem.recordings = setup.split.training;
+  return setup;
+}
+
+SUREFOOT_INLINE Calibration calibrate_model(EstimationSetup& setup, const RunContext& run) {
+  auto& [bound, split, noise, problem] = setup;
+  const Parallel& parallel = run.parallel;
+  const Hypothesis nominal = nominal_with_known(bound, run.options);
+  noise = noise_kind(bound, nominal, split.training);
+  bound.integration.restart = noise == NoiseKind::process ? 1 : 0;
+  if (noise == NoiseKind::measurement) free_measured_initial_states(bound, split.training);
+  problem.integration = bound.integration;
+  Fit calibrated = calibrate(bound, nominal, problem, run.options.starts, run.seed, parallel);
+  bound.integration = choose_integration(bound, calibrated.hypothesis, problem.weighting.sigma, bound.integration,
                                          split.training.front());
-  problem.fit.integration = bound.integration;
-  if (result.noise == NoiseKind::final_pose) {
-    problem.fit.weighting.whitening =
-        final_pose_whitening(bound, calibrated.hypothesis, split.training, bound.integration);
+  problem.integration = bound.integration;
+  if (noise == NoiseKind::final_pose) {
+    problem.weighting.whitening = final_pose_whitening(bound, calibrated.hypothesis, split.training, bound.integration);
   }
-  calibrated = fit(bound, calibrated.hypothesis, problem.fit, parallel);
-  const auto trajectories = simulate_all(bound, calibrated.hypothesis, split.training, bound.integration, parallel);
-  bound.sizes = measure_sizes(bound, calibrated.hypothesis, split.training, trajectories);
+  calibrated = fit(bound, calibrated.hypothesis, problem, parallel);
+  const auto runs = simulate_all(bound, calibrated.hypothesis, split.training, bound.integration, parallel);
+  bound.sizes = measure_sizes(bound, calibrated.hypothesis, split.training, runs);
+  return {with_estimated_initial_states(bound, nominal, split.training, problem, parallel), calibrated, runs};
+}
 
-  // Is the nominal simulator good enough as it is?
-  nominal = with_estimated_starts(bound, nominal, split.training, problem.fit, parallel);
-  const BlockLosses before =
-      block_losses(bound, nominal, split.training, problem.fit.weighting, bound.integration, parallel);
-
-  // Propose, fit and select.
-  problem.folds = split.folds;
-  problem.known = options.known.size();
-  problem.screened = some_of(split.training, result.noise == NoiseKind::final_pose ? 1000 : 5);
-  problem.progress = [&](const std::string& stage, double share) { progress(stage, 0.15 + 0.7 * share, ""); };
-  problem.stopped = [&] {
-    return stop.stop_requested() || (options.max_seconds > 0 && seconds() > options.max_seconds);
-  };
-  problem.structured = [&](const Hypothesis& hypothesis) {
-    if (result.noise == NoiseKind::final_pose) return true;
-    const auto runs = simulate_all(bound, hypothesis, split.training, bound.integration, parallel);
-    const Mismatch mismatch = measure_mismatch(bound, split.training, runs, problem.fit.weighting.sigma, result.noise);
-    return mismatch.p_value < 0.02 && mismatch.share > 0.03;
-  };
-  std::vector<Effect> effects = every;
-  if (!options.effects.empty()) {
-    for (const std::string& name : options.effects) {
-      if (std::none_of(effects.begin(), effects.end(), [&](const Effect& effect) { return effect.name == name; })) {
-        throw DiagnoseError("there is no effect called '" + name + "'");
-      }
-    }
-    std::erase_if(effects, [&](const Effect& effect) {
-      return std::find(options.effects.begin(), options.effects.end(), effect.name) == options.effects.end();
-    });
-  }
-  if (result.noise == NoiseKind::process) {  // each row starts from readings, so that a sensor's faults cannot be told
+SUREFOOT_INLINE std::vector<AttachedEffect> candidate_effects(const EstimationSetup& setup,
+                                                              const Calibration& calibration, const RunContext& run) {
+  const auto& names = run.options.effects;
+  std::vector<Effect> effects = nameable_effects(run.options);
+  std::erase_if(effects, [&](const Effect& effect) {
+    return !names.empty() && std::ranges::find(names, effect.name) == names.end();
+  });
+  if (setup.noise == NoiseKind::process) {  // each row starts from readings, so that a sensor's faults cannot be told
     std::erase_if(effects, [](const Effect& effect) { return effect.place == Place::output; });
   }
-  const std::vector<AttachedEffect> candidates =
-      attachments(bound, effects, distinct_inputs(bound, calibrated.hypothesis, split.training, trajectories));
-  SelectionCriteria search;
-  search.max_effects = options.max_effects;
+  return attachments(
+      setup.bound, effects,
+      distinct_inputs(setup.bound, calibration.calibrated.hypothesis, setup.split.training, calibration.training_runs));
+}
+
+/// Whether the residuals of a hypothesis hold what noise does not; final poses are too few to tell.
+SUREFOOT_INLINE bool holds_structure(const EstimationSetup& setup, const Hypothesis& hypothesis,
+                                     const SelectionCriteria& criteria, const Parallel& parallel) {
+  if (setup.noise == NoiseKind::final_pose) return true;
+  const auto& training = setup.split.training;
+  const auto runs = simulate_all(setup.bound, hypothesis, training, setup.bound.integration, parallel);
+  const Mismatch mismatch = measure_mismatch(setup.bound, training, runs, setup.problem.weighting.sigma, setup.noise);
+  return mismatch.p_value < criteria.structure_significance && mismatch.share > criteria.structure_share;
+}
+
+SUREFOOT_INLINE SearchProblem search_problem(const EstimationSetup& setup, const RunContext& run) {
+  const auto& training = setup.split.training;
+  SearchProblem problem;
+  problem.fit = setup.problem;
+  problem.folds = setup.split.folds;
+  problem.known = run.options.known.size();
+  problem.criteria.max_effects = run.options.max_effects;
+  SearchEffort& effort = problem.effort;
   double rows = 1;  // small problems can afford a longer list
-  for (const std::size_t r : split.training) rows += static_cast<double>(bound.recordings[r].rows());
-  search.shortlist = static_cast<std::size_t>(std::clamp(14 * 6000 / rows, 14.0, 50.0));
-  result.selection = select_effects(bound, calibrated, problem, candidates, search, parallel);
-  result.problem = problem;
-  result.nominal = nominal;
-  result.parameters_matter = compare_losses(before, result.selection.nominal.heldout);
+  for (const std::size_t r : training) rows += static_cast<double>(setup.bound.recordings[r].rows());
+  const auto fewest = static_cast<double>(effort.shortlist), most = static_cast<double>(effort.max_shortlist);
+  effort.shortlist = static_cast<std::size_t>(std::clamp(fewest * effort.shortlist_rows / rows, fewest, most));
+  const bool final_poses = setup.noise == NoiseKind::final_pose;
+  problem.screened = some_of(training, final_poses ? effort.screening_final_poses : effort.screening);
+  problem.on_progress = [run](const std::string& stage, double share) {
+    run.progress(stage, progress_search + (progress_evaluation - progress_search) * share);
+  };
+  problem.stopped = [run] { return run.search_has_ended(); };
+  problem.structured = [&setup, run, criteria = problem.criteria](const Hypothesis& hypothesis) {
+    return holds_structure(setup, hypothesis, criteria, run.parallel);
+  };
+  return problem;
+}
+
+SUREFOOT_INLINE void describe_models(const EstimationSetup& setup, const FittedModels& models,
+                                     const Selection& selection, const RunContext& run, Diagnosis& diagnosis) {
+  const BoundSimulator& bound = setup.bound;
+  const Hypothesis &calibrated = models.calibrated.hypothesis, &chosen = models.chosen.hypothesis;
+  const std::size_t known = calibrated.effects.size();
+  const StandardErrors without = standard_errors(bound, calibrated, setup.problem, run.parallel);
+  const bool found_any = chosen.effects.size() > known;
+  const StandardErrors errors = found_any ? standard_errors(bound, chosen, setup.problem, run.parallel) : without;
+  diagnosis.parameters = calibrated_parameters(bound, calibrated, without);
+  diagnosis.correlated = correlated_pairs(bound, without);
+  diagnosis.augmented_parameters = calibrated_parameters(bound, chosen, errors);
+  diagnosis.noise_sentence = noise_sentence(setup.noise);
+  diagnosis.integration_order = bound.integration.order;
+  diagnosis.integration_step = bound.integration.step;
+  for (std::size_t e = 0; e < chosen.effects.size(); ++e) {
+    FoundEffect found = describe(bound, chosen, e, &errors);
+    if (e < known) {
+      diagnosis.known_effects.push_back(found);
+      continue;
+    }
+    found.evidence = evidence_for(selection, e - known, run.seed);
+    diagnosis.effects.push_back(found);
+  }
+}
+
+SUREFOOT_INLINE std::vector<std::string> describe_alternatives(const Selection& selection, Diagnosis& diagnosis) {
+  const Alternatives others = find_alternatives(selection);
+  diagnosis.alternatives = others.list;
+  if (!others.indistinguishable.empty()) {
+    diagnosis.next_experiment =
+        next_experiment(selection.chosen.hypothesis, others.indistinguishable.front().hypothesis);
+  }
+  return others.ties;
+}
+
+SUREFOOT_INLINE void describe_limits(const EstimationSetup& setup, const FittedModels& models,
+                                     const SearchProblem& problem, const std::vector<AttachedEffect>& candidates,
+                                     const RunContext& run, Diagnosis& diagnosis) {
+  if (!diagnosis.effects.empty() || diagnosis.verdict == Verdict::unexplained) return;
+  FitProblem few = setup.problem;
+  few.recordings = problem.screened;
+  diagnosis.limits =
+      detection_limits(setup.bound, propose(setup.bound, models.calibrated.hypothesis, few, candidates, run.parallel));
+}
+
+SUREFOOT_INLINE void name_recordings(const EstimationSetup& setup, Diagnosis& diagnosis) {
+  for (const std::size_t r : setup.split.training) diagnosis.fit.push_back(setup.bound.recordings[r].name);
+  diagnosis.select = diagnosis.fit;  // cross-validated: each is left out once
+  for (const std::size_t r : setup.split.held_out) diagnosis.held_out.push_back(setup.bound.recordings[r].name);
+}
+
+SUREFOOT_INLINE void evaluate_selection(const EstimationSetup& setup, const Calibration& calibration,
+                                        const SearchProblem& problem, const Selection& selection,
+                                        const std::vector<AttachedEffect>& candidates, const RunContext& run,
+                                        Diagnosis& diagnosis) {
+  const VerdictCriteria verdict;
+  const HeldOutCriteria held_out;
+  const auto& training = setup.split.training;
+  const FittedModel calibrated = fitted_model(setup, calibration.calibrated.hypothesis, run.parallel);
+  const CheckedChoice choice = check_on_held_out(setup, calibrated, selection, held_out, run.parallel);
+  const FittedModels models{simulate_model(setup, calibration.nominal, run.parallel), calibrated, choice.chosen};
+  if (choice.rejected) diagnosis.remarks.push_back({"", rejection_sentence()});
+
+  const BlockLosses nominal =
+      block_losses(setup.bound, training, models.nominal.runs.training, setup.problem.weighting);
+  const Comparison calibration_gain = compare_losses(nominal, selection.nominal.cross_validated);
+  diagnosis.verdict =
+      decide(gather_evidence(setup, models, calibration_gain, verdict, held_out, run.parallel, run.seed), verdict);
+
+  describe_models(setup, models, choice.selection, run, diagnosis);
+  const std::vector<std::string> ties = describe_alternatives(choice.selection, diagnosis);
+  std::tie(diagnosis.regions, diagnosis.intervals) = locate_mismatch(setup, calibrated, run.seed);
+  evaluate(setup, models, diagnosis, run.parallel, run.seed);
+  describe_limits(setup, models, problem, candidates, run, diagnosis);
+  diagnosis.sentence = verdict_sentence(diagnosis, ties);
+  if (diagnosis.verdict == Verdict::unexplained) return;  // what is left of it would pass for noise
+  diagnosis.noise_findings = find_noise(setup.bound, choice.chosen.hypothesis, training, setup.noise, run.parallel);
+}
+
+SUREFOOT_INLINE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorInfo& info,
+                                       std::vector<Recording> recordings, const DiagnoseOptions& options,
+                                       const Parallel& parallel, std::uint64_t seed, std::stop_token stop) {
+  check(options);
+  const RunContext run{options, parallel, seed, stop};
+  Diagnosis diagnosis;
+  diagnosis.model = info.name;
+  diagnosis.seed = seed;
+
+  run.progress("screening", 0);
+  diagnosis.remarks = screen_recordings(info, recordings);
+  recordings = cut_few_recordings(bind, std::move(recordings), run);
+  EstimationSetup setup = hold_out_recordings(bind, std::move(recordings), run);
+  name_recordings(setup, diagnosis);
+
+  run.progress("calibrating", progress_calibration);
+  const Calibration calibration = calibrate_model(setup, run);
+  const SearchProblem problem = search_problem(setup, run);
+  const std::vector<AttachedEffect> candidates = candidate_effects(setup, calibration, run);
+  const Selection selection = select_effects(setup.bound, calibration.calibrated, problem, candidates, parallel);
   diagnosis.complete = !stop.stop_requested();
 
-  // Locate what the calibrated model misses, and conclude.
-  progress("concluding", 0.9, "");
-  conclude(result, candidates, parallel, seed);
-  diagnosis.seconds = seconds();
-  progress("done", 1, diagnosis.sentence);
-  return result;
+  run.progress("evaluating", progress_evaluation);
+  evaluate_selection(setup, calibration, problem, selection, candidates, run, diagnosis);
+  diagnosis.seconds = run.seconds();
+  run.progress("done", 1, diagnosis.sentence);
+  return diagnosis;
 }
 
 }  // namespace surefoot::diagnosis

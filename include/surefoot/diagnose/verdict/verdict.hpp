@@ -1,36 +1,64 @@
-// Draws the conclusions of an investigation: the verdict, its sentence, what cannot be told apart.
+// The verdict: a decision on plain numbers.
 #pragma once
 
-#include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "surefoot/diagnose/residual_tests/locate.hpp"
-#include "surefoot/diagnose/residual_tests/mismatch.hpp"
-#include "surefoot/diagnose/residual_tests/noise.hpp"
-#include "surefoot/diagnose/residual_tests/predictability.hpp"
-#include "surefoot/diagnose/residual_tests/walking/sequence_residual.hpp"
-#include "surefoot/diagnose/residual_tests/walking/slip_by_place.hpp"
-#include "surefoot/diagnose/text.hpp"
-#include "surefoot/diagnose/verdict/describe.hpp"
-#include "surefoot/diagnose/verdict/evaluate.hpp"
-#include "surefoot/diagnose/verdict/held_out_check.hpp"
-#include "surefoot/diagnose/verdict/investigation.hpp"
+#include "surefoot/diagnose/diagnosis.hpp"
+#include "surefoot/diagnose/estimation/noise_regime.hpp"
 
 namespace surefoot::diagnosis {
 
-void locate(Investigation& investigation, const Hypothesis& calibrated, const Parallel& parallel, std::uint64_t seed);
+/// Limits beyond which something is said to be left unexplained, or parameters to matter. Shares are of squared
+/// residuals, gains of the root mean square error.
+struct VerdictCriteria {
+  // Residuals of the training recordings hold what noise does not:
+  double structure_significance = 0.001;      // of the residuals' structure; small, as any model is wrong a little
+  double tolerated_share = 0.12;              // that may stay without a name: too little to be worth a parameter
+  double tolerated_share_with_effects = 0.3;  // the same beside effects, whose form is never quite that of the machine
+  double tolerated_energy = 0.2;              // of what the calibrated model leaves: effects took the rest
 
-std::string names_of(const Hypothesis& hypothesis);
+  // Effects leave more than noise of the held-out recordings (whole recordings only):
+  double held_out_share = 0.2;  // of what the calibrated model leaves beyond noise
+  double held_out_ratio = 3;    // root mean square in units of the noise: below, another noise is as likely
 
-/// Fills in the diagnosis from what the search found.
-void conclude(Investigation& investigation, const std::vector<AttachedEffect>& candidates, const Parallel& parallel,
-              std::uint64_t seed);
+  // Tests for walks:
+  double sequence_significance = 0.005;     // of final poses that go together
+  double predictable_significance = 0.005;  // of errors of single steps that can be predicted
+  double predictable_gain = 0.03;           // as much as an effect must gain, see SelectionCriteria
+
+  // Calibration changes the model:
+  double calibration_gain = 0.02;  // below, the nominal parameters do as well
+  double calibration_t = 2;        // in standard errors
+};
+
+/// A test of whether errors can be predicted.
+struct PredictionEvidence {
+  double gain = 0;  // share of the error that goes
+  double p_value = 1;
+};
+
+/// All that a verdict depends on. Tests that were not made keep the values that say nothing.
+struct VerdictEvidence {
+  NoiseKind noise = NoiseKind::measurement;
+  bool effects_found = false;
+
+  double structure_p_value = 1;  // that the chosen model's residuals are noise
+  double structure_share = 0;    // of the mean square of the output that shows it most
+  double structure_energy = 0;   // against that of the calibrated model (ratio)
+
+  double held_out_share = 0;  // see HeldOutExcess
+  double held_out_ratio = 0;
+
+  double sequence_p_value = 1;
+  PredictionEvidence prediction;  // of errors of single steps, from the motion
+  PredictionEvidence by_place;    // of the same, from where they were made
+
+  double calibration_gain = 0;
+  double calibration_t = 0;
+};
+
+/// Whether the chosen model leaves more than noise.
+bool is_unexplained(const VerdictEvidence& evidence, const VerdictCriteria& criteria);
+
+Verdict decide(const VerdictEvidence& evidence, const VerdictCriteria& criteria);
 
 }  // namespace surefoot::diagnosis
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "surefoot/core/error.hpp"
 #include "surefoot/forest/c/c_tables.hpp"
-#include "surefoot/forest/error.hpp"
 
 namespace surefoot::detail {
 

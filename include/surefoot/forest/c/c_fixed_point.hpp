@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "surefoot/core/error.hpp"
 #include "surefoot/forest/c/c_tables.hpp"
-#include "surefoot/forest/error.hpp"
 
 namespace surefoot {
 

@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "surefoot/forest/error.hpp"
+#include "surefoot/core/error.hpp"
 
 namespace surefoot {
 

@@ -1,67 +1,34 @@
-// The noise of a walk from what its motion model leaves over, by maximum likelihood. Where poses were measured after
-// every cycle each cycle's own deviation is seen, and with it the shape of the noise; final poses are sums over many
-// cycles, hence normal whatever the shape, and show its size alone.
+// Fits of the noise of a walk to what its motion model leaves over, by maximum likelihood. Where poses were measured
+// after every cycle each cycle's own deviation is seen, and with it the shape of the noise; final poses are sums over
+// many cycles, hence normal whatever the shape, and show its size alone.
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <numbers>
+#include <array>
 #include <span>
 #include <vector>
 
-#include "surefoot/core/executor.hpp"
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/core/vec.hpp"
+#include "surefoot/motion/any_motion_model.hpp"
 #include "surefoot/motion/noise.hpp"
-#include "surefoot/motion/fit/pose_filter.hpp"
-#include "surefoot/optimize/cma_es.hpp"
+#include "surefoot/motion/walk_sequence.hpp"
 
 namespace surefoot {
 
-/// What one cycle did beyond the model.
+/// The deviation of one cycle from the model.
 struct CycleDeviation {
-  Vec<3> orders, previous;  // of the cycle, and of the one before [m, m, rad]
-  Vec<3> value;             // in the frame before the cycle (x, y, turn) [m, m, rad]
+  Vec<3> commands, previous;  // of the cycle, and of the one before [m, m, rad]
+  Vec<3> value;               // in the frame before the cycle (x, y, turn) [m, m, rad]
 };
 
 /// Of all cycles whose pose was measured before and after (the start of a sequence is known).
-template <MotionModel M>
-std::vector<CycleDeviation> cycle_deviations(const M& model, std::span<const WalkSequence> sequences) {
-  std::vector<CycleDeviation> result;
-  for (const WalkSequence& sequence : sequences) {
-    for (Eigen::Index cycle = 0; cycle < sequence.cycles(); ++cycle) {
-      const auto known = [&](Eigen::Index i) { return sequence.position_measured(i) && sequence.heading_measured(i); };
-      if (!known(cycle) || (cycle > 0 && !known(cycle - 1))) continue;
-      const Pose2 from = cycle == 0 ? Pose2{} : Pose2::from_vec(sequence.poses.col(cycle - 1));
-      const Vec<3> orders = sequence.orders.col(cycle), previous = sequence.previous_order(cycle);
-      const Vec<3> really = (from.inverse() * Pose2::from_vec(sequence.poses.col(cycle))).vec();
-      Vec<3> value = really - cycle_displacement(model, orders, previous).vec();
-      value[2] = wrap_angle(value[2]);
-      result.push_back({orders, previous, value});
-    }
-  }
-  return result;
-}
+std::vector<CycleDeviation> cycle_deviations(const AnyMotionModel& model, std::span<const WalkSequence> sequences);
 
 /// Whether poses were measured so often that the noise can be read off single cycles.
-inline bool sees_single_cycles(std::span<const WalkSequence> sequences) {
-  Eigen::Index cycles = 0, seen = 0;
-  for (const WalkSequence& sequence : sequences) {
-    cycles += sequence.cycles();
-    for (Eigen::Index cycle = 0; cycle < sequence.cycles(); ++cycle) {
-      if (sequence.position_measured(cycle) && sequence.heading_measured(cycle)) ++seen;
-    }
-  }
-  return 2 * seen > cycles;
-}
+bool sees_single_cycles(std::span<const WalkSequence> sequences);
 
 namespace detail {
-
-/// log(erfc(z)), to 1e-5, also where erfc is less than any double: asymptotic series (Abramowitz & Stegun 7.1.23).
-inline double log_erfc(double z) {
-  return z < 20 ? std::log(std::erfc(z)) : -z * z - std::log(z * std::sqrt(std::numbers::pi)) - 0.5 / (z * z);
-}
 
 /// One component of the deviations of all cycles, ready to be compared with deviations that grow linearly.
 struct ComponentDeviations {
@@ -69,65 +36,18 @@ struct ComponentDeviations {
   Eigen::ArrayXd speed, acceleration;  // in units of MotionNoise::scale
   double blur = 0;                     // deviation of what is not the walk: measurement, uncertainty of the model
 
-  Eigen::ArrayXd sigma(const Eigen::VectorXd& growth) const {  // growth: constant, per speed, per acceleration
-    return growth[0] + growth[1] * speed + growth[2] * acceleration;
-  }
-
-  Eigen::ArrayXd log_density(NoiseShape shape, const Eigen::VectorXd& growth) const {
-    const Eigen::ArrayXd sigma_here = sigma(growth);
-    const double blur2 = std::max(blur * blur, 1e-20);
-    if (shape == NoiseShape::gaussian) {
-      const Eigen::ArrayXd variance = sigma_here.square() + blur2;
-      return -0.5 * (size.square() / variance + (2 * std::numbers::pi * variance).log());
-    }
-    // Uniform and normal noise added up; at its edge the density falls as the normal one does.
-    const double s = std::sqrt(blur2);
-    Eigen::ArrayXd result(size.size());
-    for (Eigen::Index i = 0; i < size.size(); ++i) {
-      const double half = std::numbers::sqrt3 * sigma_here[i];
-      if (half < 1e-3 * s) {
-        result[i] = -0.5 * size[i] * size[i] / blur2 - std::log(s * std::sqrt(2 * std::numbers::pi));
-      } else {
-        const double out = log_erfc((size[i] - half) / (s * std::numbers::sqrt2)),
-                     in = log_erfc((size[i] + half) / (s * std::numbers::sqrt2));
-        result[i] = out + std::log1p(-std::exp(in - out)) - std::log(4 * half);
-      }
-    }
-    return result;
-  }
+  // By cycle [nats], for noise that grows by (constant, per speed, per acceleration).
+  Eigen::ArrayXd log_density(NoiseShape shape, const Eigen::VectorXd& growth) const;
 };
 
-inline ComponentDeviations component(std::span<const CycleDeviation> cycles, Eigen::Index axis,
-                                     const PoseAccuracy& accuracy, const MotionNoise& scales, int parameters) {
-  const auto count = static_cast<Eigen::Index>(cycles.size());
-  ComponentDeviations result{Eigen::ArrayXd(count), Eigen::ArrayXd(count), Eigen::ArrayXd(count)};
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const CycleDeviation& cycle = cycles[static_cast<std::size_t>(i)];
-    result.size[i] = std::abs(cycle.value[axis]);
-    result.speed[i] = scales.speed(cycle.orders);
-    result.acceleration[i] = scales.acceleration(cycle.orders, cycle.previous);
-  }
-  // Both ends of a cycle are measured; the model is known as well as `parameters` shared by three components allow.
-  const double mean_square = result.size.square().mean();
-  result.blur = std::sqrt(2 * accuracy.variance()[axis] +
-                          mean_square * std::min(1.0, parameters / 3.0 / static_cast<double>(count)));
-  return result;
-}
+ComponentDeviations component(std::span<const CycleDeviation> cycles, Eigen::Index axis, const PoseAccuracy& accuracy,
+                              const MotionNoise& scales, int parameters);
 
 /// Which of (constant, per speed, per acceleration) are free.
-inline std::array<bool, 3> free_terms(NoiseGrowth growth) {
-  return {growth != NoiseGrowth::with_speed, growth != NoiseGrowth::constant,
-          growth == NoiseGrowth::with_speed_and_acceleration};
-}
+std::array<bool, 3> free_terms(NoiseGrowth growth);
 
 /// Sets the free terms of all three components from a vector of them: component by component.
-inline void set_free_terms(MotionNoise& noise, NoiseGrowth growth, Eigen::Index axis, const Eigen::VectorXd& terms) {
-  const std::array<bool, 3> free = free_terms(growth);
-  Eigen::Index next = 0;
-  noise.constant[axis] = free[0] ? terms[next++] : 0;
-  noise.per_speed[axis] = free[1] ? terms[next++] : 0;
-  noise.per_acceleration[axis] = free[2] ? terms[next++] : 0;
-}
+void set_free_terms(MotionNoise& noise, NoiseGrowth growth, Eigen::Index axis, const Eigen::VectorXd& terms);
 
 inline Eigen::Index count_free_terms(NoiseGrowth growth) {
   return growth == NoiseGrowth::with_speed_and_acceleration ? 3 : 1;
@@ -135,71 +55,31 @@ inline Eigen::Index count_free_terms(NoiseGrowth growth) {
 
 }  // namespace detail
 
+/// How the noise is fitted.
 struct NoiseFitOptions {
   PoseAccuracy accuracy = {};
-  Vec<3> scale{0.08, 0.04, 0.4};  // orders that count as speed 1 [m, m, rad]
+  Vec<3> scale{0.08, 0.04, 0.4};  // commands that count as speed 1 [m, m, rad]
 };
 
+/// Throws MotionError, naming the field.
+void check(const NoiseFitOptions& options);
+
 /// Log density of each cycle [nats], all components together. `parameters`: how many the motion model has.
-inline Eigen::ArrayXd cycle_log_densities(const MotionNoise& noise, std::span<const CycleDeviation> cycles,
-                                          const PoseAccuracy& accuracy, int parameters) {
-  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(cycles.size()));
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    sum += detail::component(cycles, axis, accuracy, noise, parameters)
-               .log_density(noise.shape,
-                            Vec<3>(noise.constant[axis], noise.per_speed[axis], noise.per_acceleration[axis]));
-  }
-  return sum;
-}
+Eigen::ArrayXd cycle_log_densities(const MotionNoise& noise, std::span<const CycleDeviation> cycles,
+                                   const PoseAccuracy& accuracy, int parameters);
 
 /// Noise of that shape and growth that makes the deviations of single cycles most likely. Components are independent,
 /// hence fitted one by one. `parameters`: how many the motion model has.
-inline MotionNoise fit_cycle_noise(std::span<const CycleDeviation> cycles, NoiseShape shape, NoiseGrowth growth,
-                                   const NoiseFitOptions& options, int parameters) {
-  MotionNoise noise{.shape = shape, .scale = options.scale};
-  const Eigen::Index free = detail::count_free_terms(growth);
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const detail::ComponentDeviations data = detail::component(cycles, axis, options.accuracy, noise, parameters);
-    const double typical = std::max(std::sqrt(data.size.square().mean()), 1e-9);
-    const auto cost = [&](const Eigen::VectorXd& terms) {
-      MotionNoise candidate;
-      detail::set_free_terms(candidate, growth, axis, typical * terms);
-      return -data.log_density(shape, Vec<3>(candidate.constant[axis], candidate.per_speed[axis],
-                                             candidate.per_acceleration[axis]))
-                  .mean();
-    };
-    CmaEsOptions search{.box_sigma = 0.1, .max_evaluations = 2000};
-    search.tolerances.fun = 1e-7;
-    search.tolerances.x = 1e-4;
-    const Box<Eigen::Dynamic> box(Eigen::VectorXd::Zero(free), Eigen::VectorXd::Constant(free, 8));
-    const CmaEsResult found =
-        cma_es(cost, Eigen::VectorXd::Constant(free, 1.2 / static_cast<double>(free)), box, search, Serial{}, 1);
-    detail::set_free_terms(noise, growth, axis, typical * found.best);
-  }
-  return noise;
-}
+MotionNoise fit_cycle_noise(std::span<const CycleDeviation> cycles, NoiseShape shape, NoiseGrowth growth,
+                            const NoiseFitOptions& options, int parameters);
 
 /// Normal noise of that growth that makes the measured poses most likely, however often they were measured. `start`
 /// gives the first guess of its size. Cost: some hundred times all innovations.
-template <MotionModel M>
-MotionNoise fit_pose_noise(const M& model, std::span<const WalkSequence> sequences, NoiseGrowth growth,
-                           const NoiseFitOptions& options, const Vec<3>& start = {0.01, 0.01, 0.05}) {
-  const Eigen::Index free = detail::count_free_terms(growth);
-  const auto noise_of = [&](const Eigen::VectorXd& terms) {  // logarithms, in units of `start`
-    MotionNoise noise{.shape = NoiseShape::gaussian, .scale = options.scale};
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      detail::set_free_terms(noise, growth, axis, start[axis] * terms.segment(axis * free, free).array().exp());
-    }
-    return noise;
-  };
-  const auto cost = [&](const Eigen::VectorXd& terms) {
-    // What the poses do not tell stays near the first guess: by a factor of e or so.
-    return -log_likelihood(model, noise_of(terms), options.accuracy, sequences) + 0.5 * terms.squaredNorm();
-  };
-  CmaEsOptions search{.max_evaluations = 3000};
-  search.tolerances.fun = 1e-4;
-  search.tolerances.x = 1e-3;
-  return noise_of(cma_es(cost, Eigen::VectorXd::Zero(3 * free), 1.0, search, Serial{}, 1).best);
-}
+MotionNoise fit_pose_noise(const AnyMotionModel& model, std::span<const WalkSequence> sequences, NoiseGrowth growth,
+                           const NoiseFitOptions& options, const Vec<3>& start = {0.01, 0.01, 0.05});
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/motion/fit/noise_fit.ipp"
+#endif

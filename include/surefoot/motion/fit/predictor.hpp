@@ -1,13 +1,16 @@
-// A motion model fitted for nothing but its predictions of final poses: what cross-validation repeats some thousand
+// Fits of a motion model for nothing but its predictions of final poses: what cross-validation repeats some thousand
 // times.
 #pragma once
 
 #include <cstdint>
 #include <span>
 
-#include "surefoot/core/executor.hpp"
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/motion/any_motion_model.hpp"
 #include "surefoot/motion/calibrate.hpp"
 #include "surefoot/motion/fit/published_fit.hpp"
+#include "surefoot/motion/noise.hpp"
+#include "surefoot/motion/walk_sequence.hpp"
 
 namespace surefoot {
 
@@ -22,14 +25,12 @@ struct PredictorOptions {
   PublishedFitOptions published = {};
 };
 
-/// Fits to these sequences; `noise` sets the weights of the likelihood.
-template <MotionModel M>
-M fit_predictor(std::span<const WalkSequence> sequences, const MotionNoise& noise, const PredictorOptions& options,
-                std::uint64_t seed) {
-  if (options.method == FitMethod::published) {
-    return published_fit<M>(sequences, options.published, Serial{}, seed).model;
-  }
-  return fit_model<M>(sequences, noise, options.calibration.model).model;
-}
+/// Fits to these sequences, from `start` on; `noise` sets the weights of the likelihood.
+AnyMotionModel fit_predictor(const AnyMotionModel& start, std::span<const WalkSequence> sequences,
+                             const MotionNoise& noise, const PredictorOptions& options, std::uint64_t seed);
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/motion/fit/predictor.ipp"
+#endif

@@ -1,20 +1,19 @@
-// The calibration as it was published: CMA-ES on a weighted average of the errors of final positions and headings.
+// Calibration as it was published: CMA-ES on a weighted average of the errors of final positions and headings.
 // Hofer and Rouxel, "An Operational Method Toward Efficient Walk Control Policies for Humanoid Robots", ICAPS 2017,
 // section 4. Needs no idea of the noise; sees final poses only. Cost: one displacement per cycle and evaluation, some
 // thousand evaluations.
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 #include <span>
 #include <stop_token>
 #include <utility>
 
+#include "surefoot/core/compiled.hpp"
 #include "surefoot/core/executor.hpp"
-#include "surefoot/motion/motion_model.hpp"
+#include "surefoot/motion/any_motion_model.hpp"
 #include "surefoot/motion/walk_sequence.hpp"
 #include "surefoot/optimize/cma_es.hpp"
 
@@ -26,6 +25,17 @@ struct PublishedFitOptions {
   std::uint64_t max_evaluations = 100'000;
 };
 
+/// Throws MotionError, naming the field.
+void check(const PublishedFitOptions& options);
+
+/// A fit of a model whose type is known at run time only.
+struct AnyPublishedFit {
+  AnyMotionModel model;
+  double fitness = 0;
+  FinalPoseError error = {};  // over the sequences it was fitted to, with that tolerance
+  std::uint64_t evaluations = 0;
+};
+
 template <MotionModel M>
 struct PublishedFit {
   M model;
@@ -35,36 +45,44 @@ struct PublishedFit {
 };
 
 /// Weighted average of the root mean square errors of final position [m] and heading [rad].
-template <MotionModel M>
-double published_fitness(const M& model, std::span<const WalkSequence> sequences,
-                         const PublishedFitOptions& options = {}) {
-  const FinalPoseError error = final_pose_error(model, sequences, options.heading_tolerance);
-  if (!std::isfinite(error.position)) return std::numeric_limits<double>::infinity();
-  const double heading = std::isnan(error.heading) ? 0 : error.heading;
-  return (1 - options.heading_weight) * error.position + options.heading_weight * heading;
-}
+double published_fitness(const AnyMotionModel& model, std::span<const WalkSequence> sequences,
+                         const PublishedFitOptions& options = {});
 
-/// Minimises published_fitness over the ranges of the parameters, from the default model on. Throws MotionError if a
-/// sequence cannot be used.
-template <MotionModel M, Executor E>
-PublishedFit<M> published_fit(std::span<const WalkSequence> sequences, const PublishedFitOptions& options,
-                              const E& executor, std::uint64_t seed, std::stop_token stop = {}) {
+namespace detail {
+
+CmaEsOptions published_search(const PublishedFitOptions& options);
+
+}  // namespace detail
+
+/// Minimises published_fitness over the ranges of the parameters, from `start` on. Throws MotionError if a sequence
+/// cannot be used.
+template <Executor E>
+AnyPublishedFit published_fit(const AnyMotionModel& start, std::span<const WalkSequence> sequences,
+                              const PublishedFitOptions& options, const E& executor, std::uint64_t seed,
+                              std::stop_token stop = {}) {
+  check(options);
   check(sequences);
-  constexpr int n = M::parameter_count;
-  const Box<n> box = parameter_box<M>();
-  const auto fitness = [&](const Eigen::VectorXd& p) {
-    return published_fitness(M::from_parameters(Vec<n>(p)), sequences, options);
+  const auto fitness = [&](const Eigen::VectorXd& parameters) {
+    return published_fitness(start.with_parameters(parameters), sequences, options);
   };
-  CmaEsOptions search{.box_sigma = 0.05, .max_evaluations = options.max_evaluations};
-  search.tolerances.fun = 1e-6;
-  search.tolerances.x = 1e-4;
-  const CmaEsResult found = cma_es(fitness, Eigen::VectorXd(M().parameters()),
-                                   Box<Eigen::Dynamic>(Eigen::VectorXd(box.low()), Eigen::VectorXd(box.high())), search,
-                                   executor, seed, std::move(stop));
-  PublishedFit<M> fit{.model = M::from_parameters(Vec<n>(found.best)), .fitness = found.best_value, .error = {}};
+  const CmaEsResult found = cma_es(fitness, start.parameters(), start.parameter_box(),
+                                   detail::published_search(options), executor, seed, std::move(stop));
+  AnyPublishedFit fit{.model = start.with_parameters(found.best), .fitness = found.best_value};
   fit.error = final_pose_error(fit.model, sequences, options.heading_tolerance);
   fit.evaluations = found.evaluations;
   return fit;
 }
 
+/// The same from the default model on.
+template <MotionModel M, Executor E>
+PublishedFit<M> published_fit(std::span<const WalkSequence> sequences, const PublishedFitOptions& options,
+                              const E& executor, std::uint64_t seed, std::stop_token stop = {}) {
+  const AnyPublishedFit fit = published_fit(AnyMotionModel(M()), sequences, options, executor, seed, std::move(stop));
+  return {.model = fit.model.as<M>(), .fitness = fit.fitness, .error = fit.error, .evaluations = fit.evaluations};
+}
+
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/motion/fit/published_fit.ipp"
+#endif

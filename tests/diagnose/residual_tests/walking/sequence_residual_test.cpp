@@ -4,30 +4,25 @@
 
 #include <cmath>
 
-#include "surefoot/diagnose/estimation/noise_regime.hpp"
 #include "surefoot/diagnose/estimation/data_split.hpp"
+#include "surefoot/diagnose/estimation/noise_regime.hpp"
 #include "tests/support/walking_robot.hpp"
 
-using namespace surefoot::diagnosis;
-
-using surefoot::Pose2;
-
+namespace surefoot::diagnosis {
 namespace {
 
 template <class Change>
-surefoot::Comparison structure_of(Change&& change, std::uint64_t seed) {
-  surefoot::BoundSimulator bound = surefoot::bind_simulator(toys::WalkingRobot{}, toys::walk_recordings(change, true, 60, seed));
-  const auto split = surefoot::split_recordings(bound.recordings, {}, 0.2, 4, seed);
-  surefoot::FitProblem problem;
+Comparison structure_of(Change&& change, std::uint64_t seed) {
+  BoundSimulator bound = bind_simulator(toys::WalkingRobot{}, toys::walk_recordings(change, true, 60, seed));
+  const auto split = split_recordings(bound.recordings, {}, 0.2, 4, seed);
+  FitProblem problem;
   problem.recordings = split.training;
-  const auto parallel = surefoot::serially();
-  surefoot::Fit fitted = surefoot::calibrate(bound, surefoot::nominal_hypothesis(bound), problem, 8, seed, parallel);
-  problem.weighting.whitening = surefoot::final_pose_whitening(bound, fitted.hypothesis, split.training, bound.integration);
-  fitted = surefoot::fit(bound, fitted.hypothesis, problem, parallel);
-  return surefoot::sequence_structure(bound, fitted.hypothesis, problem, split.folds, parallel);
+  const auto parallel = serially();
+  Fit fitted = calibrate(bound, nominal_hypothesis(bound), problem, 8, seed, parallel);
+  problem.weighting.whitening = final_pose_whitening(bound, fitted.hypothesis, split.training, bound.integration);
+  fitted = fit(bound, fitted.hypothesis, problem, parallel);
+  return sequence_structure(bound, fitted.hypothesis, problem, split.folds, parallel);
 }
-
-}  // namespace
 
 TEST_CASE("errors of a walk that obeys its model cannot be predicted") {
   int alarms = 0;
@@ -61,3 +56,6 @@ TEST_CASE("a patch of slippery floor can be predicted, though orders go to all s
   };
   CHECK(structure_of(slip, 5).p_value < 0.005);
 }
+
+}  // namespace
+}  // namespace surefoot::diagnosis

@@ -7,9 +7,7 @@
 
 #include "tests/support/fitted_walk.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 template <class Change>
@@ -50,10 +48,10 @@ TEST_CASE("slip by place: the same bits on any number of threads") {
 }
 
 TEST_CASE("the odds of a sum, if its terms may as well have the other sign") {
-  CHECK(detail::sign_flip_p_value({1, 1, 1, 1, 1, 1, 1, 1, 1, 1}) == doctest::Approx(1.0 / 1024).epsilon(0.9));
-  CHECK(detail::sign_flip_p_value({1, -1, 2, -2}) > 0.3);
-  CHECK(detail::sign_flip_p_value({}) == 1);
+  CHECK(sign_flip_p_value({1, 1, 1, 1, 1, 1, 1, 1, 1, 1}) == doctest::Approx(1.0 / 1024).epsilon(0.9));
+  CHECK(sign_flip_p_value({1, -1, 2, -2}) > 0.3);
+  CHECK(sign_flip_p_value({}) == 1);
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis

@@ -200,7 +200,7 @@ SUREFOOT_INLINE Comparison sequence_structure(const BoundSimulator& bound, const
         });
       }
       off[i] = headings_only ? raw_residuals(bound, order[i], runs[i], cells)
-                             : weighed_residuals(bound, order[i], runs[i], cells, problem.weighting);
+                             : weighted_residuals(bound, order[i], runs[i], cells, problem.weighting);
       size += off[i].squaredNorm();
       const auto& whitening = problem.weighting.whitening;
       for (Eigen::Index step = 0; step + 1 < runs[i].states.cols(); ++step) {

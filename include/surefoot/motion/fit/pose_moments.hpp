@@ -7,8 +7,8 @@
 #include <cmath>
 #include <complex>
 
-#include "surefoot/core/vec.hpp"
 #include "surefoot/core/pose2.hpp"
+#include "surefoot/core/vec.hpp"
 
 namespace surefoot::detail {
 
@@ -16,13 +16,13 @@ namespace surefoot::detail {
 inline double shortening(double heading_variance) { return std::exp(-0.5 * heading_variance); }
 
 /// Covariance of a pose, and what is needed to carry it on: moments of z = x + i y and of the direction e^(i heading).
-class PoseSpread {
+class PoseMoments {
  public:
   /// The pose is known.
-  PoseSpread() = default;
+  PoseMoments() = default;
 
   /// Of a pose with this heading, jointly normal with that covariance.
-  PoseSpread(const Eigen::Matrix3d& covariance, double heading)
+  PoseMoments(const Eigen::Matrix3d& covariance, double heading)
       : heading_(covariance(2, 2)),
         square_(covariance(0, 0) + covariance(1, 1)),
         product_(covariance(0, 0) - covariance(1, 1), 2 * covariance(0, 1)),

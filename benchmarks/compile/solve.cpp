@@ -1,0 +1,34 @@
+// A user of the solver: a policy that swings up a pendulum with a weak motor, as in examples/minimal.
+#include "surefoot/solve.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+struct Pendulum {
+  static constexpr int state_dim = 2, action_dim = 1, feature_dim = 3;
+  using State = surefoot::Vec<2>;   // angle from upright [rad], speed [rad/s]
+  using Action = surefoot::Vec<1>;  // torque [N m]
+
+  surefoot::Box<2> state_box() const { return surefoot::Box<2>::symmetric(State(std::numbers::pi, 8)); }
+  surefoot::Box<1> action_box() const { return surefoot::Box<1>::symmetric(Action(2.0)); }
+  State initial_state(surefoot::Rng& rng) const { return {rng.uniform(-3, 3), rng.uniform(-1, 1)}; }
+  surefoot::Step<State> step(const State& state, const Action& action, surefoot::Rng& rng) const {
+    constexpr double dt = 0.05;  // [s]
+    const double torque = action_box().clamp(action)[0] + 0.1 * rng.normal();
+    const double speed = std::clamp(state[1] + (15 * std::sin(state[0]) + 3 * torque) * dt, -8.0, 8.0);
+    const double angle = std::remainder(state[0] + speed * dt, 2 * std::numbers::pi);
+    return {State(angle, speed), -(angle * angle + 0.1 * speed * speed), false};
+  }
+  surefoot::Vec<3> features(const State& state) const { return {std::cos(state[0]), std::sin(state[0]), state[1]}; }
+};
+static_assert(surefoot::Problem<Pendulum>);
+
+int main() {
+  const Pendulum pendulum;
+  const surefoot::Threads threads;
+  const auto result = surefoot::rfpi(pendulum, {.budget = {.seconds = 1}, .horizon = 200}, threads, /*seed*/ 1);
+  const auto cost = surefoot::evaluate(pendulum, result.policy, {.runs = 100, .horizon = 200}, threads, /*seed*/ 1);
+  std::printf("cost %.0f +- %.0f\n", -cost.mean, cost.half_width());
+}

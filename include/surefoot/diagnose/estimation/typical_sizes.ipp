@@ -1,0 +1,117 @@
+// Definitions of surefoot/diagnose/estimation/typical_sizes.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/hypothesis.hpp"
+#include "surefoot/diagnose/estimation/typical_sizes.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE Eigen::VectorXd output_deviations(const BoundSimulator& bound,
+                                                  const std::vector<std::size_t>& recordings) {
+  constexpr double rounding = 1e-12;  // of the mean: a deviation below it is none
+  Eigen::VectorXd deviations(static_cast<Eigen::Index>(bound.info.outputs.size()));
+  for (Eigen::Index k = 0; k < deviations.size(); ++k) {
+    double sum = 0, squares = 0, count = 0;
+    for (const std::size_t r : recordings) {
+      for (const double value : bound.recordings[r].outputs.row(k)) {
+        if (!std::isfinite(value)) continue;
+        sum += value;
+        squares += value * value;
+        ++count;
+      }
+    }
+    const double mean = count > 0 ? sum / count : 0;
+    const double deviation = count > 0 ? std::sqrt(std::max(0.0, squares / count - mean * mean)) : 0;
+    deviations[k] = deviation > rounding * (1 + std::abs(mean)) ? deviation : 1;
+  }
+  return deviations;
+}
+
+SUREFOOT_INLINE Eigen::MatrixXd row_rates(const Eigen::VectorXd& time, const Eigen::MatrixXd& states) {
+  const Eigen::Index intervals = std::max<Eigen::Index>(0, states.cols() - 1);
+  const Eigen::VectorXd steps = time.tail(intervals) - time.head(intervals);
+  const Eigen::MatrixXd changes = states.rightCols(intervals) - states.leftCols(intervals);
+  return changes * steps.cwiseInverse().asDiagonal();
+}
+
+/// Raises each peak to the largest absolute value of its row.
+SUREFOOT_INLINE void raise_peaks(std::vector<double>& peaks, const Eigen::MatrixXd& values) {
+  for (std::size_t k = 0; k < peaks.size(); ++k) {
+    for (const double value : values.row(static_cast<Eigen::Index>(k))) {
+      if (std::isfinite(value)) peaks[k] = std::max(peaks[k], std::abs(value));
+    }
+  }
+}
+
+/// Weighted sums of squares by row; about the mean of the row, or about zero.
+SUREFOOT_INLINE void add_squares(std::vector<double>& sums, const Eigen::MatrixXd& values, double weight,
+                                 bool about_mean) {
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    const auto line = values.row(static_cast<Eigen::Index>(k));
+    const double size = about_mean ? spread(line) : root_mean_square(line);
+    sums[k] += weight * size * size;
+  }
+}
+
+/// Roots of mean squares; 1 for what is always 0.
+SUREFOOT_INLINE void set_sizes(std::vector<double>& sizes, const std::vector<double>& sums, double weight) {
+  constexpr double nothing = 1e-9;  // in units of the model: below it, it does not move
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    const double size = weight > 0 ? std::sqrt(sums[k] / weight) : 1;
+    sizes[k] = size > nothing ? size : 1;
+  }
+}
+
+SUREFOOT_INLINE Sizes measure_sizes(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                    const std::vector<std::size_t>& recordings,
+                                    const std::vector<SimulatedRun>& trajectories) {
+  constexpr double time_rows = 200;  // rows of a typical time: what effects do within it, and over it, can be seen
+  Sizes sizes = bound.sizes;
+  const auto n = bound.info.states.size(), m = bound.info.inputs.size(), s = bound.info.signals.size();
+  std::vector<double> state(n), position(n), rate(n), effort(n), input(m), signal(s);
+  sizes.state_peak.assign(n, 0.0);
+  sizes.input_peak.assign(m, 0.0);
+  sizes.signal_peak.assign(s, 0.0);
+  double rows = 0, intervals = 0, duration = 0;
+  for (const std::size_t r : recordings) {
+    intervals += static_cast<double>(bound.recordings[r].rows() - 1);
+    duration += bound.recordings[r].duration();
+  }
+  sizes.time = intervals > 0 && duration > 0 ? time_rows * duration / intervals : 1;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const Recording& recording = bound.recordings[recordings[i]];
+    const Eigen::MatrixXd& states = trajectories[i].states;
+    if (!trajectories[i].finite) continue;
+    Eigen::MatrixXd efforts, signals;
+    bound.probe(bound, recordings[i], hypothesis.parameters, states, efforts, signals);
+    const auto weight = static_cast<double>(recording.rows());
+    rows += weight;
+    add_squares(state, states, weight, false);
+    add_squares(position, states, weight, true);
+    add_squares(rate, row_rates(recording.time, states), weight, false);
+    add_squares(effort, efforts, weight, bound.info.kind == SimulatorKind::map);
+    add_squares(input, recording.inputs, weight, false);
+    add_squares(signal, signals, weight, false);
+    raise_peaks(sizes.state_peak, states);
+    raise_peaks(sizes.input_peak, recording.inputs);
+    raise_peaks(sizes.signal_peak, signals);
+  }
+  set_sizes(sizes.state, state, rows);
+  set_sizes(sizes.position, position, rows);
+  set_sizes(sizes.rate, rate, rows);
+  set_sizes(sizes.effort, effort, rows);
+  set_sizes(sizes.input, input, rows);
+  set_sizes(sizes.signal, signal, rows);
+  const Eigen::VectorXd deviations = output_deviations(bound, recordings);
+  for (Eigen::Index k = 0; k < deviations.size(); ++k) sizes.output[static_cast<std::size_t>(k)] = deviations[k];
+  return sizes;
+}
+
+}  // namespace surefoot::diagnosis

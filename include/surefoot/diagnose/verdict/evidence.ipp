@@ -1,0 +1,49 @@
+// Definitions of surefoot/diagnose/verdict/evidence.hpp.
+#pragma once
+
+#include <cstdint>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/residual_tests/predictability.hpp"
+#include "surefoot/diagnose/residual_tests/walking/sequence_residual.hpp"
+#include "surefoot/diagnose/residual_tests/walking/slip_by_place.hpp"
+#include "surefoot/diagnose/verdict/evidence.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE VerdictEvidence gather_evidence(const EstimationSetup& setup, const FittedModels& models,
+                                                const Comparison& calibration, const VerdictCriteria& verdict,
+                                                const HeldOutCriteria& held_out, const Parallel& parallel,
+                                                std::uint64_t seed) {
+  const auto& [nominal, calibrated, chosen] = models;
+  const BoundSimulator& bound = setup.bound;
+  const auto& folds = setup.split.folds;
+  VerdictEvidence evidence;
+  evidence.noise = setup.noise;
+  evidence.effects_found = chosen.hypothesis.effects.size() > calibrated.hypothesis.effects.size();
+  evidence.calibration_gain = calibration.gain;
+  evidence.calibration_t = calibration.t;
+  if (setup.noise == NoiseKind::final_pose) {
+    evidence.sequence_p_value = sequence_structure(bound, chosen.hypothesis, setup.problem, folds, parallel).p_value;
+    return evidence;
+  }
+  evidence.structure_p_value = chosen.mismatch.p_value;
+  evidence.structure_share = chosen.mismatch.share;
+  const double before = calibrated.mismatch.energy;
+  evidence.structure_energy = before > 0 ? chosen.mismatch.energy / before : 0;
+  if (setup.noise == NoiseKind::measurement) {
+    const HeldOutExcess excess = held_out_excess(setup, calibrated, chosen, held_out);
+    evidence.held_out_share = excess.share;
+    evidence.held_out_ratio = excess.ratio;
+    return evidence;
+  }
+  if (is_unexplained(evidence, verdict)) return evidence;
+  const Comparison steps = residual_predictability(bound, chosen.hypothesis, setup.problem, folds, parallel, seed);
+  evidence.prediction = {steps.gain, steps.p_value};
+  if (is_unexplained(evidence, verdict)) return evidence;
+  const Comparison places = slip_by_place(bound, chosen.hypothesis, setup.problem, folds, parallel, seed);
+  evidence.by_place = {places.gain, places.p_value};
+  return evidence;
+}
+
+}  // namespace surefoot::diagnosis

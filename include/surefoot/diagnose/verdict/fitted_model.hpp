@@ -1,0 +1,49 @@
+// Fitted models: hypotheses with what they simulate, made once and handed on as values.
+#pragma once
+
+#include <vector>
+
+#include "surefoot/diagnose/estimation/data_split.hpp"
+#include "surefoot/diagnose/estimation/noise_regime.hpp"
+#include "surefoot/diagnose/residual_tests/mismatch.hpp"
+
+namespace surefoot::diagnosis {
+
+/// The subject of all estimates: recordings bound to the simulator, which of them are held out, what their noise is
+/// like, and how residuals are therefore weighted.
+struct EstimationSetup {
+  BoundSimulator bound;
+  RecordingSplit split;
+  NoiseKind noise = NoiseKind::measurement;
+  FitProblem problem = {};  // of the training recordings
+};
+
+/// Simulations by a model; each list goes with the training or the held-out recordings.
+struct ModelRuns {
+  std::vector<SimulatedRun> training, held_out;              // as the noise asks for (Integration::restart)
+  std::vector<SimulatedRun> whole_training, whole_held_out;  // from the initial states to the end
+};
+
+struct FittedModel {
+  Hypothesis hypothesis;  // with the initial states of all recordings
+  ModelRuns runs;
+  Mismatch mismatch;                     // of the training runs
+  std::vector<WhitenessTest> by_output;  // of the training runs
+};
+
+/// The model as it is, as it is calibrated, and with the effects that were chosen.
+struct FittedModels {
+  FittedModel nominal, calibrated, chosen;
+};
+
+/// Estimates the initial states of the held-out recordings and simulates everything; the mismatch is not measured.
+FittedModel simulate_model(const EstimationSetup& setup, const Hypothesis& hypothesis, const Parallel& parallel);
+
+/// The same with the mismatch.
+FittedModel fitted_model(const EstimationSetup& setup, const Hypothesis& hypothesis, const Parallel& parallel);
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/verdict/fitted_model.ipp"
+#endif

@@ -1,0 +1,41 @@
+// Preparation of recordings: screening, cuts where there are few, and initial states that a sensor read.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "surefoot/diagnose/verdict/fitted_model.hpp"
+
+namespace surefoot::diagnosis {
+
+struct PreparationCriteria {
+  std::size_t enough = 4;       // recordings that are left as they are: one to hold out, three to cross-validate
+  std::size_t folds = 4;        // of the cross-validation
+  std::size_t parts = 5;        // at least, of all recordings together
+  std::size_t fewest = 3;       // parts that are of more use than whole recordings
+  Eigen::Index part_rows = 20;  // least rows of a part
+  double initial_share = 0.2;   // of a state's root mean square: by how much it may be off at a cut
+  double least_initial = 1e-6;  // the same in units of the model, for a state that is always 0
+  double least_noise = 1e-6;    // of an output's standard deviation: a sensor without noise reads the state itself
+};
+
+/// Cuts few recordings into parts, so that some can be held out. States at the cuts are those of the calibrated
+/// simulation, to be estimated from there on; where an output reads a state it starts from the measurement.
+std::vector<Recording> cut_recordings(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                      const std::vector<SimulatedRun>& trajectories, std::size_t parts,
+                                      const PreparationCriteria& criteria = {});
+
+/// An initial state that was read off a sensor is known as well as that sensor reads: it is estimated, within its
+/// noise.
+void free_measured_initial_states(BoundSimulator& bound, const std::vector<std::size_t>& training,
+                                  const PreparationCriteria& criteria = {});
+
+/// At most `count` recordings, evenly chosen.
+std::vector<std::size_t> some_of(const std::vector<std::size_t>& recordings, std::size_t count);
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/verdict/prepare.ipp"
+#endif

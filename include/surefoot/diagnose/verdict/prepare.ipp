@@ -1,0 +1,67 @@
+// Definitions of surefoot/diagnose/verdict/prepare.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/typical_sizes.hpp"
+#include "surefoot/diagnose/residual_tests/whiteness.hpp"
+#include "surefoot/diagnose/verdict/prepare.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE std::vector<Recording> cut_recordings(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                      const std::vector<SimulatedRun>& trajectories, std::size_t parts,
+                                                      const PreparationCriteria& criteria) {
+  std::vector<Recording> result;
+  for (std::size_t r = 0; r < bound.recordings.size(); ++r) {
+    const Recording& whole = bound.recordings[r];
+    const Eigen::MatrixXd& states = trajectories[r].states;
+    for (std::size_t part = 0; part < parts; ++part) {
+      const auto count = static_cast<Eigen::Index>(parts), k = static_cast<Eigen::Index>(part);
+      const Eigen::Index from = whole.rows() * k / count, to = whole.rows() * (k + 1) / count;
+      if (to - from < criteria.part_rows) continue;
+      Eigen::VectorXd initial = states.col(from), scale(initial.size());
+      for (Eigen::Index i = 0; i < initial.size(); ++i) {
+        scale[i] = std::max(criteria.initial_share * root_mean_square(states.row(i)), criteria.least_initial);
+        const int output = bound.structure.output_of[static_cast<std::size_t>(i)];
+        if (output < 0) continue;
+        const double measured = whole.outputs(output, from);
+        if (std::isfinite(measured)) initial[i] = measured;
+      }
+      Recording one = part_of(whole, from, to, initial, scale);
+      if (part == 0) one.initial = hypothesis.initial[r];
+      result.push_back(std::move(one));
+    }
+  }
+  return result;
+}
+
+SUREFOOT_INLINE void free_measured_initial_states(BoundSimulator& bound, const std::vector<std::size_t>& training,
+                                                  const PreparationCriteria& criteria) {
+  const Eigen::VectorXd deviations = output_deviations(bound, training);
+  for (std::size_t i = 0; i < bound.info.states.size(); ++i) {
+    const int output = bound.structure.output_of[i];
+    if (output < 0) continue;
+    const double noise = noise_of(bound, training, output), deviation = deviations[output];
+    for (Recording& recording : bound.recordings) {
+      const auto state = static_cast<Eigen::Index>(i);
+      if (recording.initial_scale[state] > 0 || recording.initial[state] != recording.outputs(output, 0)) continue;
+      if (noise > criteria.least_noise * deviation) recording.initial_scale[state] = noise;
+    }
+  }
+}
+
+SUREFOOT_INLINE std::vector<std::size_t> some_of(const std::vector<std::size_t>& recordings, std::size_t count) {
+  if (recordings.size() <= count) return recordings;
+  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < count; ++i) result.push_back(recordings[i * recordings.size() / count]);
+  return result;
+}
+
+}  // namespace surefoot::diagnosis
