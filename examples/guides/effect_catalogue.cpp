@@ -51,18 +51,18 @@ struct Shown {
 template <class Machine>
 Shown simulate(const Effect& effect, const Form& form, const std::string& place) {
   const Machine machine;
-  const surefoot::Recording orders = Machine::orders();
+  const surefoot::Recording commands = Machine::commands();
   const surefoot::Integration fine{.step = 0.0025};
   surefoot::Augmented changed{.integration = fine};
   changed.effects = {{.name = effect.name, .attached_to = place, .form = effect.form, .values = form.values}};
-  Shown shown{.without = simulate_augmented(machine, {.integration = fine}, orders),
-              .with = simulate_augmented(machine, changed, orders),
-              .time = orders.time,
+  Shown shown{.without = simulate_augmented(machine, {.integration = fine}, commands),
+              .with = simulate_augmented(machine, changed, commands),
+              .time = commands.time,
               .place = place};
   const surefoot::SimulatorInfo info = machine.info();
   shown.time_unit = info.kind == surefoot::SimulatorKind::map ? "step" : "time [s]";
   shown.reading = info.outputs[0].name + " [" + info.outputs[0].unit + "]";
-  const std::vector<std::string> units = units_of(machine, changed.effects[0], orders);
+  const std::vector<std::string> units = units_of(machine, changed.effects[0], commands);
   for (std::size_t i = 0; i < units.size(); ++i) shown.units[effect.parameters[i].name] = units[i];
   return shown;
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The blind benchmark on many processes, one case after the other in each; then benchmarks/blind/run.sh scores them.
-#   benchmarks/mpi/concealed.sh --seed S [--processes N] [--cases N] [--families LIST]
+#   benchmarks/mpi/blind.sh --seed S [--processes N] [--cases N] [--families LIST]
 # Case k is process k modulo N's. Cases that have a result are left out, so that the same command resumes. All processes
 # must see the same results folder. MPI options (machines, binding) go into $SUREFOOT_MPIRUN, by default "mpirun".
 set -euo pipefail
@@ -12,7 +12,7 @@ results=${SUREFOOT_RESULTS_DIR:-results}
 # --share OUT BUILD: what each process does.
 if [[ ${1:-} == --share && $# == 3 ]]; then
   out=$2 build=$3 rank=${OMPI_COMM_WORLD_RANK:-${PMI_RANK:-}} size=${OMPI_COMM_WORLD_SIZE:-${PMI_SIZE:-}} number=0
-  [[ -n $rank && -n $size ]] || { echo "concealed.sh: --share is for processes that mpirun starts" >&2; exit 2; }
+  [[ -n $rank && -n $size ]] || { echo "blind.sh: --share is for processes that mpirun starts" >&2; exit 2; }
   for folder in "$out"/cases/case_*; do
     result=$out/results/surefoot-diagnose/${folder##*/}
     if ((number++ % size != rank)) || [[ -e $result/diagnosis.json ]]; then continue; fi
@@ -34,14 +34,14 @@ processes=$(nproc) cases=200 seed='' families=servo,carriage,tanks,walk,walk_fin
 while (($#)); do
   case $1 in
     --processes | --cases | --seed | --families)
-      (($# > 1)) || { echo "concealed.sh: $1 needs a value" >&2; exit 2; }
+      (($# > 1)) || { echo "blind.sh: $1 needs a value" >&2; exit 2; }
       declare "${1#--}=$2"
       shift 2 ;;
-    *) echo "concealed.sh: unknown option $1; known: --seed S, --processes N, --cases N, --families LIST" >&2; exit 2 ;;
+    *) echo "blind.sh: unknown option $1; known: --seed S, --processes N, --cases N, --families LIST" >&2; exit 2 ;;
   esac
 done
 for number in processes cases seed; do
-  [[ ${!number} =~ ^[1-9][0-9]*$ ]] || { echo "concealed.sh: --$number needs a positive whole number, not '${!number}'" >&2; exit 2; }
+  [[ ${!number} =~ ^[1-9][0-9]*$ ]] || { echo "blind.sh: --$number needs a positive whole number, not '${!number}'" >&2; exit 2; }
 done
 
 source cmake/packages.sh
@@ -60,5 +60,5 @@ if [[ ! -e $out/plants.txt || $(<"$out/plants.txt") != "$asked" ]]; then
 fi
 mkdir -p "$out/results/surefoot-diagnose"
 read -ra mpirun <<<"${SUREFOOT_MPIRUN:-mpirun}"
-"${mpirun[@]}" -n "$processes" benchmarks/mpi/concealed.sh --share "$out" "$build"
+"${mpirun[@]}" -n "$processes" benchmarks/mpi/blind.sh --share "$out" "$build"
 benchmarks/blind/run.sh --cases "$cases" --seed "$seed" --families "$families" --jobs "$processes"
