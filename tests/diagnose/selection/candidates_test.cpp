@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/effects/constant_rate.hpp"
+#include "surefoot/diagnose/effects/leak.hpp"
+#include "surefoot/diagnose/effects/overflow.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
 namespace surefoot::diagnosis {
