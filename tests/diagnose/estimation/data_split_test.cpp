@@ -64,7 +64,7 @@ TEST_CASE("the same seed gives the same split, another seed another one") {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const RecordingSplit one = split_recordings(named(12), {}, 0.25, 4, seed);
     CHECK(one.folds == split_recordings(named(12), {}, 0.25, 4, seed).folds);
-    tests.insert(one.test);
+    tests.insert(one.held_out);
   }
   CHECK(tests.size() > 10);
 }

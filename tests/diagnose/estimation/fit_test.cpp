@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
-#include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/effects/leak.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/selection/candidates.hpp"

@@ -3,7 +3,9 @@
 
 #include <doctest/doctest.h>
 
-#include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/effects/first_order_lag.hpp"
+#include "surefoot/diagnose/effects/overflow.hpp"
+#include "surefoot/diagnose/effects/stribeck_friction.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/selection/candidates.hpp"
 #include "tests/diagnose/small_simulators.hpp"

@@ -3,7 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/effects/constant_rate.hpp"
+#include "surefoot/diagnose/effects/sensor_drift.hpp"
 #include "surefoot/diagnose/selection/candidates.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/effects/constant_force.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 #include "tests/support/servo_pendulum.hpp"

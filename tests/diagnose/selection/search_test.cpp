@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/effects/constant_rate.hpp"
+#include "surefoot/diagnose/effects/sensor_bias.hpp"
+#include "surefoot/diagnose/effects/sensor_drift.hpp"
 #include "surefoot/diagnose/selection/candidates.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 

@@ -3,7 +3,9 @@
 
 #include <doctest/doctest.h>
 
-#include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/effects/constant_rate.hpp"
+#include "surefoot/diagnose/effects/leak.hpp"
+#include "surefoot/diagnose/effects/sensor_bias.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
 namespace surefoot::diagnosis {
