@@ -40,10 +40,11 @@ std::string verdict_part(const Diagnosis& d) {
   if (std::isfinite(d.held_out_forest))
     html += tile(rounded(d.held_out_forest), "error of a forest instead of effects");
   if (std::isfinite(d.noise_floor)) html += tile(rounded(d.noise_floor), "noise floor");
-  html += tile(std::to_string(d.held_out.size()), "recordings kept aside for these figures");
+  html += tile(std::to_string(d.held_out.size()), "held-out recordings, for these figures");
   return html +
          "</div>\n<p class=\"note\">Errors are those of whole simulations of recordings that were used neither to fit "
-         "nor to choose (they may only veto), in units of the noise, or of the spread of the output where the noise is "
+         "nor to choose (they may only reject the choice), in units of the noise, or of the standard deviation of the "
+         "output where the noise is "
          "unknown.</p>\n";
 }
 
@@ -65,7 +66,7 @@ std::string where_part(const Diagnosis& d, const std::string& unit) {
                    rounded(effects ? channel.rmse_after : channel.noise) + unit, p_text(channel.p_value)});
     }
     html +=
-        "</table>\n<p class=\"note\">Root mean square errors on the recordings kept aside; \"by chance\": the "
+        "</table>\n<p class=\"note\">Root mean square errors on held-out recordings; \"by chance\": the "
         "probability that the "
         "calibrated model is off like this by noise alone.</p>\n";
   }
@@ -114,8 +115,8 @@ std::string limits_part(const Diagnosis& d) {
 std::string curves_part(const Diagnosis& d, const std::vector<Picture>& pictures) {
   std::string html;
   if (!pictures.empty())
-    html += std::string(d.effects.empty() ? "<h2>Simulated and measured, recordings kept aside</h2>"
-                                          : "<h2>Before and after, recordings kept aside</h2>") +
+    html += std::string(d.effects.empty() ? "<h2>Simulated and measured, held-out recordings</h2>"
+                                          : "<h2>Before and after, held-out recordings</h2>") +
             "\n<div class=\"charts\">\n";
   for (const Picture& picture : pictures) {
     html += "<figure>" + element("figcaption", picture.caption) + picture.svg + "</figure>\n";
@@ -123,7 +124,7 @@ std::string curves_part(const Diagnosis& d, const std::vector<Picture>& pictures
   if (!pictures.empty()) html += "</div>\n";
   if (d.per_recording.empty()) return html;
   const bool effects = !d.effects.empty();
-  html += "<h2>Error of each recording kept aside</h2>\n<table>\n" +
+  html += "<h2>Error of each held-out recording</h2>\n<table>\n" +
           row(effects ? std::vector<std::string>{"recording", "before", "after", "ratio"}
                       : std::vector<std::string>{"recording", "error"},
               "th");
@@ -185,7 +186,7 @@ std::string next_part(const Diagnosis& d) {
 std::string forest_part(const surefoot::ForestResidual& forest) {
   if (!forest.tried) return "";
   std::string html = "<h2>A forest in place of physics</h2>\n";
-  const std::string figures = "On the recordings kept aside the error is " + rounded(forest.held_out_after) +
+  const std::string figures = "On held-out recordings the error is " + rounded(forest.held_out_after) +
                               " with it and " + rounded(forest.held_out_before) + " without.";
   if (!forest.kept) {
     return html + paragraph(
@@ -250,7 +251,7 @@ std::string list_of(const std::vector<std::string>& names) {
 std::string remarks_part(const Diagnosis& d) {
   std::string html = "<h2>The recordings</h2>\n";
   html += paragraph("To fit: " + list_of(d.fit) + ".") + paragraph("To choose: " + list_of(d.select) + ".") +
-          paragraph("Kept aside: " + list_of(d.held_out) + ".");
+          paragraph("Held out: " + list_of(d.held_out) + ".");
   constexpr std::size_t most = 40;
   if (!d.remarks.empty()) html += "<ul>\n";
   for (std::size_t i = 0; i < std::min(most, d.remarks.size()); ++i) {

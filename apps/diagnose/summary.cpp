@@ -32,7 +32,7 @@ std::string summary(const surefoot::Diagnosis& d, const std::filesystem::path& o
   }
   if (!changed.empty()) text << "  calibrated  " << changed << '\n';
   if (!d.held_out.empty()) {
-    text << "  on " << d.held_out.size() << " recording(s) kept aside: error " << rounded(d.held_out_before);
+    text << "  on " << d.held_out.size() << " held-out recording(s): error " << rounded(d.held_out_before);
     if (!d.effects.empty()) text << " before, " << rounded(d.held_out_after) << " after";
     text << "; forest " << rounded(d.held_out_forest) << ", noise floor " << rounded(d.noise_floor) << '\n';
   }

@@ -33,7 +33,7 @@ bool mentions(const std::vector<Remark>& remarks, const std::string& text) {
                      [&](const Remark& remark) { return remark.text.find(text) != std::string::npos; });
 }
 
-TEST_CASE("wild single samples are taken out, those and no others, and named") {
+TEST_CASE("single outliers are taken out, those and no others, and named") {
   Recording recording = tank();
   const Eigen::MatrixXd clean = recording.outputs;
   for (const Eigen::Index row : {50, 51 + 70, 300}) recording.outputs(0, row) += row == 300 ? -3 : 2;
@@ -41,13 +41,13 @@ TEST_CASE("wild single samples are taken out, those and no others, and named") {
   CHECK(remarks.size() == 3);
   CHECK(mentions(remarks, "level_m at time 2.5 "));
   for (Eigen::Index row = 0; row < 400; ++row) {
-    const bool wild = row == 50 || row == 121 || row == 300;
-    CHECK(std::isnan(recording.outputs(0, row)) == wild);
-    if (!wild) CHECK(recording.outputs(0, row) == clean(0, row));
+    const bool outlier = row == 50 || row == 121 || row == 300;
+    CHECK(std::isnan(recording.outputs(0, row)) == outlier);
+    if (!outlier) CHECK(recording.outputs(0, row) == clean(0, row));
   }
 }
 
-TEST_CASE("steps, slow swings, noise and short pulses of two rows are not wild") {
+TEST_CASE("steps, slow swings, noise and short pulses of two rows are no outliers") {
   Recording plain = tank();
   CHECK(remove_outliers(info, plain).empty());
   Recording stepping = tank();

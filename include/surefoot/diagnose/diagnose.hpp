@@ -33,9 +33,10 @@ Diagnosis run_pipeline(const std::function<BoundSimulator(std::vector<Recording>
 
 /// Diagnoses a simulator against recordings of the machine it is meant to be. Throws DiagnoseError if an option or a
 /// recording does not fit. After `stop` is requested it ends soon, with what is known by then (complete = false).
-template <Simulator S, Executor E>
+template <class S, Executor E>
 Diagnosis diagnose(const S& simulator, std::span<const Recording> recordings, const DiagnoseOptions& options,
                    const E& executor, std::uint64_t seed, std::stop_token stop = {}) {
+  static_assert(explain_simulator<S>().empty(), "S is no Simulator; explain_simulator<S>() says what it lacks");
   const auto bind = [&simulator](std::vector<Recording> some) {
     return diagnosis::bind_simulator(simulator, std::move(some));
   };

@@ -27,6 +27,7 @@ SUREFOOT_INLINE void check(const DiagnoseOptions& options) {
     if (options.more_effects[i].name.empty()) {
       fail("more_effects[" + std::to_string(i) + "] has no name: give it one, results and reports speak of it by name");
     }
+    check(options.more_effects[i]);
   }
   std::vector<Effect> every = all_effects();
   every.insert(every.end(), options.more_effects.begin(), options.more_effects.end());

@@ -1,23 +1,15 @@
-// A forest that has learned what a simulator leaves of its outputs, as a value and as a file.
+// Residual model: a forest that has learned what a simulator leaves of its outputs, as a value and as a file.
 //
 // File, little-endian: char[8] "SUREFRES", u32 version (1), u32 features, u32 outputs, the name of each feature and of
 // each output (u64 length, characters), f64 scale of each output, the forest (see forest/serialize.hpp), u64 checksum.
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "surefoot/core/binary.hpp"
 #include "surefoot/forest/forest.hpp"
-#include "surefoot/forest/serialize.hpp"
 
 namespace surefoot {
 
@@ -29,13 +21,6 @@ struct ResidualModel {
   Eigen::VectorXd scale;                       // by output, in its unit: what a forest's output of 1 is
   ResidualForest forest;
 };
-
-namespace detail {
-
-constexpr std::string_view residual_magic = "SUREFRES";
-constexpr std::uint32_t residual_version = 1;
-
-}  // namespace detail
 
 void save_residual_model(const ResidualModel& model, const std::filesystem::path& path);
 

@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -19,6 +18,13 @@
 #include "surefoot/forest/serialize.hpp"
 
 namespace surefoot {
+
+namespace detail {
+
+inline constexpr std::string_view residual_magic = "SUREFRES";
+inline constexpr std::uint32_t residual_version = 1;
+
+}  // namespace detail
 
 SUREFOOT_INLINE void save_residual_model(const ResidualModel& model, const std::filesystem::path& path) {
   ByteWriter out;

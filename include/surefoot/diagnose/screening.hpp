@@ -1,5 +1,5 @@
-// Screens recordings before anything is fitted: wild single samples, channels that never move, time stamps, and what is
-// therefore impossible to see.
+// Screening of recordings before anything is fitted: single outliers, channels that never move, time stamps, and what
+// is therefore impossible to see.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ namespace surefoot {
 /// Throws a DiagnoseError that names recording and channel unless sizes agree, inputs are finite and time rises.
 void check_recording(const SimulatorInfo& info, const Recording& recording);
 
-/// Takes single wild samples out (as not measured) and says so: values far from both neighbours, which agree.
+/// Takes single outliers out (as not measured) and says so: values far from both neighbours, which agree.
 std::vector<Remark> remove_outliers(const SimulatorInfo& info, Recording& recording);
 
 /// What cannot be seen in these recordings.

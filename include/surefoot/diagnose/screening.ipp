@@ -71,7 +71,7 @@ SUREFOOT_INLINE std::vector<Remark> remove_outliers(const SimulatorInfo& info, R
       if (!(bend > limit) || std::abs(y[i + 1] - y[i - 1]) > 0.5 * bend) continue;
       recording.outputs(k, i) = std::numeric_limits<double>::quiet_NaN();
       char text[200];
-      std::snprintf(text, sizeof text, "one wild sample of %s at time %.4g (%.4g between %.4g and %.4g) was taken out",
+      std::snprintf(text, sizeof text, "one outlier of %s at time %.4g (%.4g between %.4g and %.4g) was taken out",
                     info.outputs[static_cast<std::size_t>(k)].name.c_str(), recording.time[i], y[i], y[i - 1],
                     y[i + 1]);
       remarks.push_back({recording.name, text});

@@ -1,4 +1,4 @@
-// The concept of a simulator that can be diagnosed: any plain struct with equations of motion.
+// Concept of a simulator that can be diagnosed: any plain struct with equations of motion.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "surefoot/diagnose/recording.hpp"
@@ -107,5 +108,46 @@ concept Simulator = std::copyable<S> &&
     { simulator.next(x, u, p) } -> std::convertible_to<typename S::State>;
   };
 };
+
+namespace detail {
+
+template <class V>
+concept ColumnVector = requires {
+  requires V::ColsAtCompileTime == 1;
+};
+
+}  // namespace detail
+
+/// One sentence about what S lacks to be a Simulator, the first thing in the order of the comment above; empty if it is
+/// one. For static_assert, and for people.
+template <class S>
+constexpr std::string_view explain_simulator() {
+  if constexpr (!std::copyable<S>) {
+    return "a simulator must be a value that can be copied: each recording and each thread gets one of its own";
+  } else if constexpr (!requires { typename S::State; }) {
+    return "the simulator needs `using State = surefoot::Vec<n>;`, n the number of its states";
+  } else if constexpr (!requires { typename S::Input; }) {
+    return "the simulator needs `using Input = surefoot::Vec<n>;`, n the number of its inputs";
+  } else if constexpr (!requires { typename S::Output; }) {
+    return "the simulator needs `using Output = surefoot::Vec<n>;`, n the number of its outputs";
+  } else if constexpr (!detail::ColumnVector<typename S::State> || !detail::ColumnVector<typename S::Input> ||
+                       !detail::ColumnVector<typename S::Output>) {
+    return "State, Input and Output of a simulator must be column vectors of Eigen, such as surefoot::Vec<2>";
+  } else if constexpr (!requires(const S& s) {
+                         { s.info() } -> std::convertible_to<SimulatorInfo>;
+                       }) {
+    return "the simulator needs `SimulatorInfo info() const`: its names, units, nominal values and bounds";
+  } else if constexpr (!requires(const S& s, const typename S::State& x, const typename S::Input& u,
+                                 const Eigen::VectorXd& p) {
+                         { s.observe(x, u, p) } -> std::convertible_to<typename S::Output>;
+                       }) {
+    return "the simulator needs `Output observe(const State& x, const Input& u, const Eigen::VectorXd& p) const`";
+  } else if constexpr (!Simulator<S>) {
+    return "the simulator needs its equations, `State derivative(const State& x, const Input& u, const "
+           "Eigen::VectorXd& p) const` (per second) or `State next(...) const` (one row to the next)";
+  } else {
+    return "";
+  }
+}
 
 }  // namespace surefoot

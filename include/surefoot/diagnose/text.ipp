@@ -21,9 +21,9 @@ SUREFOOT_INLINE std::string in_digits(double value) {
 SUREFOOT_INLINE std::string fill_sentence(std::string sentence, const std::string& place,
                                           const std::vector<FittedValue>& values) {
   const auto replace = [&sentence](const std::string& key, const std::string& text) {
-    const std::string mark = "{" + key + "}";
-    for (std::size_t at = sentence.find(mark); at != std::string::npos; at = sentence.find(mark, at + text.size())) {
-      sentence.replace(at, mark.size(), text);
+    const std::string field = "{" + key + "}";
+    for (std::size_t at = sentence.find(field); at != std::string::npos; at = sentence.find(field, at + text.size())) {
+      sentence.replace(at, field.size(), text);
     }
   };
   replace("at", place);

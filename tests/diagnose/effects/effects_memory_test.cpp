@@ -65,11 +65,11 @@ TEST_CASE("the play operator does nothing twice") {
   Rng rng(1);
   for (int i = 0; i < 100; ++i) {
     const double driven = uniform(rng, -1, 1), driver = uniform(rng, -1, 1), width = rng.uniform();
-    const double once = effects::play(driven, driver, width);
-    CHECK(effects::play(once, driver, width) == once);
+    const double once = effects::behind_gap(driven, driver, width);
+    CHECK(effects::behind_gap(once, driver, width) == once);
     CHECK(std::abs(once - driver) <= width + 1e-15);
   }
-  CHECK(effects::play(0.3, 0.5, 0.3) == 0.3);
+  CHECK(effects::behind_gap(0.3, 0.5, 0.3) == 0.3);
   CHECK(effects::beyond_gap(0.2, 0.3) == 0);
   CHECK(effects::beyond_gap(-0.5, 0.3) == doctest::Approx(-0.2));
 }
@@ -158,8 +158,7 @@ TEST_CASE("a free elastic joint swings at its frequency about the common centre"
 
 // Positions of two masses, coupled by a spring with a gap, the first (of unit inertia) on the spring of `Spring`, held
 // by dry friction; integrated apart from the library, in steps of 10 us.
-Eigen::VectorXd two_masses(const effects::TwoMasses& masses, double dry, int rows, double step, double q,
-                           double v) {
+Eigen::VectorXd two_masses(const effects::TwoMasses& masses, double dry, int rows, double step, double q, double v) {
   const double reduced = masses.ratio / (1 + masses.ratio), h = 1e-5;
   const double stiffness = reduced * masses.frequency * masses.frequency;
   const double damping = 2 * reduced * masses.damping * masses.frequency;

@@ -119,7 +119,7 @@ TEST_CASE("residuals of simulated recordings: each output is judged by itself") 
       fading = 0.6 * fading + 0.01 * rng.normal();
       recording.outputs(1, i) += fading;
     }
-    recording.outputs(0, 100) += 3;  // a wild sample
+    recording.outputs(0, 100) += 3;  // an outlier
     recordings.push_back(recording);
     all.push_back(static_cast<std::size_t>(r));
   }

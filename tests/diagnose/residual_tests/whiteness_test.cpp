@@ -88,7 +88,7 @@ TEST_CASE("an oscillation has structure, whatever its period") {
   }
 }
 
-TEST_CASE("wild single samples and gaps are no structure") {
+TEST_CASE("single outliers and gaps are no structure") {
   Remains r = remains(0, 0, 1);
   for (Recording& recording : r.bound.recordings) {
     for (Eigen::Index i = 50; i < 600; i += 100) recording.outputs(0, i) = 5;

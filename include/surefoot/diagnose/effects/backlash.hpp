@@ -1,9 +1,9 @@
-// Backlash: play between two parts, of which one moves the other only at either end of it.
-// M. Nordin, P.-O. Gutman: "Controlling mechanical systems with backlash - a survey", Automatica 38, 2002. The play
+// Backlash: a gap between two parts, of which one moves the other only at either end of it.
+// M. Nordin, P.-O. Gutman: "Controlling mechanical systems with backlash - a survey", Automatica 38, 2002. The gap
 // operator: M. A. Krasnosel'skii, A. V. Pokrovskii: "Systems with hysteresis", 1989, section 2.
-// Forms: "" - the equations see the position through the play; "gap" - a second inertia is coupled through a stiff
-// spring that engages at either end of the play; "motor" - the drive acts on an inertia before the play, and what the
-// equations and the sensor see is behind it; "sensor" - the sensor sees its quantity through the play.
+// Forms: "" - the equations see the position through the gap; "gap" - a second inertia is coupled through a stiff
+// spring that engages at either end of the gap; "motor" - the drive acts on an inertia before the gap, and what the
+// equations and the sensor see is behind it; "sensor" - the sensor sees its quantity through the gap.
 // Confusable with a delay (at one amplitude and frequency), with dry friction and hysteresis, which also lose motion at
 // each reversal, and with elasticity, which gives way but without a gap.
 #pragma once
@@ -16,12 +16,12 @@
 
 namespace surefoot::effects {
 
-/// Where a part ends that is moved by `driver` through a play of half_width, and was at `driven`.
-inline double play(double driven, double driver, double half_width) {
+/// Where a part ends that is moved by `driver` through a gap of half_width, and was at `driven`.
+inline double behind_gap(double driven, double driver, double half_width) {
   return std::min(std::max(driven, driver - half_width), driver + half_width);
 }
 
-/// HiddenStates: the position behind the play.
+/// Hidden states: the position behind the gap.
 inline Effect backlash() {
   return {.name = "backlash",
           .sentence = "backlash of {half_width} to either side at {at}",
@@ -37,9 +37,9 @@ inline Effect backlash() {
           .hidden_states = 1,
           .start = [](const EffectContext& m, Values, HiddenStates hidden) { hidden[0] = m.position; },
           .advance = [](const EffectContext& m, Values p,
-                        HiddenStates hidden) { hidden[0] = play(hidden[0], m.position, p[0]); },
+                        HiddenStates hidden) { hidden[0] = behind_gap(hidden[0], m.position, p[0]); },
           .seen_position = [](const EffectContext& m, Values p,
-                              Values hidden) { return play(hidden[0], m.position, p[0]); }};
+                              Values hidden) { return behind_gap(hidden[0], m.position, p[0]); }};
 }
 
 inline TwoMasses gap_joint(Values p) {
@@ -60,7 +60,7 @@ inline Effect backlash_gap() {
                 .high = 200,
                 .starts = {40, 90}}},
           .confusable_with = {"joint_elasticity", "hysteresis", "input_delay"},
-          .experiment = "quick reversals at two amplitudes, small ones inside the play",
+          .experiment = "quick reversals at two amplitudes, small ones inside the gap",
           .form = "gap",
           .hidden_states = 3,
           .force = [](const EffectContext& m, Values p, Values hidden) { return force_of(gap_joint(p), m, hidden); },
@@ -126,7 +126,7 @@ inline Effect backlash_sensor() {
           .sensor = [](const Series& series, Values p) {
             if (series.readings.empty()) return;
             double seen = series.readings[0];
-            for (double& reading : series.readings) reading = seen = play(seen, reading, p[0]);
+            for (double& reading : series.readings) reading = seen = behind_gap(seen, reading, p[0]);
           }};
 }
 

@@ -1,4 +1,4 @@
-// The catalogue: every effect that the library knows, by where it attaches. Effects of a user's own are values of the
+// Catalogue of every effect that the library knows, by where it attaches. Effects of a user's own are values of the
 // same type, appended to these.
 #pragma once
 
@@ -26,7 +26,7 @@ std::vector<Effect> planar_effects();
 /// On the parameters of the simulator.
 std::vector<Effect> parameter_effects();
 
-/// All of them, the more plausible first where two leave the same mark.
+/// All of them, the more plausible first where two have the same signature.
 std::vector<Effect> all_effects();
 
 }  // namespace surefoot

@@ -1,4 +1,4 @@
-// An effect: one piece of physics that a simulator may have left out. A value: what it is called, which parameters it
+// Effect: one piece of physics that a simulator may have left out. A value: what it is called, which parameters it
 // has, where it may attach, and what it does there. The library's own stand in effects/, one file each; users make
 // theirs the same way and hand them to diagnose() among the others.
 #pragma once
@@ -73,15 +73,16 @@ struct Effect {
       {};  // for people; "{level}" stands for the parameter of that name with its unit, "{at}" for the place
   Place place = Place::velocity;
   std::vector<EffectParameter> parameters = {};
-  std::vector<std::string> confusable_with = {};  // names of effects that leave a similar mark
+  std::vector<std::string> confusable_with = {};  // names of effects with a similar signature
   std::string experiment = {};                    // that shows this effect by itself
   std::string form = {};                          // tells variants of one name apart, mostly empty
 
   int hidden_states = 0;
   bool needs_drive = false;
   bool needs_damping = false;
-  bool is_impulsive = false;  // its mark does not grow in proportion: starts are ranked as they are, and not scaled
-  bool at_start = false;      // a sensor's fault that an initial state read off that sensor has, too
+  bool is_impulsive =
+      false;              // its signature does not grow in proportion: starts are ranked as they are, and not scaled
+  bool at_start = false;  // a sensor's fault that an initial state read off that sensor has, too
   bool needs_conserved_state =
       false;  // needs a state of which there is more or less (Place::state): no angle, and rates depend on it
   bool has_overflow_target = false;  // also tried with each other state as `other` (limit)
@@ -107,7 +108,7 @@ struct Effect {
   std::function<std::vector<double>(Values readings, Values simulated)> suggest = {};
   /// What position the equations see, for Place::velocity.
   std::function<double(const EffectContext&, Values p, Values hidden)> seen_position = {};
-  /// After each step: the state attached to, what it is the speed of, and for effects that spill another state.
+  /// After each step: the state attached to, what it is the speed of, and for effects that overflow into another state.
   std::function<void(Values p, double& value, double& position, double& other)> limit = {};
   /// What a sensor reads.
   std::function<void(const Series&, Values p)> sensor = {};
@@ -117,11 +118,15 @@ struct Effect {
   std::function<double(const EffectContext&, Values p)> factor = {};
 };
 
+/// Throws a DiagnoseError that names the effect and the first thing that cannot be: no name, no function that its place
+/// calls, one that it never calls, parameters without bounds or starting values, hidden states that nothing changes.
+void check(const Effect& effect);
+
 /// An effect at its place in one simulator.
 struct AttachedEffect {
   std::shared_ptr<const Effect> effect;
   int at = 0;         // index of the state, of the input (signals follow the inputs), of the output or of the parameter
-  int other = -1;     // another state, for effects that spill
+  int other = -1;     // another state, for effects that overflow into it
   std::string place;  // the name of what it is attached to
   int rank = 0;       // of the effect in the catalogue, which begins with the simplest
 
@@ -134,3 +139,7 @@ inline bool same_effect(const AttachedEffect& a, const AttachedEffect& b) {
 }
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/effects/effect.ipp"
+#endif

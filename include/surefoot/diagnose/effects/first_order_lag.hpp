@@ -1,7 +1,7 @@
 // An input that acts with a lag: time y' = u - y, y(0) = u(0). The equations get the mean of y over the step. Exact for
 // inputs that are held over a step, and stable for any step: with a = 1 - exp(-step/time)
 //   y <- y + a (mean u - y),   mean of y = u + (y - u) a time/step.
-// Memories: y at the end of the last step; integral of u over the present step.
+// Hidden states: y at the end of the last step; integral of u over the present step.
 // Confusable with a delay (the near twin), with a limited rate, and with an elastic joint.
 #pragma once
 

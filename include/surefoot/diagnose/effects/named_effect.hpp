@@ -1,9 +1,6 @@
 // Effects by name: how model files and generated code say them.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <memory>
 #include <string>
 #include <vector>
 

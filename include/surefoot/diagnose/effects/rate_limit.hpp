@@ -1,4 +1,4 @@
-// An input that follows its order by at most `rate` per second (or step): y moves to u by at most rate * step. The
+// An input that follows its command by at most `rate` per second (or step): y moves to u by at most rate * step. The
 // equations get the mean of y over the step. HiddenStates: y at the end of the last step.
 // Confusable with a lag (which is slow for small changes too) and with a delay.
 #pragma once

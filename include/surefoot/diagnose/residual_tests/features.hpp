@@ -1,4 +1,4 @@
-// What a mismatch may depend on: one table of features of the motion, row by row.
+// Table of features of the motion, row by row: everything that a mismatch may depend on.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// Locates a mismatch: the region of the motion, as a readable rule, and the stretches of time where most of it is.
+// Location of a mismatch: the region of the motion, as a readable rule, and the stretches of time where most of it is.
 #pragma once
 
 #include <Eigen/Core>

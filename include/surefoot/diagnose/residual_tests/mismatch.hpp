@@ -1,4 +1,4 @@
-// How much of what a model misses is not noise: residual structure over all outputs.
+// Share of what a model misses that is not noise: residual structure over all outputs.
 #pragma once
 
 #include <Eigen/Core>

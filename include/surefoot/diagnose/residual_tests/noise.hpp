@@ -1,4 +1,4 @@
-// What the noise of an output is like: white and of constant size, growing with speed, correlated from row to row. The
+// Noise of an output: white and of constant size, growing with speed, correlated from row to row. The
 // likelihood decides, on recordings not used for the fit; an error in the mean cannot show it.
 #pragma once
 

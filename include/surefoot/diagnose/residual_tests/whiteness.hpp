@@ -1,4 +1,4 @@
-// Detects that something is left: residuals of a good model are noise, which forgets itself within a few rows; what a
+// Test for anything that is left: residuals of a good model are noise, which forgets itself within a few rows; what a
 // model leaves out does not.
 #pragma once
 
@@ -32,7 +32,7 @@ double chi_square_tail(double value, double mean, double variance);
 
 /// Squared correlations of residuals over all lags of `from` to `to` rows (a portmanteau, after Box & Pierce 1970), so
 /// that slow errors and oscillations count alike. What noise alone would give is found by turning the signs of chunks
-/// of `from` rows at random, which keeps noise as it is if it forgets itself within that many. Wild single samples are
+/// of `from` rows at random, which keeps noise as it is if it forgets itself within that many. Single outliers are
 /// cut off. Cost: 40 * rows * lags.
 WhitenessTest test_whiteness(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
                              const std::vector<SimulatedRun>& trajectories, Eigen::Index output, Eigen::Index from,

@@ -1,4 +1,4 @@
-// How effects are attached to a run: each wherever it acts, with its parameters and its share of the hidden states.
+// Effects attached to a run: each wherever it acts, with its parameters and its share of the hidden states.
 #pragma once
 
 #include <Eigen/Core>
@@ -39,10 +39,10 @@ struct EffectSlot {
 
 /// The effects of a run by what they do; one that does several things stands in several groups.
 struct EffectSlots {
-  std::vector<EffectSlot> orders, delays;  // on inputs
-  std::vector<EffectSlot> taps;            // on signals inside the equations; `at` counts from the first signal
-  std::vector<EffectSlot> seen;            // on the positions that the equations see
-  std::vector<EffectSlot> forces, dry;     // on rates
+  std::vector<EffectSlot> commands, delays;  // on inputs
+  std::vector<EffectSlot> taps;              // on signals inside the equations; `at` counts from the first signal
+  std::vector<EffectSlot> seen;              // on the positions that the equations see
+  std::vector<EffectSlot> forces, dry;       // on rates
   std::vector<EffectSlot> planar, limits, updates;  // once after each step
   std::vector<EffectSlot> drifts;                   // on parameters, once in each row
   std::vector<EffectSlot> sensors;                  // once after the run

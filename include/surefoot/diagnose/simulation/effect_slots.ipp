@@ -39,7 +39,7 @@ SUREFOOT_INLINE EffectSlots assign_slots(const Augmentation& augmentation, const
       throw DiagnoseError("at most 24 hidden states of effects can be simulated at once");
     }
     if (effect.delay && attached.at < inputs) slots.delays.push_back(slot);
-    if (effect.signal && attached.at < inputs) slots.orders.push_back(slot);
+    if (effect.signal && attached.at < inputs) slots.commands.push_back(slot);
     if (effect.signal && attached.at >= inputs) {
       slots.taps.push_back(slot);
       slots.taps.back().at -= inputs;
@@ -55,7 +55,7 @@ SUREFOOT_INLINE EffectSlots assign_slots(const Augmentation& augmentation, const
     slots.hidden_rates = slots.hidden_rates || effect.hidden_rate;
   }
   slots.plain_rates =
-      slots.orders.empty() && slots.taps.empty() && slots.seen.empty() && slots.forces.empty() && slots.dry.empty();
+      slots.commands.empty() && slots.taps.empty() && slots.seen.empty() && slots.forces.empty() && slots.dry.empty();
   return slots;
 }
 

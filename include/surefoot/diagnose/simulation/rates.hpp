@@ -79,7 +79,7 @@ inline typename S::State seen_states(const AugmentedSimulator<S>& m, const typen
 template <Simulator S>
 typename S::State rates(AugmentedSimulator<S>& m, const typename S::State& x, const Hidden& z, typename S::Input u,
                         Hidden& dz, double t, double h, std::span<const Mode> modes) {
-  for (const EffectSlot& slot : m.slots.orders) u[slot.at] = through(m, slot, u[slot.at], z, dz, t, h);
+  for (const EffectSlot& slot : m.slots.commands) u[slot.at] = through(m, slot, u[slot.at], z, dz, t, h);
   const auto model = equations(m, seen_states(m, x, z, t, h), u, z, dz, t, h);
   auto rate = copied(model);
   if (m.slots.forces.empty() && modes.empty()) return rate;

@@ -1,4 +1,4 @@
-// Simulates a recording with a simulator and any effects attached to it.
+// Simulation of a recording with a simulator and any effects attached to it.
 //
 // ODEs: Runge-Kutta of order 4 or 2 (midpoint) between rows, one or more steps each. Dry friction is neither smoothed
 // nor stiff: within a step each velocity either slides in one direction or sticks (its force is then the one that holds
@@ -93,14 +93,14 @@ class SimulationRun {
   typename S::Output observe(const Point<S>& at, Eigen::Index row) {
     const EffectSlots& slots = m_.slots;
     u_.go_to(row);
-    if (slots.orders.empty() && slots.taps.empty() && slots.delays.empty()) {
+    if (slots.commands.empty() && slots.taps.empty() && slots.delays.empty()) {
       return m_.simulator.observe(at.x, u_.now(), m_.p);
     }
     const double t = recording_.time[row];
     const double h = row + 1 < recording_.rows() ? recording_.time[row + 1] - t : t - recording_.time[row - 1];
     Hidden dz = Hidden::Zero(slots.hidden);
     Input u = u_.between(t, h, 0);
-    for (const EffectSlot& slot : slots.orders) u[slot.at] = through(m_, slot, u[slot.at], at.z, dz, t, h);
+    for (const EffectSlot& slot : slots.commands) u[slot.at] = through(m_, slot, u[slot.at], at.z, dz, t, h);
     if constexpr (requires { m_.simulator.observe(at.x, u, m_.p, NoTap{}); }) {
       if (!slots.taps.empty()) return m_.simulator.observe(at.x, u, m_.p, tap_of(m_, at.z, dz, t, h));
     }

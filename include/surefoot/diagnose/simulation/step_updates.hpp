@@ -1,4 +1,4 @@
-// What effects do once in each step: hidden states that jump, limits, displacements in the plane; and the step of a
+// Actions of effects once in each step: hidden states that jump, limits, displacements in the plane; and the step of a
 // map, which is nothing else.
 #pragma once
 
@@ -50,7 +50,7 @@ void next_values(AugmentedSimulator<S>& m, typename S::Input u, Point<S>& now, d
                  const std::optional<PlanarInfo>& planar) {
   const auto before = now.x;
   Hidden dz = Hidden::Zero(m.slots.hidden);
-  for (const EffectSlot& slot : m.slots.orders) u[slot.at] = through(m, slot, u[slot.at], now.z, dz, t, 1);
+  for (const EffectSlot& slot : m.slots.commands) u[slot.at] = through(m, slot, u[slot.at], now.z, dz, t, 1);
   now.x = equations(m, before, u, now.z, dz, t, 1);
   for (const EffectSlot& slot : m.slots.forces) {
     EffectContext change = context(m, before[slot.at], t, 1);

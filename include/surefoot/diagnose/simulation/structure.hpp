@@ -1,4 +1,4 @@
-// What can be learned about a simulator by asking it: which state is the speed of which, which output reads which
+// Structure of a simulator, learned by asking it: which state is the speed of which, which output reads which
 // state, which signals the inputs drive, which states any rate depends on. And the typical sizes of everything in a set
 // of recordings, from which effects take their scales.
 #pragma once

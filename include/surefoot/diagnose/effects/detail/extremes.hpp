@@ -1,4 +1,4 @@
-// Where readings end: limits of a position or a level show as the largest or smallest values that were ever read.
+// Ends of readings: limits of a position or a level show as the largest or smallest values that were ever read.
 #pragma once
 
 #include <algorithm>

@@ -1,12 +1,13 @@
-// A motor that drives a load through a play: together they are what the equations move, but in two parts.
+// Motor behind backlash: it drives a load through a gap; together they are what the equations move, but in two parts.
 //
 // J is the inertia of both, `share` the motor's; D acts on the motor and L on the load, where both move at the speed v
 // of the load. The motor runs ahead by d, w = d', and `damping` is by how much D falls per unit of speed:
-//   w' = (D - damping w)/(share J) - L/((1 - share) J)   between the ends of the play.
+//   w' = (D - damping w)/(share J) - L/((1 - share) J)   between the ends of the gap.
 // There the parts neither give way nor rebound: w = 0 while w' points outwards. Momentum share J (v + w) of the motor
 // and (1 - share) J v of the load add up, hence on the equations of both as one
 //   force = -damping w - share J w'                      with the impulse w' of each end that is met,
-// which vanishes without play. Memories: d and w at the beginning of the step, and the same as they go on within it.
+// which vanishes without a gap. Hidden states: d and w at the beginning of the step, and the same as they go on within
+// it.
 #pragma once
 
 #include <algorithm>

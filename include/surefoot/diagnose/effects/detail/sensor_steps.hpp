@@ -1,4 +1,4 @@
-// In what steps a sensor may read: from readings that crowd around multiples of a step or, where noise behind the
+// Steps in which a sensor may read: from readings that crowd around multiples of a step or, where noise behind the
 // converter hides that, from errors that follow the sawtooth of a step.
 #pragma once
 

@@ -4,7 +4,7 @@
 // acceleration of the first by everything else:
 //   w' = -pull - a,   pull = f (f bend(d) + 2 damping w) in contact, else 0,   force = inertia ratio/(1 + ratio) pull,
 // f the frequency at which the two swing against each other. Solved in short substeps of its own within each step, so
-// that it is stable whatever integrates the simulator. Memories: d, w, speed of the first after the last step.
+// that it is stable whatever integrates the simulator. Hidden states: d, w, speed of the first after the last step.
 #pragma once
 
 #include <algorithm>
