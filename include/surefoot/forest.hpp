@@ -5,6 +5,7 @@
 #include "surefoot/forest/dataset.hpp"
 #include "surefoot/forest/distill.hpp"
 #include "surefoot/forest/export_c.hpp"
+#include "surefoot/forest/export_c_options.hpp"
 #include "surefoot/forest/extra_trees.hpp"
 #include "surefoot/forest/forest.hpp"
 #include "surefoot/forest/fraction_of_variance_unexplained.hpp"
@@ -15,4 +16,5 @@
 #include "surefoot/forest/serialize.hpp"
 #include "surefoot/forest/shrink.hpp"
 #include "surefoot/forest/training_report.hpp"
+#include "surefoot/forest/trees.hpp"
 #include "surefoot/forest/wrap_around.hpp"

@@ -15,7 +15,7 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/forest/dataset.hpp"
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/trees.hpp"
 #include "surefoot/forest/extra_trees.hpp"
 #include "surefoot/forest/forest.hpp"
 #include "surefoot/forest/fraction_of_variance_unexplained.hpp"

@@ -18,7 +18,7 @@
 #include "surefoot/core/vec.hpp"
 #include "surefoot/forest/evaluate/descend.hpp"
 #include "surefoot/forest/evaluate/descend_batch.hpp"
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/trees.hpp"
 #include "surefoot/forest/leaf.hpp"
 
 namespace surefoot {

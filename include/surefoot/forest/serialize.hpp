@@ -24,7 +24,7 @@
 
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/compiled.hpp"
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/trees.hpp"
 #include "surefoot/forest/forest.hpp"
 #include "surefoot/forest/leaf.hpp"
 

@@ -1,4 +1,4 @@
-// Shrinks a forest to a budget in bytes or time, in whichever way loses least.
+// A forest shrunk to a budget in bytes or time, in whichever way loses least.
 #pragma once
 
 #include <Eigen/Core>

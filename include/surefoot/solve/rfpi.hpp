@@ -199,7 +199,9 @@ class RfpiRun {
 
   /// The last policy learnt most and the best one was lucky: new runs decide between the two, others tell the cost.
   RfpiResult<P> choose(RfpiStop reason) {
-    if (state_.best_policy.empty()) throw SolveError("rfpi: stopped before there was a first policy: give it more time");
+    if (state_.best_policy.empty()) {
+      throw SolveError("rfpi: stopped before there was a first policy: give it more time");
+    }
     const int runs = 4 * options_.evaluation_runs;
     const bool newest = cost_of(state_.policy, runs, 3).mean <= cost_of(state_.best_policy, runs, 3).mean;
     auto& chosen = newest ? state_.policy : state_.best_policy;

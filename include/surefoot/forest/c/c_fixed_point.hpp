@@ -16,7 +16,7 @@
 
 #include "surefoot/core/error.hpp"
 #include "surefoot/forest/c/c_tables.hpp"
-#include "surefoot/forest/export_c.hpp"
+#include "surefoot/forest/export_c_options.hpp"
 
 namespace surefoot::detail {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/forest/evaluate/trees.hpp"
-#include "surefoot/forest/export_c.hpp"
+#include "surefoot/forest/trees.hpp"
+#include "surefoot/forest/export_c_options.hpp"
 
 namespace surefoot::detail {
 

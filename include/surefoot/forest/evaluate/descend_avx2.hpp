@@ -4,7 +4,7 @@
 // A program compiled with SUREFOOT_PORTABLE defined (in all of its files, or in none) does without: same predictions.
 #pragma once
 
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/trees.hpp"
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(SUREFOOT_PORTABLE)
 #define SUREFOOT_AVX2
@@ -26,8 +26,8 @@ constexpr std::size_t avx2_trees = 32;  // in flight together
 
 }  // namespace surefoot::detail
 
-#ifndef SUREFOOT_COMPILED
-#include "surefoot/forest/evaluate/descend_avx2.ipp"
 #endif
 
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/forest/evaluate/descend_avx2.ipp"
 #endif

@@ -12,8 +12,9 @@
 #else
 #include <smmintrin.h>
 #define _IMMINTRIN_H_INCLUDED
-#include <avx2intrin.h>
 #include <avxintrin.h>
+// the second needs the first
+#include <avx2intrin.h>
 #undef _IMMINTRIN_H_INCLUDED
 #endif
 

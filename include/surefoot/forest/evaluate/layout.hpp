@@ -1,5 +1,5 @@
-// Lays a grown tree out so that a descent touches few cache lines: each line of 8 nodes takes a sibling pair and then,
-// one after the other, the pairs below it that most training samples reach. O(nodes) time.
+// The layout of a grown tree, so that a descent touches few cache lines: each line of 8 nodes takes a sibling pair and
+// then, one after the other, the pairs below it that most training samples reach. O(nodes) time.
 #pragma once
 
 #include <algorithm>
@@ -9,9 +9,9 @@
 #include <tuple>
 #include <vector>
 
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/trees.hpp"
 
-namespace surefoot {
+namespace surefoot::detail {
 
 /// A tree as it grows: entry 0 is the root, siblings are neighbours.
 struct GrownNode {
@@ -26,19 +26,15 @@ struct GrownNode {
   bool is_leaf() const { return left == 0; }
 };
 
-namespace detail {
-
 constexpr std::size_t pairs_per_line = nodes_per_line / 2;
 
 /// Sibling pairs in the tree below a node, counted up to `bound`.
 std::size_t pairs_below(const std::vector<GrownNode>& tree, std::uint32_t node, std::size_t bound);
 
-}  // namespace detail
-
 /// The nodes of the tree in their final order: whole cache lines, children behind their parents.
 NodeArray lay_out(const std::vector<GrownNode>& tree, int inputs);
 
-}  // namespace surefoot
+}  // namespace surefoot::detail
 
 #ifndef SUREFOOT_COMPILED
 #include "surefoot/forest/evaluate/layout.ipp"

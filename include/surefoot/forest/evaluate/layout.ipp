@@ -10,7 +10,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/forest/evaluate/layout.hpp"
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/trees.hpp"
 
 namespace surefoot::detail {
 
@@ -20,12 +20,7 @@ SUREFOOT_INLINE std::size_t pairs_below(const std::vector<GrownNode>& tree, std:
   return 1 + left + pairs_below(tree, tree[node].left + 1, bound - 1 - left);
 }
 
-}  // namespace surefoot::detail
-
-namespace surefoot {
-
 SUREFOOT_INLINE NodeArray lay_out(const std::vector<GrownNode>& tree, int inputs) {
-  using detail::pairs_per_line;
   const Node unused = Node::leaf(inputs, 0);
   NodeArray nodes;
   nodes.reserve(tree.size() + tree.size() / 8 + nodes_per_line);
@@ -53,7 +48,7 @@ SUREFOOT_INLINE NodeArray lay_out(const std::vector<GrownNode>& tree, int inputs
     }
     std::sort(frontier.begin(), frontier.end(), less_visited);
     for (const std::uint32_t node : frontier) {
-      const std::size_t pairs = detail::pairs_below(tree, node, pairs_per_line);
+      const std::size_t pairs = pairs_below(tree, node, pairs_per_line);
       (pairs < pairs_per_line ? remnants[pairs] : lines).push_back(node);
     }
   };
@@ -91,4 +86,4 @@ SUREFOOT_INLINE NodeArray lay_out(const std::vector<GrownNode>& tree, int inputs
   return nodes;
 }
 
-}  // namespace surefoot
+}  // namespace surefoot::detail

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "surefoot/forest/evaluate/layout.hpp"
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/trees.hpp"
 
 namespace surefoot::detail {
 

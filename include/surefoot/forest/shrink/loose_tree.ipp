@@ -11,7 +11,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/forest/evaluate/layout.hpp"
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/trees.hpp"
 #include "surefoot/forest/shrink/loose_tree.hpp"
 
 namespace surefoot::detail {

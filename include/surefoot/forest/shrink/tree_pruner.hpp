@@ -10,7 +10,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/forest/dataset.hpp"
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/trees.hpp"
 #include "surefoot/forest/leaf.hpp"
 #include "surefoot/forest/shrink/loose_tree.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/trees.hpp"
 
 namespace surefoot::detail {
 

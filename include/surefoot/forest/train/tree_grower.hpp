@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/trees.hpp"
 #include "surefoot/forest/leaf.hpp"
 #include "surefoot/forest/options.hpp"
 #include "surefoot/forest/train/records.hpp"

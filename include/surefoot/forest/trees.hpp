@@ -143,5 +143,5 @@ struct TreesView : TreesShape {
 }  // namespace surefoot
 
 #ifndef SUREFOOT_COMPILED
-#include "surefoot/forest/evaluate/trees.ipp"
+#include "surefoot/forest/trees.ipp"
 #endif

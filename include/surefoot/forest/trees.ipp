@@ -1,4 +1,4 @@
-// Definitions of surefoot/forest/evaluate/trees.hpp.
+// Definitions of surefoot/forest/trees.hpp.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/error.hpp"
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/trees.hpp"
 
 namespace surefoot {
 
