@@ -101,7 +101,7 @@ std::vector<Eigen::Index> own_slopes(const LinearProblem& problem, const Rows& f
 
 // Held-out losses of one fold, by penalty, added to `scores`.
 void add_fold(const LinearProblem& problem, const std::vector<std::size_t>& fold, const std::vector<double>& penalties,
-              double robust, std::vector<surefoot::BlockLosses>& scores) {
+              double robust, std::vector<BlockLosses>& scores) {
   std::vector<std::size_t> others;
   for (std::size_t i = 0; i + 1 < problem.begin.size(); ++i) {
     if (std::ranges::find(fold, i) == fold.end()) others.push_back(i);
@@ -121,7 +121,7 @@ void add_fold(const LinearProblem& problem, const std::vector<std::size_t>& fold
 }
 
 // Index of the largest penalty that is within one standard error of the best.
-std::size_t one_standard_error(const std::vector<surefoot::BlockLosses>& scores) {
+std::size_t one_standard_error(const std::vector<BlockLosses>& scores) {
   std::size_t best = 0;
   for (std::size_t k = 1; k < scores.size(); ++k) {
     if (scores[k].total() < scores[best].total()) best = k;
@@ -169,7 +169,7 @@ Choice choose(const LinearProblem& problem, const std::vector<std::vector<std::s
 
   // The largest penalty, and beside it nothing at all: folds may have larger pulls than the whole.
   penalties.insert(penalties.begin(), std::numeric_limits<double>::infinity());
-  std::vector<surefoot::BlockLosses> scores(penalties.size());
+  std::vector<BlockLosses> scores(penalties.size());
   for (const auto& fold : folds) add_fold(problem, fold, penalties, robust, scores);
   const std::size_t chosen = one_standard_error(scores);
   if (chosen == 0) return {{}, 1};

@@ -18,6 +18,7 @@
 #include "prepare.hpp"
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/executor.hpp"
+#include "surefoot/diagnose/text.hpp"
 #include "surefoot/diagnose/verdict/describe.hpp"
 #include "surefoot/diagnose/verdict/evaluate.hpp"
 
@@ -30,23 +31,23 @@ using surefoot::Verdict;
 
 // Numbers of the strongest survivors, fitted together in the simulation. What cannot be simulated goes, the weakest
 // first.
-surefoot::Fit fit_together(const surefoot::Investigation& investigation, const LinearProblem& problem,
-                           std::vector<Survivor> survivors, const surefoot::Parallel& parallel) {
-  surefoot::FitProblem longer = investigation.problem.fit;
+Fit fit_together(const Preparation& prepared, const LinearProblem& problem, std::vector<Survivor> survivors,
+                 const Parallel& parallel) {
+  FitProblem longer = prepared.setup.problem;
   longer.max_iterations = 40;
   for (;; survivors.pop_back()) {
-    surefoot::Hypothesis hypothesis = investigation.selection.nominal.hypothesis;
+    Hypothesis hypothesis = prepared.calibrated;
     for (const Survivor& survivor : survivors) {
       hypothesis.effects.push_back(problem.candidates[survivor.candidate]);
       hypothesis.values.push_back(survivor.values);
     }
-    surefoot::Fit result = fit(investigation.bound, hypothesis, longer, parallel);
+    Fit result = fit(prepared.setup.bound, hypothesis, longer, parallel);
     if (result.ok || survivors.empty()) return result;
   }
 }
 
 // Places of a fold's recordings among those of the training.
-std::vector<std::vector<std::size_t>> places_of(const surefoot::RecordingSplit& split) {
+std::vector<std::vector<std::size_t>> places_of(const RecordingSplit& split) {
   std::vector<std::vector<std::size_t>> folds = split.folds;
   for (auto& fold : folds) {
     for (std::size_t& r : fold) {
@@ -56,21 +57,21 @@ std::vector<std::vector<std::size_t>> places_of(const surefoot::RecordingSplit& 
   return folds;
 }
 
-surefoot::Diagnosis diagnose(const MakeRig& make, const surefoot::SimulatorInfo& info,
+surefoot::Diagnosis diagnose(const all_at_once::BindSimulator& bind, const surefoot::SimulatorInfo& info,
                              std::vector<surefoot::Recording> recordings, const surefoot::DiagnoseOptions& options,
-                             const surefoot::Parallel& parallel, std::uint64_t seed) {
+                             const Parallel& parallel, std::uint64_t seed) {
   const auto began = std::chrono::steady_clock::now();
-  surefoot::Investigation investigation = prepare(make, info, std::move(recordings), options, parallel, seed);
-  const surefoot::BoundSimulator& bound = investigation.bound;
-  const surefoot::FitProblem& problem = investigation.problem.fit;
-  surefoot::Diagnosis& diagnosis = investigation.diagnosis;
-  const surefoot::Hypothesis& calibrated = investigation.selection.nominal.hypothesis;
+  Preparation prepared = prepare(bind, info, std::move(recordings), options, parallel, seed);
+  const BoundSimulator& bound = prepared.setup.bound;
+  const FitProblem& problem = prepared.setup.problem;
+  surefoot::Diagnosis& diagnosis = prepared.diagnosis;
+  const Hypothesis& calibrated = prepared.calibrated;
 
-  const LinearProblem linear = linearise(investigation, candidates(investigation, options, parallel), parallel);
-  Choice choice = choose(linear, places_of(investigation.split), problem.weighting.robust);
+  const LinearProblem linear = linearise(prepared, candidates(prepared, options, parallel), parallel);
+  Choice choice = choose(linear, places_of(prepared.setup.split), problem.weighting.robust);
   const std::size_t survived = choice.survivors.size();
   choice.survivors.resize(std::min(survived, static_cast<std::size_t>(options.max_effects)));
-  const surefoot::Hypothesis chosen = fit_together(investigation, linear, choice.survivors, parallel).hypothesis;
+  const Hypothesis chosen = fit_together(prepared, linear, choice.survivors, parallel).hypothesis;
 
   for (std::size_t e = calibrated.effects.size(); e < chosen.effects.size(); ++e) {
     diagnosis.effects.push_back(surefoot::diagnosis::describe(bound, chosen, e, nullptr));
@@ -81,7 +82,10 @@ surefoot::Diagnosis diagnose(const MakeRig& make, const surefoot::SimulatorInfo&
   diagnosis.sentence = std::to_string(survived) + " of " + std::to_string(linear.candidates.size()) +
                        " effects survive a penalty of " + surefoot::in_digits(choice.penalty) +
                        " of the one that none survives; " + std::to_string(diagnosis.effects.size()) + " are named.";
-  surefoot::diagnosis::prove(investigation, calibrated, chosen, parallel, seed);
+  const FittedModels models{simulate_model(prepared.setup, prepared.nominal, parallel),
+                            fitted_model(prepared.setup, calibrated, parallel),
+                            fitted_model(prepared.setup, chosen, parallel)};
+  evaluate(prepared.setup, models, diagnosis, parallel, seed);
   diagnosis.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return diagnosis;
 }
@@ -99,14 +103,14 @@ int run(const S& simulator, const diagnose_program::Layout& layout, const diagno
   options.max_effects = line.max_effects;
   prepare_folder(line.out);
   const surefoot::Threads threads(line.threads);
-  const surefoot::Parallel parallel = [&](std::size_t count, const std::function<void(std::size_t)>& job) {
+  const Parallel parallel = [&](std::size_t count, const std::function<void(std::size_t)>& job) {
     threads.run(count, job);
   };
-  const MakeRig make = [&](std::vector<surefoot::Recording> some) {
+  const all_at_once::BindSimulator bind = [&](std::vector<surefoot::Recording> some) {
     return bind_simulator(simulator, std::move(some));
   };
   surefoot::Diagnosis diagnosis =
-      diagnose(make, simulator.info(), std::move(loaded.recordings), options, parallel, line.seed);
+      diagnose(bind, simulator.info(), std::move(loaded.recordings), options, parallel, line.seed);
   diagnosis.remarks.insert(diagnosis.remarks.begin(), loaded.remarks.begin(), loaded.remarks.end());
   surefoot::write_file_atomically(line.out / "diagnosis.json", diagnosis_json(diagnosis));
   if (!line.quiet) {

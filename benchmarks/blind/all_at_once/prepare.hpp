@@ -6,22 +6,29 @@
 #include <functional>
 #include <vector>
 
+#include "surefoot/diagnose/diagnosis.hpp"
 #include "surefoot/diagnose/options.hpp"
-#include "surefoot/diagnose/verdict/investigation.hpp"
+#include "surefoot/diagnose/verdict/fitted_model.hpp"
 
 namespace all_at_once {
 
-using MakeRig = std::function<surefoot::BoundSimulator(std::vector<surefoot::Recording>)>;
+using BindSimulator = std::function<surefoot::diagnosis::BoundSimulator(std::vector<surefoot::Recording>)>;
 
-/// Fills bound, split, problem, noise, nominal and selection.nominal (calibrated). Throws surefoot::DiagnoseError for
-/// recordings that do not fit the simulator, and for fewer than four.
-surefoot::Investigation prepare(const MakeRig& make, const surefoot::SimulatorInfo& info,
-                                std::vector<surefoot::Recording> recordings, const surefoot::DiagnoseOptions& options,
-                                const surefoot::Parallel& parallel, std::uint64_t seed);
+/// What the stages of this baseline hand on to each other.
+struct Preparation {
+  surefoot::Diagnosis diagnosis = {};
+  surefoot::diagnosis::EstimationSetup setup = {};
+  surefoot::diagnosis::Hypothesis nominal = {}, calibrated = {};
+};
+
+/// Screens, holds recordings out and calibrates. Throws surefoot::DiagnoseError for recordings that do not fit the
+/// simulator, and for fewer than four.
+Preparation prepare(const BindSimulator& bind, const surefoot::SimulatorInfo& info,
+                    std::vector<surefoot::Recording> recordings, const surefoot::DiagnoseOptions& options,
+                    const surefoot::diagnosis::Parallel& parallel, std::uint64_t seed);
 
 /// Every effect of the options at every place where it fits; none on sensors where each row starts from readings.
-std::vector<surefoot::AttachedEffect> candidates(const surefoot::Investigation& investigation,
-                                                 const surefoot::DiagnoseOptions& options,
-                                                 const surefoot::Parallel& parallel);
+std::vector<surefoot::AttachedEffect> candidates(const Preparation& prepared, const surefoot::DiagnoseOptions& options,
+                                                 const surefoot::diagnosis::Parallel& parallel);
 
 }  // namespace all_at_once

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "surefoot/diagnose/verdict/investigation.hpp"
+#include "prepare.hpp"
 
 namespace all_at_once {
 
@@ -31,7 +31,7 @@ struct LinearProblem {
 /// Linearises the candidates about the calibrated simulator. Of several starting values of an effect that is taken
 /// which by itself explains most. Cost: two simulations of all training recordings per candidate and strength, one more
 /// for each further start.
-LinearProblem linearise(const surefoot::Investigation& investigation,
-                        const std::vector<surefoot::AttachedEffect>& candidates, const surefoot::Parallel& parallel);
+LinearProblem linearise(const Preparation& prepared, const std::vector<surefoot::AttachedEffect>& candidates,
+                        const surefoot::diagnosis::Parallel& parallel);
 
 }  // namespace all_at_once
