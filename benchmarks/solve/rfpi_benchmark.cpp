@@ -24,7 +24,8 @@ using toy::Pendulum;
 
 constexpr double discount = 0.98;
 
-// A policy after a training of some seconds, states that it visits, and a forest of about what they are worth to it.
+// A policy after a training of fifteen iterations, states that it visits, and a forest of about what they are worth to
+// it.
 template <Problem P>
 struct Trained {
   using ValueForest = Forest<feature_dim<P>(), 1, LinearLeaf>;
