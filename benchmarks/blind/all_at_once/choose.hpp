@@ -1,10 +1,10 @@
-// Choice of candidates by an L1 penalty that held-out recordings set.
+// Which candidates survive an L1 penalty that held-out recordings choose.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
-#include "signatures.hpp"
+#include "marks.hpp"
 
 namespace all_at_once {
 
