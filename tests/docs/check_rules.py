@@ -45,8 +45,9 @@ def faults_of(block, cases, compiled):
     for name in filter(None, re.split(r",\s*", block.rule.get("by", ""))):
         if "/" in name:
             text = (ROOT / name).read_text(encoding="utf-8") if (ROOT / name).is_file() else ""
-            if not any(command in text for command in commands_of(block)):
-                yield f"{block.where}: {name} runs nothing of this block"
+            for command in commands_of(block):
+                if not re.search(r"\brun: " + re.escape(command) + "$", text, re.M):
+                    yield f"{block.where}: {name} has no line 'run: {command}'"
         elif not name.endswith("?") and name not in cases:
             yield f"{block.where}: there is no CTest case {name}"
 
