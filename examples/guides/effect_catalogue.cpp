@@ -17,7 +17,6 @@
 #include "../../apps/common/gnuplot.hpp"
 #include "catalogue_entries.hpp"
 #include "catalogue_machines.hpp"
-#include "catalogue_units.hpp"
 #include "surefoot/diagnose/simulate_augmented.hpp"
 #include "surefoot/diagnose/text.hpp"
 
@@ -56,17 +55,15 @@ Shown simulate(const Effect& effect, const Form& form, const std::string& place)
   const surefoot::Integration fine{.step = 0.0025};
   surefoot::Augmented changed{.integration = fine};
   changed.effects = {{.name = effect.name, .attached_to = place, .form = effect.form, .values = form.values}};
-  const surefoot::SimulatorInfo info = machine.info();
   Shown shown{.without = simulate_augmented(machine, {.integration = fine}, commands),
               .with = simulate_augmented(machine, changed, commands),
               .time = commands.time,
               .place = place};
+  const surefoot::SimulatorInfo info = machine.info();
   shown.time_unit = info.kind == surefoot::SimulatorKind::map ? "step" : "time [s]";
   shown.reading = info.outputs[0].name + " [" + info.outputs[0].unit + "]";
-  const surefoot::AttachedEffect attached = attach(info, changed.effects[0], surefoot::all_effects());
-  for (const auto& parameter : effect.parameters) {
-    shown.units[parameter.name] = unit_of(parameter.measure, place_units(info, effect.place, attached.at));
-  }
+  const std::vector<std::string> units = units_of(machine, changed.effects[0], commands);
+  for (std::size_t i = 0; i < units.size(); ++i) shown.units[effect.parameters[i].name] = units[i];
   return shown;
 }
 

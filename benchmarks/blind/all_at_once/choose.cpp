@@ -54,7 +54,7 @@ Reduced reduce(const LinearProblem& problem, const Rows& rows) {
   result.lasso.high.setZero(count);
   for (Eigen::Index j = 0; j < count; ++j) {
     const Unknown& unknown = problem.unknowns[static_cast<std::size_t>(j)];
-    constexpr double least = 1e-2;  // share of a mark that the parameters must not be able to imitate
+    constexpr double least = 1e-2;  // share of a signature that the parameters must not be able to imitate
     if (!(result.norms[j] > least * whole[j]) || !(result.norms[j] > 0)) {
       columns.col(j).setZero();
       result.norms[j] = 1;

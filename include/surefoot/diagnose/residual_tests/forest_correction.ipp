@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
+#include "surefoot/diagnose/estimation/fit.hpp"
 #include "surefoot/diagnose/residual_model.hpp"
 #include "surefoot/diagnose/residual_tests/features.hpp"
 #include "surefoot/diagnose/residual_tests/forest_correction.hpp"
@@ -34,6 +36,59 @@ SUREFOOT_INLINE Eigen::MatrixXd residual_table(const BoundSimulator& bound, cons
   return residuals;
 }
 
+/// Executor on top of Parallel, for the forest.
+struct ParallelExecutor {
+  const Parallel* parallel;
+  std::size_t width() const { return 1; }
+  template <class Job>
+  bool run(std::size_t count, Job&& job, std::stop_token = {}) const {
+    (*parallel)(count, [&](std::size_t i) { job(i); });
+    return true;
+  }
+};
+
+SUREFOOT_INLINE ResidualForest train_forest(const Dataset<Eigen::Dynamic, Eigen::Dynamic>& samples, int min_leaf,
+                                            const Parallel& parallel, std::uint64_t seed) {
+  ExtraTreesOptions options;
+  options.trees = 40;
+  options.min_leaf = min_leaf;
+  return train_extra_trees(samples, options, ParallelExecutor{&parallel}, seed);
+}
+
+SUREFOOT_INLINE ResidualModel train_residual_model(const BoundSimulator& bound,
+                                                   const std::vector<std::size_t>& recordings,
+                                                   const std::vector<SimulatedRun>& runs, const Parallel& parallel,
+                                                   std::uint64_t seed) {
+  Eigen::Index rows = 0;
+  for (const std::size_t r : recordings) rows += bound.recordings[r].rows();
+  const FeatureTable table = make_features(bound, recordings, runs, std::max<Eigen::Index>(1, rows / 8000));
+  ResidualModel model{table.names, {}, residual_sizes(bound, recordings, runs), {}};
+  for (const OutputInfo& output : bound.info.outputs) model.outputs.push_back(output.name);
+  for (double& size : model.scale) size = std::isfinite(size) ? size : 1;
+  std::vector<Eigen::Index> measured;
+  for (Eigen::Index j = 0; j < table.values.cols(); ++j) {
+    const Eigen::MatrixXd& outputs = bound.recordings[recordings[table.recording[static_cast<std::size_t>(j)]]].outputs;
+    const Eigen::Index row = table.row[static_cast<std::size_t>(j)];
+    bool any = false;
+    for (Eigen::Index k = 0; k < outputs.rows(); ++k) any = any || std::isfinite(outputs(k, row));
+    if (any) measured.push_back(j);
+  }
+  if (measured.empty()) return model;
+  const Eigen::MatrixXd residuals = residual_table(bound, recordings, runs, model.scale, table);
+  Dataset<Eigen::Dynamic, Eigen::Dynamic> samples;
+  samples.inputs.resize(table.values.rows(), static_cast<Eigen::Index>(measured.size()));
+  samples.outputs.resize(residuals.rows(), samples.inputs.cols());
+  for (Eigen::Index j = 0; j < samples.inputs.cols(); ++j) {
+    const Eigen::Index from = measured[static_cast<std::size_t>(j)];
+    for (Eigen::Index k = 0; k < samples.inputs.rows(); ++k) {
+      samples.inputs(k, j) = single_precision(table.values(k, from));
+    }
+    for (Eigen::Index k = 0; k < residuals.rows(); ++k) samples.outputs(k, j) = residuals(k, from);
+  }
+  model.forest = train_forest(samples, std::max(5, static_cast<int>(measured.size() / 400)), parallel, seed);
+  return model;
+}
+
 SUREFOOT_INLINE SimulatedRun corrected(const BoundSimulator& bound, std::size_t recording, const SimulatedRun& run,
                                        const ResidualModel& model) {
   if (model.forest.empty()) return run;
@@ -48,7 +103,8 @@ SUREFOOT_INLINE SimulatedRun corrected(const BoundSimulator& bound, std::size_t 
     const std::string& name = model.features[k];
     const auto found = std::find(table.names.begin(), table.names.end(), name);
     if (found != table.names.end()) {
-      inputs.row(row) = single_precision(table.values.row(found - table.names.begin()));
+      const auto from = static_cast<Eigen::Index>(found - table.names.begin());
+      for (Eigen::Index j = 0; j < inputs.cols(); ++j) inputs(row, j) = single_precision(table.values(from, j));
     } else if (const auto& constants = bound.recordings[recording].constants; constants.contains(name)) {
       inputs.row(row).setConstant(static_cast<float>(constants.at(name)));
     } else {
@@ -59,8 +115,42 @@ SUREFOOT_INLINE SimulatedRun corrected(const BoundSimulator& bound, std::size_t 
   ResidualForest::BatchOutput expected;
   model.forest.predict(inputs, expected);
   SimulatedRun result = run;
-  result.outputs -= model.scale.asDiagonal() * expected;
+  for (Eigen::Index j = 0; j < expected.cols(); ++j) {
+    for (Eigen::Index k = 0; k < expected.rows(); ++k) result.outputs(k, j) -= model.scale[k] * expected(k, j);
+  }
   return result;
+}
+
+SUREFOOT_INLINE Comparison cross_validate_residual(const BoundSimulator& bound,
+                                                   const std::vector<std::size_t>& recordings,
+                                                   const std::vector<SimulatedRun>& runs,
+                                                   const std::vector<std::vector<std::size_t>>& folds,
+                                                   const Weighting& weighting, const Parallel& parallel,
+                                                   std::uint64_t seed) {
+  BlockLosses before, after;
+  for (const std::vector<std::size_t>& fold : folds) {
+    std::vector<std::size_t> held_out, others;  // places in the list of recordings
+    for (std::size_t i = 0; i < recordings.size(); ++i) {
+      const bool out = std::find(fold.begin(), fold.end(), recordings[i]) != fold.end();
+      (out ? held_out : others).push_back(i);
+    }
+    if (others.empty()) return {};
+    std::vector<std::size_t> learned;
+    std::vector<SimulatedRun> learned_runs;
+    for (const std::size_t i : others) {
+      learned.push_back(recordings[i]);
+      learned_runs.push_back(runs[i]);
+    }
+    const ResidualModel model = train_residual_model(bound, learned, learned_runs, parallel, seed);
+    for (const std::size_t i : held_out) {
+      const std::size_t r = recordings[i];
+      const std::vector<Cell> cells = cells_of(bound.recordings[r]);
+      append_losses(before, weighted_residuals(bound, r, runs[i], cells, weighting), weighting.robust);
+      append_losses(after, weighted_residuals(bound, r, corrected(bound, r, runs[i], model), cells, weighting),
+                    weighting.robust);
+    }
+  }
+  return compare_losses(before, after);
 }
 
 }  // namespace surefoot::diagnosis

@@ -1,18 +1,14 @@
-// Whether residuals can be predicted, on recordings not used, from what the machine did at the time: a forest is
-// trained on all folds but one. Sees what depends on place, heading or orders even where residuals have no memory.
+// A test whether residuals can be predicted, on recordings not used, from what the machine did at the time: a forest is
+// trained on all folds but one. Sees what depends on place, heading or commands even where residuals have no memory.
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "surefoot/core/executor.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
 #include "surefoot/diagnose/residual_tests/forest_correction.hpp"
-#include "surefoot/forest/extra_trees.hpp"
 
 namespace surefoot::diagnosis {
 

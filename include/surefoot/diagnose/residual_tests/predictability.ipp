@@ -9,11 +9,10 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
-#include "surefoot/core/executor.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
 #include "surefoot/diagnose/residual_tests/forest_correction.hpp"
 #include "surefoot/diagnose/residual_tests/predictability.hpp"
-#include "surefoot/forest/extra_trees.hpp"
+#include "surefoot/forest/dataset.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -30,17 +29,16 @@ SUREFOOT_INLINE std::vector<Eigen::MatrixXd> left_unpredicted(const std::vector<
     known.outputs.resize(residuals[f].rows(), count);
     for (std::size_t g = 0; g < tables.size(); ++g) {
       if (g == f) continue;
-      known.inputs.middleCols(at, tables[g].values.cols()) = tables[g].values.cast<float>();
-      known.outputs.middleCols(at, tables[g].values.cols()) = residuals[g];
-      at += tables[g].values.cols();
+      for (Eigen::Index j = 0; j < tables[g].values.cols(); ++j, ++at) {
+        for (Eigen::Index k = 0; k < known.inputs.rows(); ++k) {
+          known.inputs(k, at) = static_cast<float>(tables[g].values(k, j));
+        }
+        for (Eigen::Index k = 0; k < known.outputs.rows(); ++k) known.outputs(k, at) = residuals[g](k, j);
+      }
     }
-    ExtraTreesOptions options;
-    options.trees = 40;
-    options.min_leaf = std::max(5, static_cast<int>(count / 200));
-    const auto forest = train_extra_trees(known, options, Serial{}, seed + f);
-    for (Eigen::Index j = 0; j < left[f].cols(); ++j) {
-      left[f].col(j) -= forest.predict(Eigen::VectorXd(tables[f].values.col(j)));
-    }
+    const int min_leaf = std::max(5, static_cast<int>(count / 200));
+    const ResidualForest forest = train_forest(known, min_leaf, serially(), seed + f);
+    for (Eigen::Index j = 0; j < left[f].cols(); ++j) left[f].col(j) -= forest.predict(tables[f].values.col(j));
   });
   return left;
 }

@@ -20,17 +20,6 @@
 
 namespace surefoot::diagnosis {
 
-/// Executor on top of Parallel, for the forest.
-struct ParallelExecutor {
-  const Parallel* parallel;
-  std::size_t width() const { return 1; }
-  template <class Job>
-  bool run(std::size_t count, Job&& job, std::stop_token = {}) const {
-    (*parallel)(count, [&](std::size_t i) { job(i); });
-    return true;
-  }
-};
-
 SUREFOOT_INLINE std::pair<double, double> ratio_interval(const std::vector<double>& before,
                                                          const std::vector<double>& after,
                                                          const std::vector<double>& counts, std::uint64_t seed,
@@ -69,27 +58,25 @@ SUREFOOT_INLINE double corrected_error(const EstimationSetup& setup, const Fitte
 
 SUREFOOT_INLINE double forest_error(const EstimationSetup& setup, const FittedModel& calibrated,
                                     const Parallel& parallel, std::uint64_t seed) {
-  const ParallelExecutor executor{&parallel};
   return corrected_error(
       setup, calibrated,
-      train_residual_model(setup.bound, setup.split.training, calibrated.runs.whole_training, executor, seed));
+      train_residual_model(setup.bound, setup.split.training, calibrated.runs.whole_training, parallel, seed));
 }
 
 SUREFOOT_INLINE ForestResidual offer_forest(const EstimationSetup& setup, const FittedModel& chosen,
                                             double held_out_before, const Parallel& parallel, std::uint64_t seed,
                                             const EvaluationCriteria& criteria) {
-  const ParallelExecutor executor{&parallel};
   const auto& training = setup.split.training;
   const std::vector<SimulatedRun>& runs = chosen.runs.whole_training;
   Weighting weighting = setup.problem.weighting;
   weighting.sigma = residual_sizes(setup.bound, training, runs);
   const Comparison unseen =
-      cross_validate_residual(setup.bound, training, runs, setup.split.folds, weighting, executor, seed);
+      cross_validate_residual(setup.bound, training, runs, setup.split.folds, weighting, parallel, seed);
   ForestResidual offer;
   offer.tried = true;
   offer.gain = unseen.gain;
   offer.gain_stderr = unseen.stderr_;
-  offer.model = train_residual_model(setup.bound, training, runs, executor, seed);
+  offer.model = train_residual_model(setup.bound, training, runs, parallel, seed);
   offer.held_out_before = held_out_before;
   offer.held_out_after = corrected_error(setup, chosen, offer.model);
   offer.kept = forest_helps(unseen, offer.held_out_before, offer.held_out_after, criteria);

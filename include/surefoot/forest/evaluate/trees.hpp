@@ -1,4 +1,4 @@
-// How decision trees lie in memory: 8-byte nodes in one flat array, made for branch-free descent.
+// Decision trees in memory: 8-byte nodes in one flat array, made for branch-free descent.
 //
 // A node is (key, link). An inner node's key is its threshold as an integer that sorts like the float, its link the
 // input it tests (low 8 bits) and how many nodes further its children are (high 24 bits): the left child (x <=
@@ -22,6 +22,7 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/core/compiled.hpp"
 #include "surefoot/core/error.hpp"
 
 namespace surefoot {
@@ -113,10 +114,7 @@ struct TreesShape {
 
   bool inline_leaves() const { return leaf_parameters == 1; }
 
-  std::string shape() const {
-    return std::to_string(inputs) + " inputs, " + std::to_string(outputs) + " outputs, " +
-           std::to_string(leaf_parameters) + " numbers per leaf";
-  }
+  std::string shape() const;  // for messages
 
   bool operator==(const TreesShape&) const = default;
 };
@@ -130,23 +128,7 @@ struct Trees : TreesShape {
                                             &TreesShape::leaves, &Trees::nodes, &Trees::roots, &Trees::parameters);
 
   /// Adds the trees of another forest of the same shape behind these.
-  void append(const Trees& other) {
-    if (other.inputs != inputs || other.outputs != outputs || other.leaf_parameters != leaf_parameters) {
-      throw ForestError("forests to join must have the same inputs, outputs and leaves, got " + shape() + " and " +
-                        other.shape());
-    }
-    const std::size_t start = nodes.size();
-    if (start + other.nodes.size() > 0x7FFFFFFFU) throw ForestError("a forest can have at most 2^31 nodes");
-    nodes.insert(nodes.end(), other.nodes.begin(), other.nodes.end());
-    if (!inline_leaves()) {
-      for (std::size_t i = start; i < nodes.size(); ++i) {
-        if (nodes[i].is_leaf()) nodes[i] = Node::leaf(inputs, nodes[i].payload() + static_cast<std::uint32_t>(leaves));
-      }
-    }
-    for (const std::uint32_t root : other.roots) roots.push_back(root + static_cast<std::uint32_t>(start));
-    parameters.insert(parameters.end(), other.parameters.begin(), other.parameters.end());
-    leaves += other.leaves;
-  }
+  void append(const Trees& other);
 
   bool operator==(const Trees&) const = default;
 };
@@ -159,3 +141,7 @@ struct TreesView : TreesShape {
 };
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/forest/evaluate/trees.ipp"
+#endif

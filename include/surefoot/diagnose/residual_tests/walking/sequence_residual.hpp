@@ -1,17 +1,11 @@
-// What final poses alone can show of unknown physics: whether the errors of sequences can be predicted, on sequences
-// not used, from what happened in their steps. The unknown change of each step's displacement is a Gaussian process
+// A test of final poses for unknown physics: whether the errors of sequences can be predicted, on sequences not used,
+// from what happened in their steps. The unknown change of each step's displacement is a Gaussian process
 // over what it may depend on; carried to the end of the sequence along the simulated path it remains one, so that final
 // poses are enough to predict others (Rasmussen & Williams, "Gaussian Processes for Machine Learning", 2006, ch. 2).
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "surefoot/core/pose2.hpp"
@@ -22,10 +16,11 @@
 namespace surefoot::diagnosis {
 
 /// What a change of steps may depend on; each has its own kernel.
-enum class StepFeature : unsigned char { orders, change_of_orders, heading, place, slip, time, parity, third };
-inline constexpr StepFeature step_features[] = {
-    StepFeature::orders, StepFeature::change_of_orders, StepFeature::heading, StepFeature::place, StepFeature::slip,
-    StepFeature::time,   StepFeature::parity,           StepFeature::third};
+enum class StepFeature : unsigned char { commands, change_of_commands, heading, place, slip, time, parity, third };
+inline constexpr StepFeature step_features[] = {StepFeature::commands, StepFeature::change_of_commands,
+                                                StepFeature::heading,  StepFeature::place,
+                                                StepFeature::slip,     StepFeature::time,
+                                                StepFeature::parity,   StepFeature::third};
 
 /// One step of a sequence: what it may depend on, and how its change moves the final cells.
 struct WalkedStep {
@@ -33,9 +28,19 @@ struct WalkedStep {
   Eigen::MatrixXd lever;  // cell x (forward, lateral, turn)
 };
 
+/// Typical sizes of what steps are compared by.
+struct StepScales {
+  Eigen::VectorXd input;                           // of each input
+  Eigen::Vector3d step = Eigen::Vector3d::Zero();  // of a step forward, to the side and of its turn [m, m, rad]
+  double extent = 0;                               // farthest that x or y gets from 0 [m]
+};
+
+StepScales step_scales(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                       const std::vector<std::size_t>& recordings, const std::vector<SimulatedRun>& runs);
+
 /// Features whose scale is 1: a distance of 1 makes steps unlike each other.
 Eigen::VectorXd features_of_step(const BoundSimulator& bound, std::size_t r, const SimulatedRun& run, Eigen::Index step,
-                                 StepFeature feature, const Eigen::VectorXd& input_scale, double extent);
+                                 StepFeature feature, const StepScales& scales);
 
 /// How a change of the displacement in a step, in the body frame, moves the measured cells of the final pose.
 Eigen::MatrixXd lever_of_step(const BoundSimulator& bound, const SimulatedRun& run, const std::vector<Cell>& cells,
@@ -58,7 +63,7 @@ double process_evidence(const Eigen::ArrayXd& values, const Eigen::ArrayXd& turn
 
 /// Predicts held-out residuals from the others; the size of the process and of the noise by maximum likelihood.
 Eigen::VectorXd predict_held_out(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& residuals,
-                                 const std::vector<Eigen::Index>& known, const std::vector<Eigen::Index>& held);
+                                 const std::vector<Eigen::Index>& known, const std::vector<Eigen::Index>& held_out);
 
 inline constexpr int permutations = 400;
 
@@ -66,6 +71,36 @@ inline constexpr int permutations = 400;
 /// exchanged at random. Sequences must have equally many residuals; empty if not.
 std::vector<double> permuted_evidence(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& residuals,
                                       std::size_t sequences);
+
+/// One of the kernels that are tried.
+struct KernelChoice {
+  StepFeature feature = StepFeature::commands;
+  bool headings_only = false;
+};
+
+/// All residuals, sequence by sequence, and what they would have in common with such a kernel.
+struct SequenceData {
+  std::vector<Eigen::Index> begin;  // by sequence: its first residual; and the end
+  Eigen::VectorXd residuals;
+  Eigen::MatrixXd covariance;
+};
+
+/// The test under way: sequences in the order of the folds, and how the model walks them.
+struct SequenceTest {
+  const BoundSimulator& bound;
+  const FitProblem& problem;
+  std::vector<std::size_t> order = {}, fold_of = {};  // recordings, and the fold of each
+  std::vector<SimulatedRun> runs = {};
+  StepScales scales = {};
+
+  /// False if there is too little to tell.
+  bool read_off(const KernelChoice& kernel, SequenceData& data) const;
+  Comparison cross_validated(const SequenceData& data) const;
+};
+
+/// The comparison of the kernel with the largest evidence, and the p-value of this against the largest evidence that
+/// permuted sequences give any kernel.
+Comparison most_evident(std::vector<Comparison> found, const std::vector<std::vector<double>>& evidence);
 
 /// The gain on held-out folds of such predictions over none, by the kernel with the most evidence; its p-value is that
 /// of a permutation test over all kernels. Both must speak for it before something is held to be missing.

@@ -1,9 +1,7 @@
 // Definitions of surefoot/diagnose/residual_tests/walking/sequence_residual.hpp.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -16,36 +14,50 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
+#include "surefoot/diagnose/estimation/typical_sizes.hpp"
 #include "surefoot/diagnose/residual_tests/walking/sequence_residual.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
 SUREFOOT_INLINE Eigen::VectorXd features_of_step(const BoundSimulator& bound, std::size_t r, const SimulatedRun& run,
-                                                 Eigen::Index step, StepFeature feature,
-                                                 const Eigen::VectorXd& input_scale, double extent) {
+                                                 Eigen::Index step, StepFeature feature, const StepScales& scales) {
   const PlanarInfo& planar = *bound.info.planar;
   const Recording& recording = bound.recordings[r];
-  const double heading = run.states(planar.heading, step);
+  const auto one = [](double value) -> Eigen::VectorXd { return Eigen::VectorXd::Constant(1, value); };
+  const auto two = [](double first, double second, double by) {
+    Eigen::VectorXd result(2);
+    result[0] = first / by;
+    result[1] = second / by;
+    return result;
+  };
   switch (feature) {
-    case StepFeature::orders:
-      return recording.inputs.col(step).cwiseQuotient(input_scale);
-    case StepFeature::change_of_orders:
-      return (recording.inputs.col(step) - recording.inputs.col(std::max<Eigen::Index>(0, step - 1)))
-          .cwiseQuotient(input_scale);
-    case StepFeature::heading:
-      return Eigen::Vector2d(std::cos(heading), std::sin(heading)) / 0.7;
+    case StepFeature::commands:
+    case StepFeature::change_of_commands: {
+      const Eigen::Index before = std::max<Eigen::Index>(0, step - 1);
+      Eigen::VectorXd result(recording.inputs.rows());
+      for (Eigen::Index i = 0; i < result.size(); ++i) {
+        const double now = recording.inputs(i, step);
+        result[i] = (feature == StepFeature::commands ? now : now - recording.inputs(i, before)) / scales.input[i];
+      }
+      return result;
+    }
+    case StepFeature::heading: {
+      const double heading = run.states(planar.heading, step);
+      return two(std::cos(heading), std::sin(heading), 0.7);
+    }
     case StepFeature::place:
-      return Eigen::Vector2d(run.states(planar.x, step), run.states(planar.y, step)) / (0.4 * extent);
+      return two(run.states(planar.x, step), run.states(planar.y, step), 0.4 * scales.extent);
     case StepFeature::slip:  // a share of the step, as on slippery floor, that depends on the place
-      return Eigen::Vector2d(run.states(planar.x, step), run.states(planar.y, step)) / (0.15 * extent);
+      return two(run.states(planar.x, step), run.states(planar.y, step), 0.15 * scales.extent);
     case StepFeature::time:
-      return Eigen::VectorXd::Constant(1, 3 * static_cast<double>(step) / static_cast<double>(recording.rows()));
+      return one(3 * static_cast<double>(step) / static_cast<double>(recording.rows()));
     case StepFeature::parity:
-      return Eigen::VectorXd::Constant(1, 10 * static_cast<double>(step % 2));
+      return one(10 * static_cast<double>(step % 2));
     case StepFeature::third:
       break;
   }
-  return Eigen::VectorXd::Constant(1, 10 * static_cast<double>(step % 3));
+  return one(10 * static_cast<double>(step % 3));
 }
 
 SUREFOOT_INLINE Eigen::MatrixXd lever_of_step(const BoundSimulator& bound, const SimulatedRun& run,
@@ -75,6 +87,18 @@ SUREFOOT_INLINE Eigen::Vector3d moved_in_step(const PlanarInfo& planar, const Si
   return (pose(step).inverse() * pose(step + 1)).vec();
 }
 
+/// Adds one * diag(variance) * sum^T to `block`.
+SUREFOOT_INLINE void add_shared_change(Eigen::MatrixXd& block, const Eigen::MatrixXd& one,
+                                       const Eigen::Vector3d& variance, const Eigen::MatrixXd& sum) {
+  for (Eigen::Index j = 0; j < block.cols(); ++j) {
+    for (Eigen::Index i = 0; i < block.rows(); ++i) {
+      double shared = one(i, 0) * variance[0] * sum(j, 0);
+      for (Eigen::Index k = 1; k < 3; ++k) shared += one(i, k) * variance[k] * sum(j, k);
+      block(i, j) += shared;
+    }
+  }
+}
+
 SUREFOOT_INLINE Eigen::MatrixXd sequence_covariance(const std::vector<std::vector<WalkedStep>>& sequences,
                                                     const Eigen::Vector3d& step_size) {
   std::vector<Eigen::Index> begin{0};
@@ -90,10 +114,14 @@ SUREFOOT_INLINE Eigen::MatrixXd sequence_covariance(const std::vector<std::vecto
           const double near = std::exp(-0.5 * (one.features - other.features).squaredNorm());
           if (near > 1e-4) sum += near * other.lever;
         }
-        block += one.lever * variance.asDiagonal() * sum.transpose();
+        add_shared_change(block, one.lever, variance, sum);
       }
-      covariance.block(begin[a], begin[b], block.rows(), block.cols()) = block;
-      covariance.block(begin[b], begin[a], block.cols(), block.rows()) = block.transpose();
+      for (Eigen::Index j = 0; j < block.cols(); ++j) {
+        for (Eigen::Index i = 0; i < block.rows(); ++i) covariance(begin[a] + i, begin[b] + j) = block(i, j);
+      }
+      for (Eigen::Index j = 0; j < block.cols(); ++j) {
+        for (Eigen::Index i = 0; i < block.rows(); ++i) covariance(begin[b] + j, begin[a] + i) = block(i, j);
+      }
     }
   }
   return covariance;
@@ -116,31 +144,51 @@ SUREFOOT_INLINE double process_evidence(const Eigen::ArrayXd& values, const Eige
 
 SUREFOOT_INLINE Eigen::VectorXd predict_held_out(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& residuals,
                                                  const std::vector<Eigen::Index>& known,
-                                                 const std::vector<Eigen::Index>& held) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance(known, known));
-  const Eigen::VectorXd values = eigen.eigenvalues().cwiseMax(0), y = residuals(known);
-  const Eigen::VectorXd turned = eigen.eigenvectors().transpose() * y;
+                                                 const std::vector<Eigen::Index>& held_out) {
+  const auto count = static_cast<Eigen::Index>(known.size());
+  Eigen::MatrixXd among(count, count);
+  Eigen::VectorXd y(count);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const Eigen::Index column = known[static_cast<std::size_t>(j)];
+    y[j] = residuals[column];
+    for (Eigen::Index i = 0; i < count; ++i) among(i, j) = covariance(known[static_cast<std::size_t>(i)], column);
+  }
+  const surefoot::detail::SymmetricEigen eigen = surefoot::detail::eigen_of_symmetric(among);
+  const Eigen::ArrayXd values = eigen.values.array().max(0);
+  const Eigen::VectorXd turned = eigen.vectors.transpose() * y;
   double least = std::numeric_limits<double>::infinity();
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(y.size());
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(count);
   for (const double size : process_sizes) {
     for (const double noise : noise_variances) {
-      const Eigen::ArrayXd variance = size * values.array() + noise;
+      const Eigen::ArrayXd variance = size * values + noise;
       const double cost = variance.log().sum() + (turned.array().square() / variance).sum();
       if (cost >= least) continue;
       least = cost;
-      weights = size * (eigen.eigenvectors() * (turned.array() / variance).matrix());
+      const Eigen::VectorXd share = turned.array() / variance;
+      weights = size * (eigen.vectors * share);
     }
   }
-  return covariance(held, known) * weights;
+  Eigen::VectorXd predicted = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held_out.size()));
+  for (Eigen::Index k = 0; k < count; ++k) {
+    for (Eigen::Index i = 0; i < predicted.size(); ++i) {
+      predicted[i] +=
+          weights[k] * covariance(held_out[static_cast<std::size_t>(i)], known[static_cast<std::size_t>(k)]);
+    }
+  }
+  return predicted;
 }
 
 SUREFOOT_INLINE std::vector<double> permuted_evidence(const Eigen::MatrixXd& covariance,
                                                       const Eigen::VectorXd& residuals, std::size_t sequences) {
   const auto count = static_cast<Eigen::Index>(sequences), length = residuals.size() / count;
   if (length * count != residuals.size()) return {};
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
-  const Eigen::ArrayXd values = eigen.eigenvalues().cwiseMax(0);
-  std::vector<double> result{process_evidence(values, (eigen.eigenvectors().transpose() * residuals).array())};
+  const surefoot::detail::SymmetricEigen eigen = surefoot::detail::eigen_of_symmetric(covariance);
+  const Eigen::ArrayXd values = eigen.values.array().max(0);
+  const auto evidence = [&](const Eigen::VectorXd& shuffled) {
+    const Eigen::VectorXd turned = eigen.vectors.transpose() * shuffled;
+    return process_evidence(values, turned);
+  };
+  std::vector<double> result{evidence(residuals)};
   Rng rng(1);
   Eigen::VectorXd shuffled = residuals;
   for (int draw = 0; draw < permutations; ++draw) {
@@ -148,106 +196,111 @@ SUREFOOT_INLINE std::vector<double> permuted_evidence(const Eigen::MatrixXd& cov
       const auto j = static_cast<Eigen::Index>(rng.below(static_cast<std::uint32_t>(i + 1)));
       for (Eigen::Index k = 0; k < length; ++k) std::swap(shuffled[i * length + k], shuffled[j * length + k]);
     }
-    result.push_back(process_evidence(values, (eigen.eigenvectors().transpose() * shuffled).array()));
+    result.push_back(evidence(shuffled));
   }
   return result;
 }
 
-SUREFOOT_INLINE Comparison sequence_structure(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                              const FitProblem& problem,
-                                              const std::vector<std::vector<std::size_t>>& folds,
-                                              const Parallel& parallel) {
-  std::vector<std::size_t> order, fold_of;
-  for (std::size_t f = 0; f < folds.size(); ++f) {
-    order.insert(order.end(), folds[f].begin(), folds[f].end());
-    fold_of.insert(fold_of.end(), folds[f].size(), f);
-  }
-  if (order.size() < 20) return {};
-  const auto runs = simulate_all(bound, hypothesis, order, problem.integration, parallel);
-  const Sizes sizes = measure_sizes(bound, hypothesis, order, runs);
+SUREFOOT_INLINE StepScales step_scales(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                       const std::vector<std::size_t>& recordings,
+                                       const std::vector<SimulatedRun>& runs) {
+  const Sizes sizes = measure_sizes(bound, hypothesis, recordings, runs);
   const PlanarInfo& planar = *bound.info.planar;
-  Eigen::VectorXd input_scale(static_cast<Eigen::Index>(sizes.input.size()));
-  for (Eigen::Index i = 0; i < input_scale.size(); ++i) input_scale[i] = sizes.input[static_cast<std::size_t>(i)];
-  double extent = 0, squares[3] = {}, steps = 0;
+  StepScales scales;
+  scales.input.resize(static_cast<Eigen::Index>(sizes.input.size()));
+  for (Eigen::Index i = 0; i < scales.input.size(); ++i) scales.input[i] = sizes.input[static_cast<std::size_t>(i)];
+  double extent = 0, along = 0, turned = 0, steps = 0;
   for (const SimulatedRun& run : runs) {
-    if (!run.finite) return {};
     for (Eigen::Index step = 0; step + 1 < run.states.cols(); ++step, ++steps) {
+      const auto moved = [&](int state) { return run.states(state, step + 1) - run.states(state, step); };
       extent = std::max({extent, std::abs(run.states(planar.x, step)), std::abs(run.states(planar.y, step))});
-      const auto moved = (run.states.col(step + 1) - run.states.col(step)).eval();
-      squares[0] += 0.5 * (moved[planar.x] * moved[planar.x] + moved[planar.y] * moved[planar.y]);
-      squares[2] += moved[planar.heading] * moved[planar.heading];
+      const double x = moved(planar.x), y = moved(planar.y), angle = moved(planar.heading);
+      along += 0.5 * (x * x + y * y);
+      turned += angle * angle;
     }
   }
-  squares[1] = squares[0];
-  Eigen::Vector3d step_size;
-  for (int k = 0; k < 3; ++k) step_size[k] = std::sqrt(std::max(squares[k] / std::max(steps, 1.0), 1e-24));
+  const auto size = [&](double squares) { return std::sqrt(std::max(squares / std::max(steps, 1.0), 1e-24)); };
+  scales.step = Eigen::Vector3d(size(along), size(along), size(turned));
+  scales.extent = std::max(extent, 1e-9);
+  return scales;
+}
 
-  // All that was measured, and the headings by themselves, which are sums over steps however far a path goes astray.
-  const std::size_t features = std::size(step_features), count = 2 * features;
-  std::vector<Comparison> found(count);
-  std::vector<std::vector<double>> evidence(count);  // by kernel: as it is, and with permuted sequences
-  parallel(count, [&](std::size_t job) {
-    const StepFeature feature = step_features[job % features];
-    const bool headings_only = job >= features;
-    std::vector<std::vector<WalkedStep>> sequences(order.size());
-    std::vector<Eigen::VectorXd> off(order.size());
-    double size = 0;
+SUREFOOT_INLINE bool SequenceTest::read_off(const KernelChoice& kernel, SequenceData& data) const {
+  const PlanarInfo& planar = *bound.info.planar;
+  const auto& whitening = problem.weighting.whitening;
+  std::vector<Eigen::VectorXd> off(order.size());
+  std::vector<std::vector<WalkedStep>> sequences(order.size());
+  double size = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::size_t r = order[i];
+    std::vector<Cell> cells = cells_of(bound.recordings[r]);
+    if (kernel.headings_only) {
+      std::erase_if(cells, [&](const Cell& cell) {
+        return bound.structure.output_of[static_cast<std::size_t>(planar.heading)] != static_cast<int>(cell.output);
+      });
+    }
+    off[i] = kernel.headings_only ? raw_residuals(bound, r, runs[i], cells)
+                                  : weighted_residuals(bound, r, runs[i], cells, problem.weighting);
+    size += off[i].squaredNorm();
+    for (Eigen::Index step = 0; step + 1 < runs[i].states.cols(); ++step) {
+      Eigen::MatrixXd lever = lever_of_step(bound, runs[i], cells, step);
+      if (!kernel.headings_only && r < whitening.size() && whitening[r].cols() == lever.rows()) {
+        const Eigen::MatrixXd white = whitening[r] * lever;
+        lever = white;
+      }
+      if (kernel.feature == StepFeature::slip) {
+        const Eigen::Vector3d moved = moved_in_step(planar, runs[i], step);
+        for (Eigen::Index k = 0; k < 3; ++k) lever.col(k) *= moved[k] / scales.step[k];
+      }
+      sequences[i].push_back({features_of_step(bound, r, runs[i], step, kernel.feature, scales), std::move(lever)});
+    }
+  }
+  data.begin = {0};
+  for (const Eigen::VectorXd& one : off) data.begin.push_back(data.begin.back() + one.size());
+  if (data.begin.back() < 20 || !(size > 0)) return false;
+  const double scale = kernel.headings_only ? std::sqrt(size / static_cast<double>(data.begin.back())) : 1;
+  const double limit = problem.weighting.robust;
+  data.residuals.resize(data.begin.back());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    for (Eigen::Index k = 0; k < off[i].size(); ++k) {
+      data.residuals[data.begin[i] + k] = std::min(std::max(off[i][k] / scale, -limit), limit);
+    }
+  }
+  data.covariance = sequence_covariance(sequences, scales.step);
+  data.covariance /= scale * scale;
+  return true;
+}
+
+SUREFOOT_INLINE Comparison SequenceTest::cross_validated(const SequenceData& data) const {
+  const double limit = problem.weighting.robust;
+  BlockLosses before, after;
+  const auto folds = fold_of.empty() ? 0 : fold_of.back() + 1;
+  for (std::size_t fold = 0; fold < folds; ++fold) {
+    std::vector<Eigen::Index> known, held_out;
     for (std::size_t i = 0; i < order.size(); ++i) {
-      std::vector<Cell> cells = cells_of(bound.recordings[order[i]]);
-      if (headings_only) {
-        std::erase_if(cells, [&](const Cell& cell) {
-          return bound.structure.output_of[static_cast<std::size_t>(planar.heading)] != static_cast<int>(cell.output);
-        });
-      }
-      off[i] = headings_only ? raw_residuals(bound, order[i], runs[i], cells)
-                             : weighted_residuals(bound, order[i], runs[i], cells, problem.weighting);
-      size += off[i].squaredNorm();
-      const auto& whitening = problem.weighting.whitening;
-      for (Eigen::Index step = 0; step + 1 < runs[i].states.cols(); ++step) {
-        Eigen::MatrixXd lever = lever_of_step(bound, runs[i], cells, step);
-        if (!headings_only && order[i] < whitening.size() && whitening[order[i]].cols() == lever.rows()) {
-          lever = (whitening[order[i]] * lever).eval();
-        }
-        if (feature == StepFeature::slip) {
-          lever *= moved_in_step(planar, runs[i], step).cwiseQuotient(step_size).asDiagonal();
-        }
-        sequences[i].push_back(
-            {features_of_step(bound, order[i], runs[i], step, feature, input_scale, std::max(extent, 1e-9)),
-             std::move(lever)});
+      for (Eigen::Index k = data.begin[i]; k < data.begin[i + 1]; ++k) {
+        (fold_of[i] == fold ? held_out : known).push_back(k);
       }
     }
-    std::vector<Eigen::Index> begin{0};
-    for (const Eigen::VectorXd& one : off) begin.push_back(begin.back() + one.size());
-    if (begin.back() < 20 || !(size > 0)) return;
-    const double scale = headings_only ? std::sqrt(size / static_cast<double>(begin.back())) : 1;
-    const double limit = problem.weighting.robust;
-    Eigen::VectorXd y(begin.back());
+    if (known.empty() || held_out.empty()) continue;
+    const Eigen::VectorXd predicted = predict_held_out(data.covariance, data.residuals, known, held_out);
+    Eigen::Index at = 0;
     for (std::size_t i = 0; i < order.size(); ++i) {
-      y.segment(begin[i], off[i].size()) = (off[i] / scale).cwiseMax(-limit).cwiseMin(limit);
+      if (fold_of[i] != fold) continue;
+      const Eigen::Index length = data.begin[i + 1] - data.begin[i];
+      Eigen::VectorXd part(length);
+      for (Eigen::Index k = 0; k < length; ++k) part[k] = data.residuals[data.begin[i] + k];
+      append_losses(before, part, limit);
+      for (Eigen::Index k = 0; k < length; ++k) part[k] -= predicted[at + k];
+      append_losses(after, part, limit);
+      at += length;
     }
-    const Eigen::MatrixXd covariance = sequence_covariance(sequences, step_size) / (scale * scale);
-    BlockLosses before, after;
-    for (std::size_t fold = 0; fold < folds.size(); ++fold) {
-      std::vector<Eigen::Index> known, held;
-      for (std::size_t i = 0; i < order.size(); ++i) {
-        for (Eigen::Index k = begin[i]; k < begin[i + 1]; ++k) (fold_of[i] == fold ? held : known).push_back(k);
-      }
-      if (known.empty() || held.empty()) continue;
-      const Eigen::VectorXd predicted = predict_held_out(covariance, y, known, held);
-      Eigen::Index at = 0;
-      for (std::size_t i = 0; i < order.size(); ++i) {
-        if (fold_of[i] != fold) continue;
-        const Eigen::Index length = begin[i + 1] - begin[i];
-        append_losses(before, y.segment(begin[i], length), limit);
-        append_losses(after, y.segment(begin[i], length) - predicted.segment(at, length), limit);
-        at += length;
-      }
-    }
-    found[job] = compare_losses(before, after);
-    evidence[job] = permuted_evidence(covariance, y, order.size());
-  });
-  // The largest evidence of any kernel, against the largest that permuted sequences give.
-  std::size_t best = 0;
+  }
+  return compare_losses(before, after);
+}
+
+SUREFOOT_INLINE Comparison most_evident(std::vector<Comparison> found,
+                                        const std::vector<std::vector<double>>& evidence) {
   const auto against = [&](std::size_t job, int draw) {
     const std::vector<double>& all = evidence[job];
     double mean = 0, squared = 0;
@@ -255,11 +308,12 @@ SUREFOOT_INLINE Comparison sequence_structure(const BoundSimulator& bound, const
       mean += all[k] / permutations;
       squared += all[k] * all[k] / permutations;
     }
-    const double spread = std::sqrt(std::max(squared - mean * mean, 1e-12));
-    return (all[static_cast<std::size_t>(draw)] - mean) / std::max(spread, 0.5);
+    const double deviation = std::sqrt(std::max(squared - mean * mean, 1e-12));
+    return (all[static_cast<std::size_t>(draw)] - mean) / std::max(deviation, 0.5);
   };
+  std::size_t best = 0;
   std::vector<double> largest(permutations + 1, -1e300);
-  for (std::size_t job = 0; job < count; ++job) {
+  for (std::size_t job = 0; job < found.size(); ++job) {
     if (evidence[job].empty()) continue;
     if (against(job, 0) > largest[0]) best = job;
     for (int draw = 0; draw <= permutations; ++draw) {
@@ -269,6 +323,34 @@ SUREFOOT_INLINE Comparison sequence_structure(const BoundSimulator& bound, const
   const auto as_large = std::count_if(largest.begin(), largest.end(), [&](double one) { return one >= largest[0]; });
   found[best].p_value = static_cast<double>(as_large) / static_cast<double>(largest.size());
   return found[best];
+}
+
+SUREFOOT_INLINE Comparison sequence_structure(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                              const FitProblem& problem,
+                                              const std::vector<std::vector<std::size_t>>& folds,
+                                              const Parallel& parallel) {
+  SequenceTest test{.bound = bound, .problem = problem};
+  for (std::size_t f = 0; f < folds.size(); ++f) {
+    test.order.insert(test.order.end(), folds[f].begin(), folds[f].end());
+    test.fold_of.insert(test.fold_of.end(), folds[f].size(), f);
+  }
+  if (test.order.size() < 20) return {};
+  test.runs = simulate_all(bound, hypothesis, test.order, problem.integration, parallel);
+  for (const SimulatedRun& run : test.runs) {
+    if (!run.finite) return {};
+  }
+  test.scales = step_scales(bound, hypothesis, test.order, test.runs);
+  // All that was measured, and the headings by themselves, which are sums over steps however far a path goes astray.
+  const std::size_t features = std::size(step_features), count = 2 * features;
+  std::vector<Comparison> found(count);
+  std::vector<std::vector<double>> evidence(count);  // by kernel: as it is, and with permuted sequences
+  parallel(count, [&](std::size_t job) {
+    SequenceData data;
+    if (!test.read_off({.feature = step_features[job % features], .headings_only = job >= features}, data)) return;
+    found[job] = test.cross_validated(data);
+    evidence[job] = permuted_evidence(data.covariance, data.residuals, test.order.size());
+  });
+  return most_evident(std::move(found), evidence);
 }
 
 }  // namespace surefoot::diagnosis

@@ -12,11 +12,10 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
-#include "surefoot/core/executor.hpp"
 #include "surefoot/core/pose2.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/estimation/noise_regime.hpp"
-#include "surefoot/diagnose/residual_tests/predictability.hpp"
+#include "surefoot/diagnose/residual_tests/forest_correction.hpp"
 #include "surefoot/diagnose/residual_tests/walking/slip_by_place.hpp"
 
 namespace surefoot::diagnosis {
@@ -71,6 +70,64 @@ SUREFOOT_INLINE double sign_flip_p_value(const std::vector<double>& terms) {
   return static_cast<double>(as_large) / (draws + 1);
 }
 
+SUREFOOT_INLINE Eigen::Matrix3Xd left_by_slip(const std::vector<MeasuredSteps>& by_fold, std::size_t fold,
+                                              std::uint64_t seed) {
+  Eigen::Index total = 0, at = 0;
+  for (std::size_t g = 0; g < by_fold.size(); ++g) total += g == fold ? 0 : by_fold[g].place.cols();
+  Dataset<Eigen::Dynamic, Eigen::Dynamic> known;
+  known.inputs.resize(2, total);
+  known.outputs.resize(6, total);
+  for (std::size_t g = 0; g < by_fold.size(); ++g) {
+    if (g == fold) continue;
+    const MeasuredSteps& steps = by_fold[g];
+    for (Eigen::Index j = 0; j < steps.place.cols(); ++j, ++at) {
+      for (Eigen::Index k = 0; k < 2; ++k) known.inputs(k, at) = static_cast<float>(steps.place(k, j));
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        known.outputs(k, at) = steps.residual(k, j) * steps.simulated(k, j);
+        known.outputs(3 + k, at) = steps.simulated(k, j) * steps.simulated(k, j);
+      }
+    }
+  }
+  const int min_leaf = std::max(10, static_cast<int>(total / 100));
+  const ResidualForest forest = train_forest(known, min_leaf, serially(), seed + fold);
+  const MeasuredSteps& held_out = by_fold[fold];
+  Eigen::Matrix3Xd left = held_out.residual;
+  for (Eigen::Index j = 0; j < left.cols(); ++j) {
+    const Eigen::VectorXd means = forest.predict(held_out.place.col(j));
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      left(k, j) -= means[k] / std::max(means[3 + k], 0.05) * held_out.simulated(k, j);
+    }
+  }
+  return left;
+}
+
+SUREFOOT_INLINE Comparison best_direction(const std::vector<MeasuredSteps>& by_fold,
+                                          const std::vector<Eigen::Matrix3Xd>& left) {
+  Comparison best;
+  const Eigen::Index stretch = memory_of(NoiseKind::process);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    double before = 0, after = 0;
+    std::vector<double> agreement;  // of what was predicted with what was left, by stretches of steps
+    for (std::size_t f = 0; f < by_fold.size(); ++f) {
+      before += by_fold[f].residual.row(k).squaredNorm();
+      after += left[f].row(k).squaredNorm();
+      Eigen::VectorXd agreed(left[f].cols());
+      for (Eigen::Index j = 0; j < agreed.size(); ++j) {
+        agreed[j] = by_fold[f].residual(k, j) * (by_fold[f].residual(k, j) - left[f](k, j));
+      }
+      for (Eigen::Index from = 0; from < agreed.size(); from += stretch) {
+        agreement.push_back(agreed.segment(from, std::min(stretch, agreed.size() - from)).sum());
+      }
+    }
+    const double gain = before > 0 ? 1 - std::sqrt(after / before) : 0;
+    const double p_value = std::min(1.0, 3 * sign_flip_p_value(agreement));
+    if (p_value < best.p_value || (p_value == best.p_value && gain > best.gain)) {
+      best = {.gain = gain, .stderr_ = 0, .t = 0, .p_value = p_value};
+    }
+  }
+  return best;
+}
+
 SUREFOOT_INLINE Comparison slip_by_place(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                          const FitProblem& problem, const std::vector<std::vector<std::size_t>>& folds,
                                          const Parallel& parallel, std::uint64_t seed) {
@@ -87,62 +144,20 @@ SUREFOOT_INLINE Comparison slip_by_place(const BoundSimulator& bound, const Hypo
     by_fold.push_back(std::move(*steps));
   }
   if (count < 100) return {};
-  const Eigen::Array3d step_size = (step_square / count).sqrt().max(1e-12);
-  const Eigen::Array3d error_size = (error_square / count).sqrt().max(1e-12);
   const double limit = problem.weighting.robust;
-  for (auto& steps : by_fold) {
-    steps.simulated.array().colwise() /= step_size;
-    steps.residual = (steps.residual.array().colwise() / error_size).max(-limit).min(limit);
-  }
-
-  std::vector<Eigen::Matrix3Xd> left(by_fold.size());
-  parallel(by_fold.size(), [&](std::size_t f) {
-    Dataset<2, 6> known;
-    Eigen::Index at = 0;
-    const auto total = static_cast<Eigen::Index>(count) - by_fold[f].place.cols();
-    known.inputs.resize(2, total);
-    known.outputs.resize(6, total);
-    for (std::size_t g = 0; g < by_fold.size(); ++g) {
-      if (g == f) continue;
-      const auto& steps = by_fold[g];
-      const Eigen::Index length = steps.place.cols();
-      known.inputs.middleCols(at, length) = steps.place.cast<float>();
-      known.outputs.middleCols(at, length).topRows<3>() = steps.residual.cwiseProduct(steps.simulated);
-      known.outputs.middleCols(at, length).bottomRows<3>() = steps.simulated.cwiseAbs2();
-      at += length;
-    }
-    ExtraTreesOptions options;
-    options.trees = 40;
-    options.min_leaf = std::max(10, static_cast<int>(total / 100));
-    const auto forest = train_extra_trees(known, options, Serial{}, seed + f);
-    left[f] = by_fold[f].residual;
-    for (Eigen::Index j = 0; j < left[f].cols(); ++j) {
-      const Eigen::Matrix<double, 6, 1> means =
-          forest.predict(Eigen::Vector2d(by_fold[f].place.col(j))).template cast<double>();
-      const Eigen::Array3d factor = means.head<3>().array() / means.tail<3>().array().max(0.05);
-      left[f].col(j) -= (factor * by_fold[f].simulated.col(j).array()).matrix();
-    }
-  });
-  Comparison best;
-  const Eigen::Index stretch = memory_of(NoiseKind::process);
   for (Eigen::Index k = 0; k < 3; ++k) {
-    double before = 0, after = 0;
-    std::vector<double> agreement;  // of what was predicted with what was left, by stretches of steps
-    for (std::size_t f = 0; f < by_fold.size(); ++f) {
-      before += by_fold[f].residual.row(k).squaredNorm();
-      after += left[f].row(k).squaredNorm();
-      const auto agreed = by_fold[f].residual.row(k).cwiseProduct(by_fold[f].residual.row(k) - left[f].row(k)).eval();
-      for (Eigen::Index from = 0; from < agreed.size(); from += stretch) {
-        agreement.push_back(agreed.segment(from, std::min(stretch, agreed.size() - from)).sum());
+    const double step_size = std::max(std::sqrt(step_square[k] / count), 1e-12);
+    const double error_size = std::max(std::sqrt(error_square[k] / count), 1e-12);
+    for (MeasuredSteps& steps : by_fold) {
+      for (Eigen::Index j = 0; j < steps.place.cols(); ++j) {
+        steps.simulated(k, j) /= step_size;
+        steps.residual(k, j) = std::min(std::max(steps.residual(k, j) / error_size, -limit), limit);
       }
     }
-    const double gain = before > 0 ? 1 - std::sqrt(after / before) : 0;
-    const double p_value = std::min(1.0, 3 * sign_flip_p_value(agreement));
-    if (p_value < best.p_value || (p_value == best.p_value && gain > best.gain)) {
-      best = {.gain = gain, .stderr_ = 0, .t = 0, .p_value = p_value};
-    }
   }
-  return best;
+  std::vector<Eigen::Matrix3Xd> left(by_fold.size());
+  parallel(by_fold.size(), [&](std::size_t fold) { left[fold] = left_by_slip(by_fold, fold, seed); });
+  return best_direction(by_fold, left);
 }
 
 }  // namespace surefoot::diagnosis

@@ -20,10 +20,10 @@
 #include "surefoot/forest/dataset.hpp"
 #include "surefoot/forest/distill.hpp"
 #include "surefoot/forest/forest.hpp"
+#include "surefoot/forest/fraction_of_variance_unexplained.hpp"
 #include "surefoot/forest/leaf.hpp"
-#include "surefoot/forest/train/loose_tree.hpp"
 #include "surefoot/forest/prune.hpp"
-#include "surefoot/forest/train/unexplained_variance.hpp"
+#include "surefoot/forest/shrink/loose_tree.hpp"
 
 namespace surefoot {
 
@@ -36,8 +36,9 @@ template <int Inputs, int Outputs, LeafModel Leaf>
 struct Shrunk {
   Forest<Inputs, Outputs, Leaf> forest;
   std::size_t bytes = 0;
-  double nanoseconds = 0;   // per single prediction, measured if the budget limits it, else 0
-  double error_before = 0;  // see unexplained(): share of the variance not explained, on samples set aside
+  double nanoseconds = 0;  // per single prediction, measured if the budget limits it, else 0
+  double error_before =
+      0;  // see fraction_of_variance_unexplained(): share of the variance not explained, on samples set aside
   double error_after = 0;
   std::string how;  // what was done, for a log
 };
@@ -97,11 +98,11 @@ auto shrink_to(const Forest<Inputs, Outputs, From>& forest, const Dataset<Inputs
   const auto aside = detail::fourths(samples, true);
   const std::size_t bytes = budget.bytes != 0 ? budget.bytes : std::numeric_limits<std::size_t>::max();
   Result best;
-  best.error_before = unexplained(forest, aside);
+  best.error_before = fraction_of_variance_unexplained(forest, aside);
   best.error_after = std::numeric_limits<double>::infinity();
   const auto consider = [&](Forest<Inputs, Outputs, To> smaller, const std::string& how) {
     if (smaller.bytes() > bytes) return;
-    const double error = unexplained(smaller, aside);
+    const double error = fraction_of_variance_unexplained(smaller, aside);
     if (!(error < best.error_after)) return;
     const double time = budget.nanoseconds > 0 ? nanoseconds_per_prediction(smaller, aside.inputs) : 0;
     if (time > budget.nanoseconds) return;

@@ -1,4 +1,4 @@
-#include "surefoot/forest/shrink/shrink.hpp"
+#include "surefoot/forest/shrink.hpp"
 
 #include <doctest/doctest.h>
 
@@ -21,8 +21,8 @@ TEST_CASE("a forest shrinks to every budget in bytes, with the loss stated") {
     const auto small = shrink_to(forest, samples, {.bytes = bytes}, 1, Threads(2), quick);
     CHECK(small.bytes == small.forest.bytes());
     CHECK(small.bytes <= bytes);
-    CHECK(small.error_before == doctest::Approx(unexplained(forest, test)).epsilon(0.3));
-    CHECK(small.error_after == doctest::Approx(unexplained(small.forest, test)).epsilon(0.3));
+    CHECK(small.error_before == doctest::Approx(fraction_of_variance_unexplained(forest, test)).epsilon(0.3));
+    CHECK(small.error_after == doctest::Approx(fraction_of_variance_unexplained(small.forest, test)).epsilon(0.3));
     CHECK(small.error_after >= before);
     CHECK_FALSE(small.how.empty());
     before = small.error_after;

@@ -1,4 +1,4 @@
-#include "marks.hpp"
+#include "signatures.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -53,7 +53,7 @@ LinearProblem linearise(const surefoot::Investigation& investigation,
   result.residuals = residuals.unaryExpr([limit](double r) { return std::clamp(r, -limit, limit); });
   result.slopes = functions.jacobian(functions.start());
   for (const surefoot::Proposal& proposal : propose(bound, base, problem, candidates, parallel)) {
-    if (!(proposal.visible > 0)) continue;  // leaves no mark that the parameters could not
+    if (!(proposal.visible > 0)) continue;  // leaves no signature that the parameters could not
     const auto more = unknowns_of(bound, proposal.effect, proposal.tried, result.candidates.size());
     result.unknowns.insert(result.unknowns.end(), more.begin(), more.end());
     result.candidates.push_back(proposal.effect);

@@ -1,4 +1,4 @@
-#include "surefoot/forest/evaluate/wrap_around.hpp"
+#include "surefoot/forest/wrap_around.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// Trees taken out of a forest, to be changed, and put back: what pruning and distillation work on.
+// Definitions of surefoot/forest/shrink/loose_tree.hpp.
 #pragma once
 
 #include <bit>
@@ -9,20 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/core/compiled.hpp"
 #include "surefoot/forest/evaluate/layout.hpp"
 #include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/shrink/loose_tree.hpp"
 
 namespace surefoot::detail {
 
-/// One tree. Children lie behind their parents; entry 0 is the root.
-struct LooseTree {
-  std::vector<GrownNode> nodes;  // payloads do not count here
-  std::vector<float> numbers;    // leaf_parameters per node, of inner nodes too
-  static constexpr auto fields = std::tuple(&LooseTree::nodes, &LooseTree::numbers);
-};
-
-/// Tree number `tree` of a forest; inner nodes get zeros as their numbers, and as their count the leaves below them.
-inline LooseTree loosen(const Trees& trees, std::size_t tree) {
+SUREFOOT_INLINE LooseTree loosen(const Trees& trees, std::size_t tree) {
   const std::size_t width = trees.leaf_parameters;
   LooseTree loose;
   std::vector<std::size_t> from{trees.roots[tree]};  // of each loose node
@@ -53,8 +47,7 @@ inline LooseTree loosen(const Trees& trees, std::size_t tree) {
   return loose;
 }
 
-/// Puts one tree behind the others in `into`. Nodes that no longer hang on the root are left out.
-inline void fasten(const LooseTree& loose, Trees& into) {
+SUREFOOT_INLINE void fasten(const LooseTree& loose, Trees& into) {
   const std::size_t width = into.leaf_parameters;
   Trees one;
   one.inputs = into.inputs;
@@ -86,8 +79,7 @@ inline void fasten(const LooseTree& loose, Trees& into) {
   into.append(one);
 }
 
-/// A forest without trees, of the shape of another.
-inline Trees without_trees(const Trees& like) {
+SUREFOOT_INLINE Trees without_trees(const Trees& like) {
   Trees trees;
   trees.inputs = like.inputs;
   trees.outputs = like.outputs;
@@ -95,8 +87,7 @@ inline Trees without_trees(const Trees& like) {
   return trees;
 }
 
-/// The fewest bytes, by Forest::bytes, of a tree with so many leaves. lay_out may add a cache line.
-inline std::size_t tree_bytes(std::size_t leaves, std::size_t leaf_parameters) {
+SUREFOOT_INLINE std::size_t tree_bytes(std::size_t leaves, std::size_t leaf_parameters) {
   const std::size_t lines = (2 * leaves + nodes_per_line - 1) / nodes_per_line;
   const std::size_t numbers = leaf_parameters == 1 ? 0 : leaves * leaf_parameters;
   return lines * nodes_per_line * sizeof(Node) + numbers * sizeof(float) + sizeof(std::uint32_t);
