@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../../apps/diagnose/own_simulator.hpp"
 #include "surefoot/core/vec.hpp"
+#include "surefoot_apps/diagnose_main.hpp"
 
 struct ServoPendulum {
   using State = surefoot::Vec<2>;  // angle [rad], 0 hanging down, and speed [rad/s]

@@ -11,7 +11,10 @@
 #include <vector>
 
 #include "apps/diagnose/equations.hpp"
-#include "apps/diagnose/own_simulator.hpp"
+#include "apps/diagnose/known_effects.hpp"
+#include "apps/diagnose/load_all.hpp"
+#include "apps/diagnose/results.hpp"
+#include "apps/diagnose/run.hpp"
 #include "apps/diagnose/write_json.hpp"
 #include "choose.hpp"
 #include "prepare.hpp"
