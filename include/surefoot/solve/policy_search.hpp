@@ -1,4 +1,4 @@
-// Tunes the parameters of any policy by CMA-ES on its simulated cost.
+// Policy search: the parameters of any policy tuned by CMA-ES on its simulated cost.
 //
 // Two stages, each with half of the budget. The first explores: descents by few runs per candidate, restarted (BIPOP)
 // to leave poor local optima. The second refines the best center that was found, with more runs per candidate where the
@@ -20,12 +20,12 @@
 #include <functional>
 #include <limits>
 #include <stop_token>
-#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "surefoot/core/box.hpp"
+#include "surefoot/core/compiled.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/policy.hpp"
 #include "surefoot/core/problem.hpp"
@@ -33,7 +33,6 @@
 #include "surefoot/core/rollout.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/optimize/cma_es.hpp"
-#include "surefoot/solve/rfpi_options.hpp"
 
 namespace surefoot {
 
@@ -56,22 +55,11 @@ struct PolicySearchOptions {
   int max_restarts = 9;  // with large population
 
   /// Called after every generation. Values in it are costs, minus the mean return; an evaluation is min_runs / 2 runs.
-  std::function<void(const CmaEsSearch&)> observer = {};
+  std::function<void(const CmaEsSearch&)> on_progress = {};
 };
 
 /// Throws SolveError, naming the option, unless those of the search make sense.
-inline void check(const PolicySearchOptions& options, Eigen::Index population) {
-  const auto demand = [](bool condition, const std::string& sentence) {
-    if (!condition) throw SolveError("PolicySearchOptions: " + sentence);
-  };
-  demand(options.min_runs >= 2, "min_runs must be at least 2");
-  demand(options.max_runs >= options.min_runs, "max_runs must be at least min_runs");
-  demand(options.final_runs >= 1, "final_runs must be at least 1");
-  const std::uint64_t generation =
-      static_cast<std::uint64_t>(options.min_runs) * static_cast<std::uint64_t>(population);
-  demand(options.total_runs >= 2 * generation,
-         "total_runs must cover a generation of both stages, " + std::to_string(2 * generation) + " runs");
-}
+void check(const PolicySearchOptions& options, Eigen::Index population);
 
 /// A point of the search and its mean return over fresh runs.
 template <int N>
@@ -112,9 +100,9 @@ PolicySearchResult<N> policy_search(const P& problem, const MakePolicy& make_pol
   };
 
   PolicySearchResult<N> result{.parameters = start, .value = {}, .finalists = {{start, {}}}};
-  const auto judge = [&](int runs, std::uint64_t judge_seed) {  // all finalists so far; the best wins
+  const auto rank = [&](int runs, std::uint64_t rank_seed) {  // all finalists so far; the best wins
     for (auto& finalist : result.finalists) {
-      finalist.value = evaluate(problem, make_policy(finalist.parameters), rollouts(runs), executor, judge_seed);
+      finalist.value = evaluate(problem, make_policy(finalist.parameters), rollouts(runs), executor, rank_seed);
     }
     const auto mean = [](const auto& finalist) { return finalist.value.mean; };
     result.parameters = std::ranges::max_element(result.finalists, {}, mean)->parameters;
@@ -137,13 +125,13 @@ PolicySearchResult<N> policy_search(const P& problem, const MakePolicy& make_pol
   explore.max_seconds = 0.5 * options.max_seconds;
   explore.noise = {.evaluations = 2, .max_evaluations = 2};
   search(explore, options.total_runs / 2, 0);
-  judge(5 * options.max_runs, stage_seed(1));
+  rank(5 * options.max_runs, stage_seed(1));
 
   CmaEsOptions refine{.box_sigma = options.refine_sigma};
   refine.max_seconds = std::max(0.0, options.max_seconds - seconds());
   refine.noise = {.evaluations = 2, .max_evaluations = options.max_runs / runs_per_call};
   if (!in_any_process(executor, stop.stop_requested())) search(refine, options.total_runs - result.runs, 2);
-  judge(options.final_runs, stage_seed(3));
+  rank(options.final_runs, stage_seed(3));
   result.value =
       evaluate(problem, make_policy(result.parameters), rollouts(options.final_runs), executor, stage_seed(4));
   result.seconds = seconds();
@@ -159,3 +147,7 @@ auto policy_search(const P&, const auto&, const std::type_identity_t<Vec<N>>&, c
 }
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/solve/policy_search.ipp"
+#endif

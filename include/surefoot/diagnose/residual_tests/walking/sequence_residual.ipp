@@ -16,7 +16,7 @@
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
 #include "surefoot/diagnose/residual_tests/walking/sequence_residual.hpp"
-#include "surefoot/optimize/linear_algebra.hpp"
+#include "surefoot/optimize/symmetric_eigen.hpp"
 
 namespace surefoot::diagnosis {
 
