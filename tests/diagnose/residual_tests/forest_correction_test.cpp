@@ -10,12 +10,10 @@
 #include <vector>
 
 #include "surefoot/core/executor.hpp"
-#include "surefoot/diagnose/verdict/evaluate.hpp"
+#include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
-using namespace surefoot::diagnosis;
-
-namespace surefoot {
+namespace surefoot::diagnosis {
 namespace {
 
 using toys::SlidingBlock;
@@ -56,7 +54,7 @@ Bench bench(std::vector<Recording> recordings) {
 }
 
 double error(const BoundSimulator& bound, std::size_t r, const SimulatedRun& run) {
-  return detail::recording_error(bound, r, run, Eigen::VectorXd::Ones(2));
+  return recording_error(bound, r, run, Eigen::VectorXd::Ones(2));
 }
 
 TEST_CASE("it learns what depends on the motion, and takes it off recordings it has not seen") {
@@ -108,29 +106,5 @@ TEST_CASE("a model corrects a recording by itself; what it asks for must be ther
                        "the residual model has 1 outputs, the simulator has 2", DiagnoseError);
 }
 
-ForestResidual offered(std::vector<Recording> recordings, Verdict verdict) {
-  Investigation investigation;
-  investigation.bound = bind_simulator(SlidingBlock{}, std::move(recordings));
-  investigation.split = {{0, 1, 2, 3, 4, 5}, {6, 7}, {{0, 1}, {2, 3}, {4, 5}}};
-  investigation.problem.fit.recordings = investigation.split.training;
-  investigation.problem.fit.weighting.sigma = Eigen::VectorXd::Ones(2);
-  investigation.nominal = nominal_hypothesis(investigation.bound);
-  investigation.diagnosis.verdict = verdict;
-  detail::prove(investigation, investigation.nominal, investigation.nominal, serially(), 1);
-  return investigation.diagnosis.forest_residual;
-}
-
-TEST_CASE("it is offered where nothing explains a mismatch, and kept only where it helps on recordings not seen") {
-  const ForestResidual helps = offered(block_recordings(0.05, 0.002), Verdict::unexplained);
-  CHECK(helps.tried);
-  CHECK(helps.kept);
-  CHECK(helps.gain > 2 * helps.gain_stderr);
-  CHECK(helps.held_out_after < 0.7 * helps.held_out_before);
-  const ForestResidual noise = offered(block_recordings(0, 0.01), Verdict::unexplained);
-  CHECK(noise.tried);
-  CHECK_FALSE(noise.kept);
-  CHECK_FALSE(offered(block_recordings(0.05, 0.002), Verdict::missing_physics).tried);
-}
-
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::diagnosis
