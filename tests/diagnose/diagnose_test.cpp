@@ -131,8 +131,8 @@ TEST_CASE("the same seed gives the same diagnosis for any number of threads") {
   for (const std::size_t threads : {std::size_t{2}, std::size_t{3}}) {
     const Diagnosis other = diagnose(ServoPendulum{}, recordings, {}, surefoot::Threads{threads}, 9);
     CHECK(other.sentence == one.sentence);
-    CHECK(other.test_after == one.test_after);
-    CHECK(other.test_forest == one.test_forest);
+    CHECK(other.held_out_after == one.held_out_after);
+    CHECK(other.held_out_forest == one.held_out_forest);
     REQUIRE(other.effects.size() == one.effects.size());
     CHECK(other.effects.front().parameters.front().value == one.effects.front().parameters.front().value);
     CHECK(other.effects.front().evidence.confidence == one.effects.front().evidence.confidence);

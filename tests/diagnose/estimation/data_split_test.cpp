@@ -43,8 +43,8 @@ TEST_CASE("folds partition the training recordings, and with those held out they
 }
 
 TEST_CASE("the share of held-out recordings is the one asked for") {
-  CHECK(split_recordings(named(20), {}, 0.25, 4, 1).test.size() == 5);
-  CHECK(split_recordings(named(3), {}, 0.25, 4, 1).test.size() == 1);
+  CHECK(split_recordings(named(20), {}, 0.25, 4, 1).held_out.size() == 5);
+  CHECK(split_recordings(named(3), {}, 0.25, 4, 1).held_out.size() == 1);
 }
 
 TEST_CASE("recordings that are named are held out, and never in a fold") {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "surefoot/core/executor.hpp"
-#include "surefoot/diagnose/verdict/evaluate.hpp"
+#include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
 namespace surefoot::diagnosis {
@@ -61,19 +61,19 @@ TEST_CASE("it learns what depends on the motion, and takes it off recordings it 
   const Bench b = bench(block_recordings(0.05, 0.002));
   const std::vector<std::size_t> some(b.all.begin(), b.all.end() - 1);
   const std::vector<SimulatedRun> some_runs(b.runs.begin(), b.runs.end() - 1);
-  const ResidualModel model = train_residual_model(b.bound, some, some_runs, serially(), 1);
+  const ResidualModel model = train_residual_model(b.bound, some, some_runs, Serial{}, 1);
   CHECK(model.outputs == std::vector<std::string>{"x_m", "v_mps"});
   CHECK(model.features == feature_names(b.bound));
   CHECK(error(b.bound, 7, corrected(b.bound, 7, b.runs[7], model)) < 0.5 * error(b.bound, 7, b.runs[7]));
   CHECK(corrected(b.bound, 7, b.runs[7], model).states == b.runs[7].states);
-  const Comparison unseen = cross_validate_residual(b.bound, b.all, b.runs, b.folds, b.weighting, serially(), 1);
+  const Comparison unseen = cross_validate_residual(b.bound, b.all, b.runs, b.folds, b.weighting, Serial{}, 1);
   CHECK(unseen.gain > 0.1);
   CHECK(unseen.t > 2.5);
 }
 
 TEST_CASE("on noise alone it gains nothing") {
   const Bench b = bench(block_recordings(0, 0.01));
-  const Comparison unseen = cross_validate_residual(b.bound, b.all, b.runs, b.folds, b.weighting, serially(), 1);
+  const Comparison unseen = cross_validate_residual(b.bound, b.all, b.runs, b.folds, b.weighting, Serial{}, 1);
   CHECK(unseen.gain < 0.01);
 }
 
@@ -85,13 +85,13 @@ TEST_CASE("rows without a measurement teach nothing") {
     }
   }
   const Bench b = bench(recordings);
-  const ResidualModel model = train_residual_model(b.bound, b.all, b.runs, serially(), 1);
+  const ResidualModel model = train_residual_model(b.bound, b.all, b.runs, Serial{}, 1);
   CHECK(error(b.bound, 7, corrected(b.bound, 7, b.runs[7], model)) < 0.5 * error(b.bound, 7, b.runs[7]));
 }
 
 TEST_CASE("a model corrects a recording by itself; what it asks for must be there") {
   const Bench b = bench(block_recordings(0.05, 0.002));
-  const ResidualModel model = train_residual_model(b.bound, b.all, b.runs, serially(), 1);
+  const ResidualModel model = train_residual_model(b.bound, b.all, b.runs, Serial{}, 1);
   Recording alone = b.bound.recordings[3];
   const BoundSimulator bound = bind_simulator(SlidingBlock{}, {alone});  // "load" no longer differs between recordings
   const SimulatedRun run = simulate_augmented(SlidingBlock{}, {}, alone);
@@ -104,30 +104,6 @@ TEST_CASE("a model corrects a recording by itself; what it asks for must be ther
   of_one_output.outputs.pop_back();
   CHECK_THROWS_WITH_AS(corrected(b.bound, 3, b.runs[3], of_one_output),
                        "the residual model has 1 outputs, the simulator has 2", DiagnoseError);
-}
-
-ForestResidual offered(std::vector<Recording> recordings, Verdict verdict) {
-  Investigation investigation;
-  investigation.bound = bind_simulator(SlidingBlock{}, std::move(recordings));
-  investigation.split = {{0, 1, 2, 3, 4, 5}, {6, 7}, {{0, 1}, {2, 3}, {4, 5}}};
-  investigation.problem.fit.recordings = investigation.split.training;
-  investigation.problem.fit.weighting.sigma = Eigen::VectorXd::Ones(2);
-  investigation.nominal = nominal_hypothesis(investigation.bound);
-  investigation.diagnosis.verdict = verdict;
-  prove(investigation, investigation.nominal, investigation.nominal, serially(), 1);
-  return investigation.diagnosis.forest_residual;
-}
-
-TEST_CASE("it is offered where nothing explains a mismatch, and kept only where it helps on recordings not seen") {
-  const ForestResidual helps = offered(block_recordings(0.05, 0.002), Verdict::unexplained);
-  CHECK(helps.tried);
-  CHECK(helps.kept);
-  CHECK(helps.gain > 2 * helps.gain_stderr);
-  CHECK(helps.held_out_after < 0.7 * helps.held_out_before);
-  const ForestResidual noise = offered(block_recordings(0, 0.01), Verdict::unexplained);
-  CHECK(noise.tried);
-  CHECK_FALSE(noise.kept);
-  CHECK_FALSE(offered(block_recordings(0.05, 0.002), Verdict::missing_physics).tried);
 }
 
 }  // namespace

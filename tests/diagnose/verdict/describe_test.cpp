@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <memory>
+
 #include "tests/diagnose/verdict/tank_setup.hpp"
 
 namespace surefoot::diagnosis {
@@ -88,7 +90,7 @@ TEST_CASE("the next experiment shows one effect, or the other if it has its own"
     effect.name = name;
     effect.experiment = experiment;
     Hypothesis hypothesis;
-    hypothesis.effects.push_back({std::make_shared<const Effect>(effect)});
+    hypothesis.effects.push_back({std::make_shared<const Effect>(effect), 0, -1, "level", 0});
     return hypothesis;
   };
   CHECK(next_experiment(one("lag", "step the input"), one("delay", "send pulses")) ==

@@ -55,5 +55,33 @@ TEST_CASE("errors, curves and intervals are those of the held-out recordings") {
   CHECK_FALSE(diagnosis.forest_residual.tried);  // nothing is unexplained
 }
 
+// Tanks whose measured level is off by a wave of the true level that no effect in the tank explains.
+ForestResidual offered(double wave, Verdict verdict) {
+  auto recordings = toys::noisy_tanks({}, 0.01, 8);
+  for (Recording& recording : recordings) {
+    for (double& level : recording.outputs.reshaped()) level += wave * std::sin(20 * level);
+  }
+  EstimationSetup setup = toys::tank_setup(recordings);
+  setup.split = {{0, 1, 2, 3, 4, 5}, {6, 7}, {{0, 1}, {2, 3}, {4, 5}}};
+  const FittedModel model = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
+  Diagnosis diagnosis;
+  diagnosis.verdict = verdict;
+  evaluate(setup, {model, model, model}, diagnosis, serially(), 1);
+  return diagnosis.forest_residual;
+}
+
+TEST_CASE(
+    "a forest is offered where nothing explains a mismatch, and kept only where it helps on what it has not seen") {
+  const ForestResidual helps = offered(0.05, Verdict::unexplained);
+  CHECK(helps.tried);
+  CHECK(helps.kept);
+  CHECK(helps.gain > 2 * helps.gain_stderr);
+  CHECK(helps.held_out_after < 0.8 * helps.held_out_before);
+  const ForestResidual noise = offered(0, Verdict::unexplained);
+  CHECK(noise.tried);
+  CHECK_FALSE(noise.kept);
+  CHECK_FALSE(offered(0.05, Verdict::missing_physics).tried);
+}
+
 }  // namespace
 }  // namespace surefoot::diagnosis
