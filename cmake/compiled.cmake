@@ -17,8 +17,16 @@ foreach(folder IN LISTS folders)
   list(APPEND sources ${PROJECT_BINARY_DIR}/compiled/${id}.cpp)
 endforeach()
 
-add_library(surefoot_compiled STATIC EXCLUDE_FROM_ALL ${sources})
+add_library(surefoot_compiled STATIC ${sources})
 add_library(surefoot::compiled ALIAS surefoot_compiled)
 set_target_properties(surefoot_compiled PROPERTIES OUTPUT_NAME surefoot EXPORT_NAME compiled POSITION_INDEPENDENT_CODE ON)
 target_link_libraries(surefoot_compiled PUBLIC surefoot)
-target_compile_definitions(surefoot_compiled PUBLIC SUREFOOT_COMPILED)
+# The library and a program with other -march flags agree on how memory is aligned.
+target_compile_definitions(surefoot_compiled PUBLIC SUREFOOT_COMPILED EIGEN_MAX_ALIGN_BYTES=16)
+# No contraction to fused multiply-add: the same results on every machine.
+target_compile_options(surefoot_compiled PRIVATE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off>)
+
+# Where nothing of our own needs it and it is not installed, it is built only if something links it.
+if(NOT SUREFOOT_INSTALL_COMPILED)
+  set_target_properties(surefoot_compiled PROPERTIES EXCLUDE_FROM_ALL ON)
+endif()

@@ -1,5 +1,6 @@
-# `cmake --install`, the package file behind find_package(surefoot CONFIG), and that of pkg-config. Nothing is compiled
-# for it, and what was installed can be moved.
+# `cmake --install`, the package behind find_package(surefoot CONFIG), and those of pkg-config; what was installed can be
+# moved. Components: headers (nothing is compiled for it), compiled (libsurefoot.a), apps_library (libsurefoot_apps.a) and
+# apps (programs, their pages and models).
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
@@ -9,19 +10,35 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/surefoot-config.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/surefoot-config-version.cmake
                                  COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 
-install(TARGETS surefoot EXPORT surefoot-targets INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(EXPORT surefoot-targets NAMESPACE surefoot:: DESTINATION ${package_dir})
-install(FILES ${PROJECT_BINARY_DIR}/surefoot-config.cmake ${PROJECT_BINARY_DIR}/surefoot-config-version.cmake
-        DESTINATION ${package_dir})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/surefoot DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# surefoot_install_target(TARGET COMPONENT PKG_CONFIG_FILE): a target, the file of the package that has it, and its .pc.
+# Each component has a file of its own, because not all of them need to be there.
+function(surefoot_install_target target component pc)
+  install(TARGETS ${target} EXPORT ${component} COMPONENT ${component}
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(EXPORT ${component} NAMESPACE surefoot:: FILE surefoot-${component}.cmake DESTINATION ${package_dir}
+          COMPONENT ${component})
 
-set(pkg_config_dir ${CMAKE_INSTALL_DATADIR}/pkgconfig)
-file(RELATIVE_PATH to_prefix /${pkg_config_dir} /)
-string(REGEX REPLACE "/$" "" to_prefix ${to_prefix})
-set(pc_includedir "\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}")
-if(IS_ABSOLUTE ${CMAKE_INSTALL_INCLUDEDIR})
-  set(pc_includedir ${CMAKE_INSTALL_INCLUDEDIR})
+  set(pc_dir ${CMAKE_INSTALL_DATADIR}/pkgconfig)
+  file(RELATIVE_PATH to_prefix /${pc_dir} /)
+  string(REGEX REPLACE "/$" "" to_prefix ${to_prefix})
+  foreach(dir includedir libdir)
+    string(TOUPPER CMAKE_INSTALL_${dir} variable)
+    set(pc_${dir} "\${prefix}/${${variable}}")
+    if(IS_ABSOLUTE ${${variable}})
+      set(pc_${dir} ${${variable}})
+    endif()
+  endforeach()
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/${pc}.pc.in ${PROJECT_BINARY_DIR}/${pc}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${pc}.pc DESTINATION ${pc_dir} COMPONENT ${component})
+endfunction()
+
+surefoot_install_target(surefoot headers surefoot)
+install(FILES ${PROJECT_BINARY_DIR}/surefoot-config.cmake ${PROJECT_BINARY_DIR}/surefoot-config-version.cmake
+        DESTINATION ${package_dir} COMPONENT headers)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/surefoot DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT headers
+        FILES_MATCHING PATTERN "*.hpp" PATTERN "*.ipp")
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT headers)
+
+if(SUREFOOT_INSTALL_COMPILED)
+  surefoot_install_target(surefoot_compiled compiled surefoot-compiled)
 endif()
-configure_file(${CMAKE_CURRENT_LIST_DIR}/surefoot.pc.in ${PROJECT_BINARY_DIR}/surefoot.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/surefoot.pc DESTINATION ${pkg_config_dir})

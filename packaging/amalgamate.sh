@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Writes all of surefoot as one header: packaging/amalgamate.sh FILE, say surefoot.hpp. Compile with -std=c++20 and Eigen.
-# Needs bash and awk. Each header comes once, after those it includes; the same sources give the same file.
+# Needs bash and awk. Each header comes once, after those it includes, and definitions (.ipp) after all headers; the same
+# sources give the same file.
 set -euo pipefail
 if (($# != 1)); then
   echo "usage: packaging/amalgamate.sh FILE: the file to write, say surefoot.hpp" >&2
@@ -10,8 +11,8 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 out=$1
 trap 'rm -f "$out.part"' EXIT
 
-# take(header): appends it to `body` after what it includes. Includes of the standard library and Eigen are collected,
-# unless they stand behind a condition; those stay where they are.
+# take(header): appends it to `body` after what it includes; its definitions wait in `later`. Includes of the standard
+# library and Eigen are collected, unless they stand behind a condition; those stay where they are.
 LC_ALL=C awk -v include="$root/include" -v licence="$root/LICENSE" '
 function take(header,    file, line, depth, text, name, status) {
   if (header in taken) return
@@ -19,6 +20,14 @@ function take(header,    file, line, depth, text, name, status) {
   file = include "/" header
   while ((status = (getline line < file)) > 0) {
     if (line ~ /^#pragma once/) continue
+    if (line ~ /^#ifndef SUREFOOT_COMPILED/) {  # the switch of a header: an include of its definitions, and #endif
+      getline line < file
+      if (line !~ /^#include ".*\.ipp"/) fail(header ": SUREFOOT_COMPILED is for including definitions, not for: " line)
+      split(line, name, "\"")
+      later[++waiting] = name[2]
+      getline line < file
+      continue
+    }
     if (line ~ /^[ \t]*#[ \t]*if/) ++depth
     if (line ~ /^[ \t]*#[ \t]*endif/) --depth
     if (line ~ /^#include "/) {
@@ -43,6 +52,7 @@ function fail(why) {
 }
 BEGIN {
   take("surefoot/surefoot.hpp")
+  for (i = 1; i <= waiting; ++i) take(later[i])
   print "// All of surefoot in one header; needs C++20 and Eigen 3.4. Made by packaging/amalgamate.sh: change the headers that it"
   print "// was made from, not this one.\n//"
   while ((getline line < licence) > 0) print (line == "" ? "//" : "// " line)

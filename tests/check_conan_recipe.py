@@ -77,6 +77,6 @@ for step in ("export_sources", "layout", "validate", "generate", "build", "packa
 
 packed = sorted(f.relative_to(recipe.package_folder).as_posix() for f in recipe.package_folder.rglob("*") if f.is_file())
 repository = recipe_folder.parent.parent
-wanted = sorted(f.relative_to(repository).as_posix() for f in (repository / "include").rglob("*.hpp")) + ["licenses/LICENSE"]
+wanted = sorted(f.relative_to(repository).as_posix() for f in (repository / "include").rglob("*.[hi]pp")) + ["licenses/LICENSE"]
 assert packed == wanted, f"packed but not wanted, or the other way round: {set(packed) ^ set(wanted)}"
 print(f"{recipe.name} {recipe.version}: {len(packed)} files")

@@ -8,7 +8,7 @@ string(ASCII 2 close)
 # Every relative link of a Markdown file leads to a file, and on the site every page but the first stands in the menu.
 file(GLOB pages RELATIVE ${source} ${source}/docs/*.md)
 file(READ ${source}/mkdocs.yml menu)
-foreach(page ${pages} README.md packaging/README.md examples/sigmaban/robot/README.md)
+foreach(page ${pages} README.md packaging/README.md examples/README.md examples/sigmaban/robot/README.md)
   get_filename_component(folder ${source}/${page} DIRECTORY)
   get_filename_component(name ${page} NAME)
   if(page IN_LIST pages AND NOT menu MATCHES ": ${name}\n")

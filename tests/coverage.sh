@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Which lines of the library its tests run: tests/coverage.sh [AREA...], by default all of core forest optimize motion diagnose
-# solve; examples is another. Works on a bare Debian 12 with clang 19. Prints lines, lines run and the missing ones of every file;
+# solve; apps and examples are others. Works on a bare Debian 12 with clang 19. Prints lines, lines run and the missing ones of every file;
 # html/index.html of the build has the lines themselves. The build is kept in $SUREFOOT_BUILD_DIR, by default build/coverage.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -16,11 +16,11 @@ for area in "${areas[@]}"; do
   fi
 done
 build=$(realpath -m "${SUREFOOT_BUILD_DIR:-build/coverage}")
-examples=OFF
-[[ " ${areas[*]} " == *" examples "* ]] && examples=ON
+programs=OFF
+[[ " ${areas[*]} " =~ " apps "|" examples " ]] && programs=ON
 # Clang counts what the source says before it is optimised, so that inlining hides no line.
-cmake -S . -B "$build" -G Ninja -D CMAKE_CXX_COMPILER=clang++-19 -D CMAKE_BUILD_TYPE=Debug -D SUREFOOT_EXAMPLES=$examples \
-  -D SUREFOOT_BENCHMARKS=OFF -D CMAKE_CXX_FLAGS_DEBUG="-O1 -fprofile-instr-generate -fcoverage-mapping"
+cmake -S . -B "$build" -G Ninja -D CMAKE_CXX_COMPILER=clang++-19 -D CMAKE_BUILD_TYPE=Debug -D SUREFOOT_APPS=$programs \
+  -D SUREFOOT_EXAMPLES=$programs -D SUREFOOT_BENCHMARKS=OFF -D CMAKE_CXX_FLAGS_DEBUG="-O1 -fprofile-instr-generate -fcoverage-mapping"
 targets=("${areas[@]/#/surefoot_}")
 cmake --build "$build" --target "${targets[@]/%/_tests}"
 rm -rf "$build/profiles" "$build/html"
@@ -32,7 +32,7 @@ files=() what=("$build/bin/surefoot_${areas[0]}_tests" -instr-profile "$build/te
 for area in "${areas[@]}"; do
   what+=(-object "$build/bin/surefoot_${area}_tests")
   folder=include/surefoot/$area
-  [[ $area == examples ]] && folder=examples
+  [[ $area == apps || $area == examples ]] && folder=$area
   mapfile -t -O "${#files[@]}" files < <(find "$PWD/$folder" -name '*.?pp' | sort)
 done
 llvm-cov-19 show "${what[@]}" -format=html -output-dir "$build/html" "${files[@]}"

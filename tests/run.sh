@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source cmake/packages.sh
 require_packages "${build_packages[@]}" doctest-dev gnuplot-nox libmujoco-dev pkg-config python3 \
-  libopenmpi-dev openmpi-bin mkdocs mkdocs-material python3-pymdownx doxygen
+  libopenmpi-dev openmpi-bin dpkg-dev file mkdocs mkdocs-material python3-pymdownx doxygen
 
 build=${SUREFOOT_BUILD_DIR:-build/dev}
 cmake --preset dev -B "$build" -D SUREFOOT_TESTS=ON -D SUREFOOT_EXAMPLES=ON -D SUREFOOT_BENCHMARKS=OFF

@@ -17,7 +17,7 @@ struct Column {
 };
 
 struct Columns {
-  std::array<Column, 3> commands;               // x, y, turn; of wheels: left, right, time
+  std::array<Column, 3> commands;             // x, y, turn; of wheels: left, right, time
   std::array<std::optional<Column>, 3> pose;  // x, y, heading; the heading may be missing
 };
 

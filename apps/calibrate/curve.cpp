@@ -13,7 +13,8 @@
 #include "commands.hpp"
 #include "curve_files.hpp"
 #include "sequence_options.hpp"
-#include "surefoot/motion/plan/learning_curve.hpp"
+#include "surefoot/motion/compare.hpp"
+#include "surefoot/motion/plan.hpp"
 
 namespace calibrate_program {
 namespace {
@@ -26,8 +27,8 @@ struct Options {
 };
 
 /// With a line of progress about every two seconds.
-template <surefoot::MotionModel M>
-surefoot::LearningCurve curve_of(const std::vector<surefoot::WalkSequence>& sequences,
+surefoot::LearningCurve curve_of(const surefoot::AnyMotionModel& model,
+                                 const std::vector<surefoot::WalkSequence>& sequences,
                                  surefoot::LearningCurveOptions options, const StoppableThreads& executor,
                                  std::uint64_t seed) {
   using Clock = std::chrono::steady_clock;
@@ -38,14 +39,14 @@ surefoot::LearningCurve curve_of(const std::vector<surefoot::WalkSequence>& sequ
     if (seconds < shown + 2 && done < options.repetitions) return;
     shown = seconds;
     const auto left = static_cast<double>(options.repetitions - done) * seconds / static_cast<double>(done);
-    std::fprintf(stderr, "... %s: %zu of %zu splits, %.1f per second, %.0f s left\n", surefoot::model_name<M>().c_str(),
-                 done, options.repetitions, static_cast<double>(done) / seconds, left);
+    std::fprintf(stderr, "... %s: %zu of %zu splits, %.1f per second, %.0f s left\n", model.name().c_str(), done,
+                 options.repetitions, static_cast<double>(done) / seconds, left);
   };
-  return surefoot::learning_curve<M>(sequences, options, executor, seed);
+  return surefoot::learning_curve(model, sequences, options, executor, seed);
 }
 
 /// About fifteen counts, close together where the curve is steep.
-std::vector<std::size_t> spread_counts(std::size_t most) {
+std::vector<std::size_t> usual_counts(std::size_t most) {
   std::vector<std::size_t> counts;
   for (std::size_t count = 1; count < most; count += count < 10 ? 1 : count < 30 ? 3 : count / 5) {
     counts.push_back(count);
@@ -55,7 +56,7 @@ std::vector<std::size_t> spread_counts(std::size_t most) {
 }
 
 void print(const std::vector<CountedCurve>& curves, double as_commanded) {
-  std::printf("Mean error of final positions [m] on sequences left out, by the number fitted to:\n\n%-6s", "");
+  std::printf("Mean error of final positions [m] on held-out sequences, by the number fitted to:\n\n%-6s", "");
   for (const CountedCurve& curve : curves) std::printf(" %26.26s", curve.curve.model.c_str());
   std::printf("\n");
   for (std::size_t i = 0; i < curves[0].curve.counts.size(); ++i) {
@@ -83,20 +84,16 @@ void run(const Options& options) {
     throw UsageError("only " + std::to_string(loaded.sequences.size()) + " sequences: --validation keeps " +
                      std::to_string(work.validation) + " of them, none is left to fit to; walk more or keep fewer");
   }
-  if (work.counts.empty()) work.counts = spread_counts(loaded.sequences.size() - work.validation);
+  if (work.counts.empty()) work.counts = usual_counts(loaded.sequences.size() - work.validation);
   std::vector<CountedCurve> curves;
   until_interrupted(options.read.threads, [&](const StoppableThreads& executor) {
     for (const ModelKind kind : all_models) {
-      with_model(kind, [&]<surefoot::MotionModel M>() {
-        auto curve = curve_of<M>(loaded.sequences, work, executor, options.read.seed);
-        const auto more = surefoot::more_sequences(curve, loaded.sequences.size());
-        curves.push_back({kind, std::move(curve), more});
-      });
+      auto curve = curve_of(default_model(kind), loaded.sequences, work, executor, options.read.seed);
+      const auto more = surefoot::more_sequences(curve, loaded.sequences.size());
+      curves.push_back({kind, std::move(curve), more});
     }
   });
-  const double as_commanded =
-      final_pose_error(surefoot::detail::AsOrdered{}, std::span<const surefoot::WalkSequence>(loaded.sequences))
-          .position;
+  const double as_commanded = surefoot::score_of_commands(loaded.sequences).position;
   print(curves, as_commanded);
   write_curve_files(options.out, curves, as_commanded, work);
 }
@@ -117,7 +114,7 @@ void add_curve(CLI::App& program) {
   command->add_option("--repetitions", options->repetitions, "random splits")
       ->check(CLI::Range(2, 100'000))
       ->capture_default_str();
-  command->add_option("--validation", options->validation, "sequences that judge each fit")
+  command->add_option("--validation", options->validation, "held-out sequences, for each fit")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   add_fitting_options(*command, options->read);

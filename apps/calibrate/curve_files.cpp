@@ -20,7 +20,7 @@ std::string csv(const std::vector<CountedCurve>& curves) {
   for (const CountedCurve& one : curves) {
     for (std::size_t i = 0; i < one.curve.counts.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
-      out << name_of(one.kind) << ',' << one.curve.counts[i] << ',' << one.curve.position[at] << ','
+      out << file_name_of(one.kind) << ',' << one.curve.counts[i] << ',' << one.curve.position[at] << ','
           << one.curve.position_half_width[at] << '\n';
     }
   }
@@ -34,18 +34,16 @@ std::vector<double> row_of(const Matrix& matrix, Eigen::Index row) {
 }
 
 nlohmann::ordered_json coefficients(const CountedCurve& one) {
-  return with_model(one.kind, [&]<surefoot::MotionModel M>() {
-    auto list = nlohmann::ordered_json::array();
-    Eigen::Index i = 0;
-    for (const surefoot::ModelParameter& info : M::parameter_info()) {
-      list.push_back({{"name", info.name},
-                      {"unit", info.unit},
-                      {"mean", row_of(one.curve.coefficients, i)},
-                      {"standard_deviation", row_of(one.curve.coefficients_spread, i)}});
-      ++i;
-    }
-    return list;
-  });
+  auto list = nlohmann::ordered_json::array();
+  Eigen::Index i = 0;
+  for (const surefoot::ModelParameter& info : default_model(one.kind).parameter_info()) {
+    list.push_back({{"name", info.name},
+                    {"unit", info.unit},
+                    {"mean", row_of(one.curve.coefficients, i)},
+                    {"standard_deviation", row_of(one.curve.coefficients_deviation, i)}});
+    ++i;
+  }
+  return list;
 }
 
 std::string json(const std::vector<CountedCurve>& curves, double as_commanded,
@@ -60,7 +58,7 @@ std::string json(const std::vector<CountedCurve>& curves, double as_commanded,
   for (const CountedCurve& one : curves) {
     const Eigen::RowVectorXd position = one.curve.position.matrix().transpose();
     const Eigen::RowVectorXd half_width = one.curve.position_half_width.matrix().transpose();
-    json["models"].push_back({{"model", name_of(one.kind)},
+    json["models"].push_back({{"model", file_name_of(one.kind)},
                               {"position_m", row_of(position, 0)},
                               {"position_half_width_m", row_of(half_width, 0)},
                               {"limit_m", one.more.limit},
@@ -110,7 +108,7 @@ void draw_coefficients(const std::filesystem::path& base, const surefoot::Learni
   for (const surefoot::ModelParameter& info : surefoot::FullLinearCorrection::parameter_info()) {
     for (std::size_t k = 0; k < curve.counts.size(); ++k) {
       const auto at = static_cast<Eigen::Index>(k);
-      data << curve.counts[k] << ' ' << curve.coefficients(i, at) << ' ' << curve.coefficients_spread(i, at) << '\n';
+      data << curve.counts[k] << ' ' << curve.coefficients(i, at) << ' ' << curve.coefficients_deviation(i, at) << '\n';
     }
     data << "\n\n";
     const bool diagonal = i % 5 == 1;
@@ -151,8 +149,8 @@ std::string which_model(const std::vector<CountedCurve>& curves) {
   return sentence + text;
 }
 
-void write_curve_files(const std::filesystem::path& folder, const std::vector<CountedCurve>& curves, double as_commanded,
-                       const surefoot::LearningCurveOptions& options) {
+void write_curve_files(const std::filesystem::path& folder, const std::vector<CountedCurve>& curves,
+                       double as_commanded, const surefoot::LearningCurveOptions& options) {
   draw_curve(folder / "curve", curves, as_commanded);
   for (const CountedCurve& one : curves) {
     if (one.kind == ModelKind::full) draw_coefficients(folder / "coefficients", one.curve);

@@ -28,10 +28,9 @@ std::string symbol(std::string_view name) {
 
 std::string times(const std::string& what, double factor) { return factor == 1 ? what : shown(factor) + "*" + what; }
 
-template <surefoot::MotionModel M>
-std::vector<std::string> symbols() {
+std::vector<std::string> symbols(const surefoot::AnyMotionModel& model) {
   std::vector<std::string> result;
-  for (const surefoot::ModelParameter& info : M::parameter_info()) result.push_back(symbol(info.name));
+  for (const surefoot::ModelParameter& info : model.parameter_info()) result.push_back(symbol(info.name));
   return result;
 }
 
@@ -52,11 +51,10 @@ std::string row(const std::string& output, const std::vector<std::string>& known
   return sum.empty() ? "0" : sum;
 }
 
-template <surefoot::MotionModel M>
 void write_parameters(std::ostream& out, const MotionFile& file, const std::vector<bool>& determined, bool wheels) {
   out << "\n[parameters]\n";
   Eigen::Index i = 0;
-  for (const surefoot::ModelParameter& info : M::parameter_info()) {
+  for (const surefoot::ModelParameter& info : default_model(file.kind).parameter_info()) {
     const bool used = !wheels || info.name.substr(2).find("dy") == std::string_view::npos;
     if (used)
       out << symbol(info.name) << " = { value = " << shown(file.parameters[i]) << ", min = " << shown(info.low)
@@ -105,7 +103,8 @@ void write_states(std::ostream& out, const FileLayout& layout, const std::array<
 std::string heading(const FileLayout& layout) { return times("th", pose_states(layout)[2].column.factor); }
 
 void write_walk(std::ostream& out, const std::vector<std::string>& known, bool previous, const FileLayout& layout) {
-  constexpr std::array<const char*, 3> inputs{"order_forward", "order_lateral", "order_turn"}, commands{"ox", "oy", "ot"};
+  constexpr std::array<const char*, 3> inputs{"order_forward", "order_lateral", "order_turn"},
+      commands{"ox", "oy", "ot"};
   out << "kind   = \"map\"\n";
   if (layout.many)
     out << "sequence = \"seq\"\nmeasured = \"after step\"  # the pose of a row is that at its cycle's end\n";
@@ -159,14 +158,13 @@ std::string diagnose_model(const MotionFile& file, const std::vector<bool>& dete
   std::ostringstream out;
   out << "# As calibrated from " << file.sequences << " sequences (" << name_of(file.kind) << ", " << file.method
       << ").\nschema = \"surefoot.model/1\"\nname   = \"calibrated motion\"\n";
-  with_model(file.kind, [&]<surefoot::MotionModel M>() {
-    if (wheels) {
-      write_wheels(out, symbols<M>(), layout, options);
-    } else {
-      write_walk(out, symbols<M>(), file.kind == ModelKind::previous_command, layout);
-    }
-    write_parameters<M>(out, file, determined, wheels);
-  });
+  const std::vector<std::string> known = symbols(default_model(file.kind));
+  if (wheels) {
+    write_wheels(out, known, layout, options);
+  } else {
+    write_walk(out, known, file.kind == ModelKind::previous_command, layout);
+  }
+  write_parameters(out, file, determined, wheels);
   if (!wheels) write_planar(out, layout);
   return out.str();
 }

@@ -61,10 +61,10 @@ std::string panel(const std::string& title, double error, int index) {
 }  // namespace
 
 void draw_final_poses(const std::filesystem::path& base, const surefoot::PreviousCommandCorrection& model,
-                      Sequences sequences, bool kept_aside) {
+                      Sequences sequences, bool held_out) {
   const surefoot::PreviousCommandCorrection nominal;
   std::string commands = "set multiplot layout 1,2 title 'Final positions of " + std::to_string(sequences.size()) +
-                         (kept_aside ? " sequences kept aside" : " sequences, fitted to") +
+                         (held_out ? " held-out sequences" : " sequences, fitted to") +
                          " (root mean square error above)'\n"
                          "set size ratio -1\nset grid lc rgb '#e6e6e6' lt 1\n"
                          "set key below\nset xlabel 'left of the start [m]'\nset ylabel 'ahead of it [m]'\n" +

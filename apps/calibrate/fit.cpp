@@ -48,9 +48,9 @@ void run(const Options& options) {
     FittedWalk fitted = fit_walk(loaded.sequences, test.sequences, settings, executor);
     fitted.file.steps_per_cycle = loaded.layout.steps_per_cycle;
     std::cout << fit_report(fitted) << std::flush;
-    const bool judged = !test.sequences.empty();
-    draw_final_poses(options.out / "final_poses", fitted.file.model, judged ? test.sequences : loaded.sequences,
-                     judged);
+    const bool held_out = !test.sequences.empty();
+    draw_final_poses(options.out / "final_poses", fitted.file.model, held_out ? test.sequences : loaded.sequences,
+                     held_out);
     example::write_text(options.out / "motion.toml",
                         diagnose_model(fitted.file, fitted.determined, loaded.layout, options.read.load));
     write_motion_file(options.out / "motion.json", fitted.file);  // last: all is there
@@ -66,10 +66,11 @@ void add_fit(CLI::App& program) {
   command->footer(formats);
   add_reading_options(*command, options->read);
   command->add_option("--model", options->model, "auto: the simplest of those that predict best")
-      ->check(CLI::IsMember({"auto", "proportional", "simple", "full", "previous-order"}))
+      ->check(CLI::IsMember({"auto", "proportional", "simple", "full", "previous-command", "previous-order"}))
       ->capture_default_str();
   add_fitting_options(*command, options->read);
-  command->add_option("--test", options->test, "recordings that no model is fitted to: they judge alone");
+  command->add_option("--test", options->test,
+                      "held-out recordings: no model is fitted to them, its errors on them are reported");
   command->add_option("--out", options->out, "folder for the results, made if needed")->required();
   add_work_options(*command, options->read);
   command->callback([options] { run(*options); });

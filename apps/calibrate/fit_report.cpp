@@ -19,14 +19,13 @@ constexpr double degree = std::numbers::pi / 180;
   text += line;
 }
 
-template <surefoot::MotionModel M>
 std::string coefficients(const FittedWalk& fitted) {
   const MotionFile& file = fitted.file;
   const bool published = file.method == "published";
   std::string text;
   add(text, "\n%-24s %12s %12s %12s\n", "coefficient", "value", "std. error", published ? "likelihood" : "published");
   Eigen::Index i = 0;
-  for (const surefoot::ModelParameter& info : M::parameter_info()) {
+  for (const surefoot::ModelParameter& info : default_model(file.kind).parameter_info()) {
     const std::string name = std::string(info.name) + (info.unit == "1" ? "" : " [" + std::string(info.unit) + "]");
     add(text, "%-24s %12.4g %12.2g %12.4g%s\n", name.c_str(), file.parameters[i], std::sqrt(file.covariance(i, i)),
         fitted.by_other_method[i],
@@ -78,10 +77,10 @@ std::string noise(const FittedWalk& fitted) {
 
 }  // namespace
 
-std::string judged_table(const std::vector<JudgedModel>& models) {
+std::string evaluation_table(const std::vector<EvaluatedModel>& models) {
   std::string text;
   add(text, "%-34s %12s %22s %14s\n", "model", "coefficients", "final position [m]", "heading [deg]");
-  for (const JudgedModel& model : models) {
+  for (const EvaluatedModel& model : models) {
     char heading[32] = "-", error[32] = "";
     if (std::isfinite(model.heading)) std::snprintf(heading, sizeof heading, "%.1f", model.heading / degree);
     if (std::isfinite(model.position_error)) std::snprintf(error, sizeof error, " +- %.3f", model.position_error);
@@ -94,13 +93,13 @@ std::string judged_table(const std::vector<JudgedModel>& models) {
 std::string fit_report(const FittedWalk& fitted) {
   const MotionFile& file = fitted.file;
   std::string text;
-  add(text, "%zu sequences. Root mean square errors on those left out of the fit:\n\n", file.sequences);
-  text += judged_table(file.heldout);
+  add(text, "%zu sequences. Root mean square errors on those held out of the fit:\n\n", file.sequences);
+  text += evaluation_table(file.heldout);
   if (file.heldout.front().chosen) {
     text += "No model predicts better than the commands as they are.\n";
   }
   if (!file.test.empty()) {
-    text += "\nErrors on the sequences kept aside, fitted on all others:\n\n" + judged_table(file.test);
+    text += "\nErrors on the held-out sequences, fitted to all others:\n\n" + evaluation_table(file.test);
   }
   const auto name = name_of(file.kind);
   add(text, "\nFitted: the model %.*s, by the %s.\n", static_cast<int>(name.size()), name.data(),
@@ -108,9 +107,9 @@ std::string fit_report(const FittedWalk& fitted) {
   if (fitted.headings_of_clock) {
     text += "All headings are whole hours of a clock: errors of up to 15 degrees count as none.\n";
   }
-  text += with_model(file.kind, [&]<surefoot::MotionModel M>() { return coefficients<M>(fitted); });
+  text += coefficients(fitted);
   text += noise(fitted);
-  for (const std::string& sentence : fitted.absurd) text += "warning: " + sentence + ".\n";
+  for (const std::string& sentence : fitted.outliers) text += "warning: " + sentence + ".\n";
   return text;
 }
 

@@ -10,6 +10,6 @@ namespace calibrate_program {
 std::string fit_report(const FittedWalk& fitted);
 
 /// The table of models and their errors.
-std::string judged_table(const std::vector<JudgedModel>& models);
+std::string evaluation_table(const std::vector<EvaluatedModel>& models);
 
 }  // namespace calibrate_program

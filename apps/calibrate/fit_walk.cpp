@@ -4,9 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "absurd_sequences.hpp"
+#include "outlier_sentences.hpp"
 #include "surefoot/motion/calibrate.hpp"
-#include "surefoot/motion/fit/published_fit.hpp"
 
 namespace calibrate_program {
 namespace {
@@ -19,84 +18,71 @@ using Sequences = std::span<const WalkSequence>;
 
 constexpr double hour = std::numbers::pi / 6;  // of a clock [rad]
 
-std::vector<JudgedModel> compare(Sequences sequences, const PredictorOptions& options, const FitSettings& settings,
-                                 const StoppableThreads& executor) {
-  surefoot::CompareOptions compare;
-  compare.predictor = options;
-  const auto scores = surefoot::compare_models<surefoot::ProportionalCorrection, surefoot::SimpleLinearCorrection,
-                                               surefoot::FullLinearCorrection, surefoot::PreviousCommandCorrection>(
-      sequences, compare, executor, settings.seed);
-  std::vector<JudgedModel> judged;
-  for (const surefoot::ModelScore& score : scores) {
-    judged.push_back({.model = score.name,
-                      .parameters = score.parameters,
-                      .position = score.position,
-                      .position_error = score.position_error,
-                      .heading = score.heading,
-                      .chosen = score.chosen});
-  }
-  return judged;
-}
-
-template <surefoot::MotionModel M>
-JudgedModel judge(const M& model, std::string name, int parameters, Sequences test) {
-  const auto count = static_cast<Eigen::Index>(test.size());
-  surefoot::detail::HeldoutErrors errors{Eigen::ArrayXd(count), Eigen::ArrayXd(count)};
-  for (Eigen::Index i = 0; i < count; ++i) {
-    surefoot::detail::judge_final_pose(model, test[static_cast<std::size_t>(i)], i, errors);
-  }
-  const auto score = surefoot::detail::score(std::move(name), parameters, errors);
+EvaluatedModel evaluated(const surefoot::ModelScore& score) {
   return {.model = score.name,
-          .parameters = parameters,
+          .parameters = score.parameters,
           .position = score.position,
           .position_error = score.position_error,
-          .heading = score.heading};
+          .heading = score.heading,
+          .chosen = score.chosen};
 }
 
-template <surefoot::MotionModel M>
-M published_model(Sequences sequences, const PredictorOptions& options, const FitSettings& settings,
-                  const StoppableThreads& executor) {
-  return surefoot::published_fit<M>(sequences, options.published, executor, settings.seed, executor.token).model;
-}
-
-/// Errors of all models on sequences that were kept aside.
-std::vector<JudgedModel> judge_on_test(Sequences sequences, Sequences test, const PredictorOptions& options,
-                                       const FitSettings& settings, const StoppableThreads& executor) {
-  std::vector<JudgedModel> judged{judge(surefoot::detail::AsOrdered{}, "commands as they are", 0, test)};
-  for (const ModelKind kind : all_models) {
-    with_model(kind, [&]<surefoot::MotionModel M>() {
-      const M model = options.method == FitMethod::published
-                          ? published_model<M>(sequences, options, settings, executor)
-                          : surefoot::calibrate<M>(sequences, options.calibration).model;
-      judged.push_back(judge(model, surefoot::model_name<M>(), M::parameter_count, test));
-    });
+std::vector<EvaluatedModel> compare(Sequences sequences, const PredictorOptions& options, const FitSettings& settings,
+                                    const StoppableThreads& executor) {
+  surefoot::CompareOptions compare;
+  compare.predictor = options;
+  std::vector<surefoot::AnyMotionModel> models;
+  for (const ModelKind kind : all_models) models.push_back(default_model(kind));
+  std::vector<EvaluatedModel> result;
+  for (const surefoot::ModelScore& score : surefoot::compare_models(std::span<const surefoot::AnyMotionModel>(models),
+                                                                    sequences, compare, executor, settings.seed)) {
+    result.push_back(evaluated(score));
   }
-  return judged;
+  return result;
 }
 
-template <surefoot::MotionModel M>
-void fit_as(Sequences sequences, const PredictorOptions& options, const FitSettings& settings,
-            const StoppableThreads& executor, FittedWalk& fitted) {
+surefoot::AnyMotionModel published_model(const surefoot::AnyMotionModel& start, Sequences sequences,
+                                         const PredictorOptions& options, const FitSettings& settings,
+                                         const StoppableThreads& executor) {
+  return surefoot::published_fit(start, sequences, options.published, executor, settings.seed, executor.token).model;
+}
+
+/// Errors of all models on held-out sequences.
+std::vector<EvaluatedModel> evaluate_on_test(Sequences sequences, Sequences test, const PredictorOptions& options,
+                                             const FitSettings& settings, const StoppableThreads& executor) {
+  std::vector<EvaluatedModel> models{evaluated(surefoot::score_of_commands(test))};
+  for (const ModelKind kind : all_models) {
+    const surefoot::AnyMotionModel start = default_model(kind);
+    const surefoot::AnyMotionModel model = options.method == FitMethod::published
+                                               ? published_model(start, sequences, options, settings, executor)
+                                               : surefoot::calibrate(sequences, options.calibration, start).model;
+    models.push_back(evaluated(surefoot::score_on(model, test)));
+  }
+  return models;
+}
+
+/// Fits the model of the kind of the file, and its noise.
+void fit_model_and_noise(Sequences sequences, const PredictorOptions& options, const FitSettings& settings,
+                         const StoppableThreads& executor, FittedWalk& fitted) {
+  constexpr double determined = 0.5;  // [standard deviations of the prior] that the standard error falls to
   const bool published = options.method == FitMethod::published;
+  MotionFile& file = fitted.file;
+  const surefoot::AnyMotionModel start = default_model(file.kind);
   settings.progress("fitting");
-  const auto calibration = surefoot::calibrate<M>(sequences, options.calibration);
-  const M by_errors = published_model<M>(sequences, options, settings, executor);
-  const M& first = published ? by_errors : calibration.model;
+  const auto calibration = surefoot::calibrate(sequences, options.calibration, start);
+  const surefoot::AnyMotionModel by_errors = published_model(start, sequences, options, settings, executor);
   settings.progress("choosing the noise");
   surefoot::NoiseChoiceOptions noise;
   noise.fit = {.accuracy = options.calibration.model.accuracy, .scale = options.calibration.noise_scale};
-  fitted.noise = surefoot::choose_noise(first, sequences, noise, executor);
+  fitted.noise = surefoot::choose_noise(published ? by_errors : calibration.model, sequences, noise, executor);
   const auto fit = surefoot::fit_model(sequences, fitted.noise.noise(), options.calibration.model, calibration.model);
-  const M model = published ? by_errors : fit.model;
-  MotionFile& file = fitted.file;
-  file.model = embedded(model);
-  file.parameters = model.parameters();
+  file.parameters = (published ? by_errors : fit.model).parameters();
+  file.model = embedded(file.kind, file.parameters);
   file.covariance = fit.covariance;
   fitted.by_other_method = (published ? fit.model : by_errors).parameters();
-  const surefoot::Vec<M::parameter_count> prior =
-      options.calibration.model.prior * surefoot::parameter_box<M>().width();
-  for (Eigen::Index i = 0; i < M::parameter_count; ++i) {
-    fitted.determined.push_back(std::sqrt(fit.covariance(i, i)) < 0.5 * prior[i]);
+  const Eigen::VectorXd prior = options.calibration.model.prior * start.parameter_box().width();
+  for (Eigen::Index i = 0; i < prior.size(); ++i) {
+    fitted.determined.push_back(std::sqrt(fit.covariance(i, i)) < determined * prior[i]);
   }
 }
 
@@ -136,7 +122,7 @@ std::size_t count_readings(Sequences sequences) {
 PredictorOptions predictor_options(Sequences sequences, const FitSettings& settings) {
   if (sequences.size() < 2) {
     throw MotionError(
-        "only 1 sequence has a final position, but at least 2 are needed to judge a model on one that it "
+        "only 1 sequence has a final position, but at least 2 are needed to evaluate a model on one that it "
         "was not fitted to; walk more");
   }
   PredictorOptions options;
@@ -158,7 +144,7 @@ FittedWalk fit_walk(Sequences sequences, Sequences test, const FitSettings& sett
   MotionFile& file = fitted.file;
   settings.progress("comparing the models");
   file.heldout = compare(sequences, options, settings, executor);
-  const auto best = std::ranges::find(file.heldout, true, &JudgedModel::chosen);
+  const auto best = std::ranges::find(file.heldout, true, &EvaluatedModel::chosen);
   const auto index = std::max<std::ptrdiff_t>(best - file.heldout.begin(), 1) - 1;
   file.kind = settings.kind.value_or(all_models[static_cast<std::size_t>(index)]);
   if (settings.kind) {  // not the one that predicts best, but the one that was asked for
@@ -167,14 +153,12 @@ FittedWalk fit_walk(Sequences sequences, Sequences test, const FitSettings& sett
     }
   }
   if (!test.empty()) {
-    settings.progress("judging on the sequences kept aside");
-    file.test = judge_on_test(sequences, test, options, settings, executor);
+    settings.progress("evaluating the models on held-out sequences");
+    file.test = evaluate_on_test(sequences, test, options, settings, executor);
   }
-  with_model(file.kind, [&]<surefoot::MotionModel M>() { fit_as<M>(sequences, options, settings, executor, fitted); });
-  for (JudgedModel& judged : file.test) {
-    judged.chosen = judged.parameters == static_cast<int>(file.parameters.size());
-  }
-  fitted.absurd = absurd_sequences(sequences, options.calibration);
+  fit_model_and_noise(sequences, options, settings, executor, fitted);
+  for (EvaluatedModel& model : file.test) model.chosen = model.parameters == static_cast<int>(file.parameters.size());
+  fitted.outliers = outlier_sentences(sequences, options.calibration);
   file.noise = fitted.noise.noise();
   file.noise_shape_known = fitted.noise.shape_known;
   file.accuracy = options.calibration.model.accuracy;

@@ -12,7 +12,7 @@
 
 #include "motion_file.hpp"
 #include "stoppable.hpp"
-#include "surefoot/motion/fit/choose_noise.hpp"
+#include "surefoot/motion/calibrate.hpp"
 #include "surefoot/motion/compare.hpp"
 
 namespace calibrate_program {
@@ -30,10 +30,10 @@ struct FitSettings {
 struct FittedWalk {
   MotionFile file;
   surefoot::NoiseChoice noise;
-  Eigen::VectorXd by_other_method;  // the parameters
-  std::vector<bool> determined;     // whether the commands tell the parameter
-  std::vector<std::string> absurd;  // sentences about sequences that end where no model puts them
-  bool headings_of_clock = false;   // recognised as such
+  Eigen::VectorXd by_other_method;    // the parameters
+  std::vector<bool> determined;       // whether the commands tell the parameter
+  std::vector<std::string> outliers;  // sentences about sequences that end where no model puts them
+  bool headings_of_clock = false;     // recognised as such
 };
 
 /// What the settings make of these sequences. Throws surefoot::MotionError for too few sequences.

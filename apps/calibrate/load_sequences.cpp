@@ -93,7 +93,8 @@ class CommandReader {
   surefoot::Vec<3> command(std::size_t row) const {
     const surefoot::Vec<3> read = options_.columns.wheels.empty() ? walk_command(row) : wheel_command(row);
     if (!(read.cwiseAbs().maxCoeff() <= largest)) {
-      fail(csv_, row, "a command of more than " + number_text(largest) + " m or rad; check the numbers and their units");
+      fail(csv_, row,
+           "a command of more than " + number_text(largest) + " m or rad; check the numbers and their units");
     }
     return read;
   }

@@ -16,13 +16,12 @@
 #include "model_kind.hpp"
 #include "surefoot/core/binary.hpp"
 #include "surefoot/motion/noise.hpp"
-#include "surefoot/motion/fit/pose_filter.hpp"
 #include "surefoot/motion/walk_sequence.hpp"
 
 namespace calibrate_program {
 
 /// Errors of final poses of sequences that a model was not fitted to.
-struct JudgedModel {
+struct EvaluatedModel {
   std::string model;
   int parameters = 0;           // 0: the commands as they are
   double position = 0;          // root mean square [m]
@@ -34,8 +33,8 @@ struct JudgedModel {
 struct MotionFile {
   ModelKind kind = ModelKind::full;
   surefoot::PreviousCommandCorrection model;  // any kind; coefficients it does not have are 0
-  Eigen::VectorXd parameters;               // of the kind's own vector
-  Eigen::MatrixXd covariance;               // of those
+  Eigen::VectorXd parameters;                 // of the kind's own vector
+  Eigen::MatrixXd covariance;                 // of those
   surefoot::MotionNoise noise;
   bool noise_shape_known = false;
   surefoot::PoseAccuracy accuracy;  // of the poses it was calibrated from
@@ -44,8 +43,8 @@ struct MotionFile {
   std::size_t sequences = 0;        // calibrated from
   std::size_t readings = 0;         // coordinates measured in them
   std::uint64_t seed = 1;
-  std::vector<JudgedModel> heldout;  // by cross-validation
-  std::vector<JudgedModel> test;     // on sequences kept aside
+  std::vector<EvaluatedModel> heldout;  // by cross-validation
+  std::vector<EvaluatedModel> test;     // on held-out sequences
 };
 
 namespace detail {
@@ -61,9 +60,9 @@ inline const Json& member(const Json& object, const char* name) {
 
 inline Json to_json(const surefoot::Vec<3>& v) { return Json{v[0], v[1], v[2]}; }
 
-inline Json to_json(const std::vector<JudgedModel>& models) {
+inline Json to_json(const std::vector<EvaluatedModel>& models) {
   Json list = Json::array();
-  for (const JudgedModel& model : models) {
+  for (const EvaluatedModel& model : models) {
     Json entry{{"model", model.model}, {"parameters", model.parameters}, {"position_m", model.position}};
     if (std::isfinite(model.position_error)) entry["position_standard_error_m"] = model.position_error;
     if (std::isfinite(model.heading)) entry["heading_rad"] = model.heading;
@@ -146,11 +145,10 @@ class Fields {
   std::string file_, path_;
 };
 
-template <surefoot::MotionModel M>
-Json parameters_to_json(const Eigen::VectorXd& values, const Eigen::MatrixXd& covariance) {
+inline Json parameters_to_json(ModelKind kind, const Eigen::VectorXd& values, const Eigen::MatrixXd& covariance) {
   Json list = Json::array();
   Eigen::Index i = 0;
-  for (const surefoot::ModelParameter& info : M::parameter_info()) {
+  for (const surefoot::ModelParameter& info : default_model(kind).parameter_info()) {
     list.push_back({{"name", info.name},
                     {"value", values[i]},
                     {"standard_error", std::sqrt(covariance(i, i))},
@@ -160,17 +158,17 @@ Json parameters_to_json(const Eigen::VectorXd& values, const Eigen::MatrixXd& co
   return list;
 }
 
-template <surefoot::MotionModel M>
-void parameters_from_json(const Fields& root, MotionFile& file) {
-  constexpr int n = M::parameter_count;
+inline void parameters_from_json(const Fields& root, MotionFile& file) {
+  const auto infos = default_model(file.kind).parameter_info();
+  const auto n = static_cast<Eigen::Index>(infos.size());
   const Json& list = root.at("parameters");
   if (!list.is_array() || list.size() != static_cast<std::size_t>(n)) {
     root.fail("parameters", "a list of the " + std::to_string(n) + " coefficients of this model is expected");
   }
   file.parameters.resize(n);
-  for (int i = 0; i < n; ++i) {
+  for (Eigen::Index i = 0; i < n; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    const surefoot::ModelParameter info = M::parameter_info()[at];
+    const surefoot::ModelParameter& info = infos[at];
     const std::string field = "parameters[" + std::to_string(i) + "]";
     const Json& entry = list[at];
     if (!entry.is_object() || member(entry, "name") != info.name || member(entry, "unit") != info.unit) {
@@ -179,13 +177,13 @@ void parameters_from_json(const Fields& root, MotionFile& file) {
     }
     file.parameters[i] = root.number_of(member(entry, "value"), field + ".value", info.low, info.high);
   }
-  file.model = embedded(M::from_parameters(surefoot::Vec<n>(file.parameters)));
+  file.model = embedded(file.kind, file.parameters);
   file.covariance.resize(n, n);
   const Json& rows = root.at("covariance");
   if (!rows.is_array() || rows.size() != static_cast<std::size_t>(n)) {
     root.fail("covariance", std::to_string(n) + " rows are expected");
   }
-  for (int i = 0; i < n; ++i) {
+  for (Eigen::Index i = 0; i < n; ++i) {
     file.covariance.row(i) = root.numbers_of(rows[static_cast<std::size_t>(i)], "covariance", n, -1e6, 1e6);
   }
   const bool symmetric = file.covariance.isApprox(file.covariance.transpose(), 1e-6);
@@ -194,8 +192,8 @@ void parameters_from_json(const Fields& root, MotionFile& file) {
   }
 }
 
-inline std::vector<JudgedModel> judged_from_json(const Fields& root, const std::string& field) {
-  std::vector<JudgedModel> models;
+inline std::vector<EvaluatedModel> evaluated_from_json(const Fields& root, const std::string& field) {
+  std::vector<EvaluatedModel> models;
   if (!root.has(field)) return models;
   if (!root.at(field).is_array()) root.fail(field, "a list is expected");
   for (const Json& json : root.at(field)) {
@@ -232,23 +230,22 @@ inline surefoot::MotionNoise noise_from_json(const Fields& fields) {
 inline std::string motion_file_text(const MotionFile& file) {
   using detail::Json;
   Json json{{"schema", "surefoot.motion/1"},
-            {"model", name_of(file.kind)},
+            {"model", file_name_of(file.kind)},
             {"meaning",
              "displacement of a cycle (dx forward [m], dy left [m], dt counterclockwise [rad]) from the command of the "
              "cycle and of the last one, each times steps_per_cycle"},
             {"steps_per_cycle", file.steps_per_cycle}};
-  json["parameters"] = with_model(file.kind, [&]<surefoot::MotionModel M>() {
-    return detail::parameters_to_json<M>(file.parameters, file.covariance);
-  });
-  json["noise"] = {{"meaning",
-                    "standard deviation of dx, dy, dt in a cycle [m, m, rad]: constant + per_speed * |command / scale| + "
-                    "per_acceleration * |change of command / scale|"},
-                   {"shape", surefoot::name_of(file.noise.shape)},
-                   {"shape_known", file.noise_shape_known},
-                   {"constant", detail::to_json(file.noise.constant)},
-                   {"per_speed", detail::to_json(file.noise.per_speed)},
-                   {"per_acceleration", detail::to_json(file.noise.per_acceleration)},
-                   {"scale", detail::to_json(file.noise.scale)}};
+  json["parameters"] = detail::parameters_to_json(file.kind, file.parameters, file.covariance);
+  json["noise"] = {
+      {"meaning",
+       "standard deviation of dx, dy, dt in a cycle [m, m, rad]: constant + per_speed * |command / scale| + "
+       "per_acceleration * |change of command / scale|"},
+      {"shape", surefoot::name_of(file.noise.shape)},
+      {"shape_known", file.noise_shape_known},
+      {"constant", detail::to_json(file.noise.constant)},
+      {"per_speed", detail::to_json(file.noise.per_speed)},
+      {"per_acceleration", detail::to_json(file.noise.per_acceleration)},
+      {"scale", detail::to_json(file.noise.scale)}};
   json["measured_with"] = {{"position_m", file.accuracy.position},
                            {"heading_rad", file.accuracy.heading},
                            {"heading_tolerance_rad", file.accuracy.heading_tolerance}};
@@ -279,7 +276,7 @@ inline MotionFile parse_motion_file(std::string_view text, const std::string& na
   const auto kind = model_named(root.text("model"));
   if (!kind) root.fail("model", "\"proportional\", \"simple\", \"full\" or \"previous-order\" is expected");
   file.kind = *kind;
-  with_model(file.kind, [&]<surefoot::MotionModel M>() { detail::parameters_from_json<M>(root, file); });
+  detail::parameters_from_json(root, file);
   const detail::Fields noise = root.object("noise");
   file.noise = detail::noise_from_json(noise);
   file.noise_shape_known = noise.flag("shape_known");
@@ -292,8 +289,8 @@ inline MotionFile parse_motion_file(std::string_view text, const std::string& na
   file.sequences = root.count("sequences");
   file.readings = root.count("readings");
   file.seed = root.count("seed");
-  file.heldout = detail::judged_from_json(root, "heldout");
-  file.test = detail::judged_from_json(root, "test");
+  file.heldout = detail::evaluated_from_json(root, "heldout");
+  file.test = detail::evaluated_from_json(root, "test");
   return file;
 }
 

@@ -15,7 +15,7 @@ inline MotionFile paper_robot() {
   file.parameters << 0.0093, 1.30, -0.17, 0.001,  // dx
       -0.0026, -0.075, 1.47, 0.101,               // dy
       0.0002, -0.35, 0.05, 0.909;                 // dt
-  file.model = embedded(surefoot::FullLinearCorrection::from_parameters(surefoot::Vec<12>(file.parameters)));
+  file.model = embedded(file.kind, file.parameters);
   file.covariance = 1e-12 * Eigen::MatrixXd::Identity(12, 12);
   file.noise = surefoot::UniformNoise{{0.02, 0.02, 5 * std::numbers::pi / 180}}.as_motion_noise();
   file.noise_shape_known = true;

@@ -1,4 +1,6 @@
 // `plan`: the commands of an experiment, and the sheet to note where the robot ended.
+#include "surefoot/motion/plan.hpp"
+
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -11,8 +13,6 @@
 #include "commands.hpp"
 #include "paper_robot.hpp"
 #include "sheet_page.hpp"
-#include "surefoot/motion/plan/informative_commands.hpp"
-#include "surefoot/motion/plan/command_plan.hpp"
 #include "walk_csv.hpp"
 
 namespace calibrate_program {
@@ -44,9 +44,9 @@ std::vector<Eigen::Matrix3Xd> plan_of(const Options& options, const MotionFile& 
     return surefoot::plan_commands(bounds, options.sequences, options.cycles, options.seed);
   }
   check(bounds);
-  surefoot::MotionTracker<surefoot::FullLinearCorrection> tracker;
+  surefoot::MotionTracker tracker{.model = options.motion.empty() ? surefoot::FullLinearCorrection()
+                                                                  : robot.model.present()};
   tracker.noise = robot.noise;
-  if (!options.motion.empty()) tracker.model = robot.model.present();
   return surefoot::plan_informative_commands(
       tracker, {.bounds = bounds, .sequences = options.sequences, .cycles = options.cycles}, options.seed);
 }

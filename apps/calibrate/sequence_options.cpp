@@ -18,7 +18,9 @@ void add_reading_options(CLI::App& command, SequenceOptions& options) {
                   "a perfect robot moves by this times its command in a cycle; default: what a first line "
                   "`# steps_per_cycle: N` says, else 1")
       ->check(CLI::Range(1e-3, 1e3));
-  command.add_option("--commands", columns.commands, "columns of the commands X,Y,TURN, if they are not recognised")
+  command
+      .add_option("--commands,--orders", columns.commands,
+                  "columns of the commands X,Y,TURN, if they are not recognised")
       ->delimiter(',')
       ->expected(3);
   command.add_option("--pose", columns.pose, "columns of the pose X,Y,HEADING (or X,Y), if they are not recognised")

@@ -86,7 +86,8 @@ MergedSheet merge_sheet(const Csv& commands, const Csv& sheet) {
   LoadOptions options;
   options.poses_needed = false;
   const FileLayout layout = sequences_of(commands, options).layout;  // throws if the commands are no good
-  if (!layout.many) throw MotionError(commands.file + ": column 'seq' is missing; give the commands.csv that `plan` wrote");
+  if (!layout.many)
+    throw MotionError(commands.file + ": column 'seq' is missing; give the commands.csv that `plan` wrote");
   const std::vector<double>& number = numbers(commands, "seq", "");
   std::map<double, std::size_t> last_row;
   for (std::size_t row = 0; row < commands.rows(); ++row) last_row[number[row]] = row;
@@ -140,7 +141,7 @@ void run(const Options& options) {
 void add_sheet(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("sheet", "Turn a sheet that was filled in into recordings");
-  command->add_option("--commands", options->commands, "commands.csv of the plan")->required();
+  command->add_option("--commands,--orders", options->commands, "commands.csv of the plan")->required();
   command
       ->add_option("--sheet", options->sheet,
                    "sheet.csv, filled in: seq, x_cm, y_cm (or x_m, y_m), heading_clock (or heading_deg, heading_rad)")

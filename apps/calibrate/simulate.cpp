@@ -10,7 +10,7 @@
 #include "../common/files.hpp"
 #include "commands.hpp"
 #include "paper_robot.hpp"
-#include "surefoot/motion/plan/command_plan.hpp"
+#include "surefoot/motion/plan.hpp"
 #include "surefoot/motion/simulate_walk.hpp"
 #include "walk_csv.hpp"
 

@@ -10,8 +10,7 @@
 #include "commands.hpp"
 #include "motion_file.hpp"
 #include "sequence_options.hpp"
-#include "surefoot/motion/monitor/alarm_threshold.hpp"
-#include "surefoot/motion/monitor/change_alarm.hpp"
+#include "surefoot/motion/monitor.hpp"
 
 namespace calibrate_program {
 namespace {
@@ -23,23 +22,18 @@ struct Options {
   double threshold = 0;  // [nats], 0: found by simulation
 };
 
-template <surefoot::MotionModel M>
-surefoot::MotionTracker<M> tracker_of(const MotionFile& file, double forgetting) {
-  using Tracker = surefoot::MotionTracker<M>;
-  Tracker tracker{.model = M::from_parameters(surefoot::Vec<M::parameter_count>(file.parameters))};
-  const typename Tracker::Square covariance = file.covariance;
-  tracker.information = covariance.llt().solve(Tracker::Square::Identity());
-  tracker.noise = file.noise;
-  tracker.accuracy = file.accuracy;
+surefoot::MotionTracker tracker_of(const MotionFile& file, double forgetting) {
+  surefoot::ModelFitOptions options;
+  options.accuracy = file.accuracy;
+  surefoot::MotionTracker tracker =
+      surefoot::track(default_model(file.kind).with_parameters(file.parameters), file.covariance, file.noise, options);
   tracker.forgetting = forgetting;
   return tracker;
 }
 
-template <surefoot::MotionModel M>
-void remember(const surefoot::MotionTracker<M>& tracker, std::size_t sequences, std::size_t readings,
-              MotionFile& file) {
-  file.parameters = surefoot::parameter_box<M>().clamp(tracker.model.parameters());
-  file.model = embedded(M::from_parameters(surefoot::Vec<M::parameter_count>(file.parameters)));
+void keep(const surefoot::MotionTracker& tracker, std::size_t sequences, std::size_t readings, MotionFile& file) {
+  file.parameters = tracker.model.parameter_box().clamp(tracker.model.parameters());
+  file.model = embedded(file.kind, file.parameters);
   file.covariance = tracker.covariance();
   file.covariance = (0.5 * (file.covariance + file.covariance.transpose())).eval();
   file.method = "update";
@@ -47,31 +41,27 @@ void remember(const surefoot::MotionTracker<M>& tracker, std::size_t sequences, 
   file.readings += readings;
 }
 
-template <surefoot::MotionModel M>
-double threshold_of(const surefoot::MotionTracker<M>& tracker, const LoadedSequences& loaded, const MotionFile& file,
+double threshold_of(const surefoot::MotionTracker& tracker, const LoadedSequences& loaded, const MotionFile& file,
                     const Options& options, const StoppableThreads& executor) {
   if (options.threshold > 0) return options.threshold;
   say("finding what evidence an alarm must ask for, so that 1 of 100 runs of 100 sequences raises a false one");
   surefoot::ThresholdOptions work;
   const auto readings = static_cast<double>(std::max<std::size_t>(file.readings, 3));
   work.noise_error = 1 / std::sqrt(2 * readings / 3);
-  return surefoot::alarm_threshold(tracker, std::span<const surefoot::WalkSequence>(loaded.sequences), work, executor,
-                                   options.read.seed);
+  return surefoot::alarm_threshold(tracker, loaded.sequences, work, executor, options.read.seed);
 }
 
-template <surefoot::MotionModel M>
-void hear(const LoadedSequences& loaded, surefoot::ChangeAlarm<M>& alarm) {
+void update_by_all(const LoadedSequences& loaded, surefoot::ChangeAlarm& alarm) {
   std::printf("%-32s %16s %14s %10s\n", "sequence", "final error [m]", "surprise [sd]", "evidence");
   for (const surefoot::WalkSequence& sequence : loaded.sequences) {
-    const double error =
-        final_pose_error(alarm.tracker.model, std::span<const surefoot::WalkSequence>(&sequence, 1)).position;
-    const surefoot::AlarmReport<M> report = update(alarm, sequence);
+    const double error = final_pose_error(alarm.tracker.model, std::span(&sequence, 1)).position;
+    const surefoot::AlarmReport report = update(alarm, sequence);
     std::printf("%-32.32s %16.3f %14.1f %10.1f%s\n", sequence.name.c_str(), error, report.surprise.deviations(),
-                report.evidence, report.outlier ? "  absurd by itself: held back, a wrong reading?" : "");
+                report.evidence, report.outlier ? "  an outlier: not learnt from, a wrong reading?" : "");
     if (!report.change) continue;
     const auto since = static_cast<std::size_t>(report.change->since) - 1;
     std::printf("ALARM: the robot no longer walks as calibrated. %s (That is %s.) What changed is learnt anew.\n",
-                describe(*report.change).c_str(), loaded.sequences[since].name.c_str());
+                describe(*report.change, alarm.tracker.model).c_str(), loaded.sequences[since].name.c_str());
     adapt(alarm, *report.change);
   }
 }
@@ -85,13 +75,11 @@ void run(const Options& options) {
   warn_of_skipped(loaded);
   example::prepare_output(options.out / "motion.json");
   until_interrupted(options.read.threads, [&](const StoppableThreads& executor) {
-    with_model(file.kind, [&]<surefoot::MotionModel M>() {
-      surefoot::ChangeAlarm<M> alarm{.tracker = tracker_of<M>(file, options.forgetting)};
-      alarm.threshold = threshold_of(alarm.tracker, loaded, file, options, executor);
-      std::printf("An alarm is raised at an evidence of %.1f nats.\n", alarm.threshold);
-      hear(loaded, alarm);
-      remember(alarm.tracker, loaded.sequences.size(), count_readings(loaded.sequences), file);
-    });
+    surefoot::ChangeAlarm alarm{.tracker = tracker_of(file, options.forgetting)};
+    alarm.threshold = threshold_of(alarm.tracker, loaded, file, options, executor);
+    std::printf("An alarm is raised at an evidence of %.1f nats.\n", alarm.threshold);
+    update_by_all(loaded, alarm);
+    keep(alarm.tracker, loaded.sequences.size(), count_readings(loaded.sequences), file);
   });
   write_motion_file(options.out / "motion.json", file);
   std::printf("The model, brought up to date: %s\n", (options.out / "motion.json").c_str());

@@ -15,7 +15,7 @@ std::string head(double steps_per_cycle) {
 std::string rounded(double value) { return number_text(std::round(1e6 * value) / 1e6); }
 
 std::string command_cells(std::size_t sequence, Eigen::Index cycle, const surefoot::Vec<3>& command,
-                        double steps_per_cycle) {
+                          double steps_per_cycle) {
   std::string line = std::to_string(sequence) + "," + std::to_string(cycle);
   for (const double value : command) line += "," + rounded(value / steps_per_cycle);
   return line;

@@ -11,6 +11,7 @@
 
 #include "surefoot/core/error.hpp"
 #include "usage_error.hpp"
+#include "version_text.hpp"
 
 namespace example {
 
@@ -21,13 +22,12 @@ inline int run_program(CLI::App& program, int argc, char** argv, const std::stri
     if (!message.empty()) std::cerr << program.get_name() << ": " << message << '\n';
     return code;
   };
+  program.set_version_flag("--version", version_text(program.get_name()));
   try {
     program.parse(argc, argv);
     return EXIT_SUCCESS;
-  } catch (const CLI::CallForHelp& help) {
-    return program.exit(help);
-  } catch (const CLI::CallForAllHelp& help) {
-    return program.exit(help);
+  } catch (const CLI::Success& help_or_version) {
+    return program.exit(help_or_version);
   } catch (const CLI::ParseError& error) {
     return fail(std::string(error.what()) + "; see " + program.get_name() + " --help", 2);
   } catch (const Interrupted&) {

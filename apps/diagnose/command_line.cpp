@@ -3,12 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "../common/version_text.hpp"
 #include "surefoot/diagnose/recording.hpp"
 
 namespace diagnose_program {
 namespace {
 
-constexpr const char* example = R"(Example:
+constexpr const char* help_example = R"(Example:
   surefoot-diagnose --model servo.toml --out diagnosis rec_1.csv rec_2.csv rec_3.csv rec_4.csv
 
 Says what physics the model leaves out of what the recordings show, or that nothing is missing. Writes into the folder
@@ -21,7 +22,8 @@ Exit codes: 0 a verdict was reached; 2 wrong options or files; 130 stopped by Ct
 std::optional<CommandLine> parse_command_line(int argc, const char* const* argv, bool with_model) {
   CommandLine line;
   CLI::App program{"Finds, names and models the physics that a simulator leaves out", "surefoot-diagnose"};
-  program.footer(example);
+  program.footer(help_example);
+  program.set_version_flag("--version", example::version_text(program.get_name()));
   if (with_model) program.add_option("--model", line.model, "model file with the equations (TOML)")->required();
   program.add_option("--out", line.out, "folder for the results, made if needed")->required();
   program.add_option("--test", line.test, "a recording kept for the test alone; may be given several times")
@@ -46,8 +48,8 @@ std::optional<CommandLine> parse_command_line(int argc, const char* const* argv,
   program.add_option("recordings", line.recordings, "recordings (CSV)")->required();
   try {
     program.parse(argc, argv);
-  } catch (const CLI::CallForHelp& help) {
-    program.exit(help, std::cout, std::cerr);
+  } catch (const CLI::Success& help_or_version) {
+    program.exit(help_or_version, std::cout, std::cerr);
     return std::nullopt;
   } catch (const CLI::ParseError& error) {
     std::string what = error.what();

@@ -28,7 +28,7 @@ static_assert(surefoot::Problem<Pendulum>);
 int main() {
   const Pendulum pendulum;
   const surefoot::Threads threads;
-  const auto result = surefoot::rfpi(pendulum, {.budget = {.seconds = 1}, .horizon = 200}, threads, /*seed*/ 1);
+  const auto result = surefoot::rfpi(pendulum, {.budget = {.counted_seconds = 1}, .horizon = 200}, threads, /*seed*/ 1);
   const auto cost = surefoot::evaluate(pendulum, result.policy, {.runs = 100, .horizon = 200}, threads, /*seed*/ 1);
   std::printf("cost %.0f +- %.0f\n", -cost.mean, cost.half_width());
 }

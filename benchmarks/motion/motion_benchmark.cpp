@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "surefoot/motion/plan/learning_curve.hpp"
+#include "surefoot/motion/plan.hpp"
 #include "surefoot/motion/previous_command_correction.hpp"
 #include "tests/support/walks.hpp"
 

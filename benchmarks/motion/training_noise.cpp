@@ -34,7 +34,7 @@ Problem robot() {
 
 void play(const char* name, const Problem& believed, double budget, std::uint64_t seed) {
   surefoot::RfpiOptions options;
-  options.budget.seconds = budget;
+  options.budget.counted_seconds = budget;
   const auto trained =
       surefoot::rfpi(believed, options, surefoot::Threads(), seed, sigmaban::seed_states(believed, seed));
   const surefoot::Estimate cost = surefoot::evaluate(

@@ -9,8 +9,8 @@
 
 #include "examples/sigmaban/approach/approach.hpp"
 #include "examples/sigmaban/approach/seed_states.hpp"
-#include "surefoot/motion/plan/learning_curve.hpp"
 #include "surefoot/motion/linear_correction.hpp"
+#include "surefoot/motion/plan.hpp"
 #include "surefoot/mpi/mpi_executor.hpp"
 #include "surefoot/mpi/mpi_session.hpp"
 #include "surefoot/solve/rfpi.hpp"

@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
   }
   const auto problem = sigmaban::Approach::ha();
   surefoot::RfpiOptions options;
-  options.budget.seconds = budget;
+  options.budget.counted_seconds = budget;
   const scaling::TracedExecutor executor;
   std::size_t told = 0;
   std::puts("iteration  states  leaves of the policy  rounds     bytes  bytes per state  job seconds");

@@ -24,7 +24,8 @@ using toy::Pendulum;
 
 constexpr double discount = 0.98;
 
-// A policy after a training of some seconds, states that it visits, and a forest of about what they are worth to it.
+// A policy after a training of fifteen iterations, states that it visits, and a forest of about what they are worth to
+// it.
 template <Problem P>
 struct Trained {
   using ValueForest = Forest<feature_dim<P>(), 1, LinearLeaf>;
@@ -35,7 +36,7 @@ struct Trained {
   ValueForest value;
 
   explicit Trained(const P& p)
-      : problem(p), policy(rfpi(p, {.budget = {.seconds = 5}, .horizon = P::horizon}, Threads{}, 1).policy) {
+      : problem(p), policy(rfpi(p, {.budget = {.counted_seconds = 5}, .horizon = P::horizon}, Threads{}, 1).policy) {
     states = visited_states(
         problem, [&](auto some) { return policy.act(some); }, 20'000 / P::horizon, P::horizon, 0.3, Threads{}, Rng(2));
     Dataset<feature_dim<P>(), 1> samples;

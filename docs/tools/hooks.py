@@ -31,5 +31,5 @@ def on_files(files, config):
 
 def on_page_markdown(markdown, page, **_):
     if page.file.src_uri in README_PAGES:
-        return markdown.replace("../../docs/", "../../")
+        return markdown.replace("../../../docs/", "../../../")
     return OUTWARDS.sub(file_name_instead, markdown)

@@ -64,8 +64,20 @@ def face(folder):
     return "\n".join(["| header | what |", "| --- | --- |", *rows])
 
 
+def moved(name, target, comment):
+    """Where a struct is now, if it has left the header that the page names."""
+    declaration = f"\nstruct {name} {{\n"
+    if (ROOT / target).is_file() and declaration in (ROOT / target).read_text(encoding="utf-8"):
+        return target, comment
+    headers = (ROOT / "include").rglob("*.hpp")
+    homes = [str(path.relative_to(ROOT)) for path in headers if declaration in path.read_text(encoding="utf-8")]
+    return (homes[0], comment.replace(target, homes[0])) if len(homes) == 1 else (target, comment)
+
+
 def fresh(found):
     comment, what, name, target, _ = found.groups()
+    if what in ("options", "fields"):
+        target, comment = moved(name, target, comment)
     path = ROOT / target
     if not path.exists():
         raise Fault(f"there is no file {target}, wanted by '{comment.strip()}'")

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../../apps/diagnose/own_simulator.hpp"
 #include "surefoot/core/vec.hpp"
+#include "surefoot_apps/diagnose_main.hpp"
 
 struct ServoPendulum {
   using State = surefoot::Vec<2>;  // angle [rad], 0 hanging down, and speed [rad/s]
-  using Input = surefoot::Vec<1>;  // ordered angle [rad]
+  using Input = surefoot::Vec<1>;  // commanded angle [rad]
   using Output = surefoot::Vec<1>;
   double mass = 0, length = 0, gain = 0, supply = 0;  // [kg], [m], [1/rad], [V]: of each recording
 

@@ -34,7 +34,7 @@ struct Arm {
   Output observe(const State& x, const Input&, const Eigen::VectorXd&) const { return Output(x[0]); }
 
   /// A slow swing, then steps, 200 rows a second.
-  static surefoot::Recording orders() {
+  static surefoot::Recording commands() {
     surefoot::Recording recording;
     constexpr Eigen::Index rows = 1601;
     recording.time.setLinSpaced(rows, 0, 0.005 * (rows - 1));
@@ -70,7 +70,7 @@ struct Tanks {
   Output observe(const State& x, const Input&, const Eigen::VectorXd&) const { return Output(x[0]); }
 
   /// The pump is on for 15 s of every 30.
-  static surefoot::Recording orders() {
+  static surefoot::Recording commands() {
     surefoot::Recording recording;
     constexpr Eigen::Index rows = 601;
     recording.time.setLinSpaced(rows, 0, 0.1 * (rows - 1));
@@ -83,7 +83,7 @@ struct Tanks {
 };
 static_assert(surefoot::Simulator<Tanks>);
 
-/// Goes where each order says.
+/// Goes where each command says.
 struct Walker {
   using State = Vec<3>;
   using Input = Vec<3>;
@@ -105,7 +105,7 @@ struct Walker {
   Output observe(const State& x, const Input&, const Eigen::VectorXd&) const { return x; }
 
   /// Straight on, a turn to the left, straight on, sideways.
-  static surefoot::Recording orders() {
+  static surefoot::Recording commands() {
     surefoot::Recording recording;
     constexpr Eigen::Index rows = 41;
     recording.time.setLinSpaced(rows, 0, rows - 1);

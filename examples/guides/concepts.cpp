@@ -83,12 +83,12 @@ static_assert(Objective<decltype(bowl)> && Objective<decltype(noisy_bowl)>);
 // [objective]
 
 // [motion]
-struct Scale {  // walks `scale` times as far as told
+struct Scale {  // walks `scale` times as far as commanded
   static constexpr int parameter_count = 1;
   static std::array<ModelParameter, 1> parameter_info() { return {{{"scale", "1", 0.5, 2.0}}}; }
   static Scale from_parameters(const Vec<1>& p) { return {p[0]}; }
   Vec<1> parameters() const { return Vec<1>(scale); }
-  Pose2 displacement(const Vec<3>& orders) const { return Pose2::from_vec(scale * orders); }
+  Pose2 displacement(const Vec<3>& command) const { return Pose2::from_vec(scale * command); }
   double scale = 1;
 };
 static_assert(MotionModel<Scale>);

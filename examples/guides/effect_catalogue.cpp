@@ -18,7 +18,6 @@
 #include "catalogue_entries.hpp"
 #include "catalogue_machines.hpp"
 #include "surefoot/diagnose/simulate_augmented.hpp"
-#include "surefoot/diagnose/estimation/hypothesis.hpp"
 #include "surefoot/diagnose/text.hpp"
 
 namespace catalogue {
@@ -52,25 +51,19 @@ struct Shown {
 template <class Machine>
 Shown simulate(const Effect& effect, const Form& form, const std::string& place) {
   const Machine machine;
-  const surefoot::Recording orders = Machine::orders();
+  const surefoot::Recording commands = Machine::commands();
   const surefoot::Integration fine{.step = 0.0025};
   surefoot::Augmented changed{.integration = fine};
   changed.effects = {{.name = effect.name, .attached_to = place, .form = effect.form, .values = form.values}};
-  surefoot::BoundSimulator bound;
-  bound.info = machine.info();
-  Eigen::VectorXd p(static_cast<Eigen::Index>(bound.info.parameters.size()));
-  for (Eigen::Index i = 0; i < p.size(); ++i) p[i] = bound.info.parameters[static_cast<std::size_t>(i)].value;
-  bound.structure = find_structure(machine, bound.info, orders, p);
-  Shown shown{.without = simulate_augmented(machine, {.integration = fine}, orders),
-              .with = simulate_augmented(machine, changed, orders),
-              .time = orders.time,
+  Shown shown{.without = simulate_augmented(machine, {.integration = fine}, commands),
+              .with = simulate_augmented(machine, changed, commands),
+              .time = commands.time,
               .place = place};
-  shown.time_unit = bound.info.kind == surefoot::SimulatorKind::map ? "step" : "time [s]";
-  shown.reading = bound.info.outputs[0].name + " [" + bound.info.outputs[0].unit + "]";
-  const surefoot::AttachedEffect attached = attach(bound.info, changed.effects[0], surefoot::all_effects());
-  for (const auto& parameter : effect.parameters) {
-    shown.units[parameter.name] = measure_unit(bound, attached, parameter.measure);
-  }
+  const surefoot::SimulatorInfo info = machine.info();
+  shown.time_unit = info.kind == surefoot::SimulatorKind::map ? "step" : "time [s]";
+  shown.reading = info.outputs[0].name + " [" + info.outputs[0].unit + "]";
+  const std::vector<std::string> units = units_of(machine, changed.effects[0], commands);
+  for (std::size_t i = 0; i < units.size(); ++i) shown.units[effect.parameters[i].name] = units[i];
   return shown;
 }
 

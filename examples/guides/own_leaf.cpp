@@ -66,7 +66,8 @@ int main() {
   const Threads threads;
   const auto medians = train_extra_trees<MedianLeaf>(seen, options, threads, /*seed*/ 1);
   const auto means = train_extra_trees<ConstantLeaf>(seen, options, threads, /*seed*/ 1);
-  const double by_medians = unexplained(medians, truth), by_means = unexplained(means, truth);  // 1 - R2
+  const double by_medians = fraction_of_variance_unexplained(medians, truth),
+               by_means = fraction_of_variance_unexplained(means, truth);  // 1 - R2
   std::printf("not explained: %.3f by medians, %.3f by means\n", by_medians, by_means);
   // [train]
 

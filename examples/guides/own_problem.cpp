@@ -60,9 +60,10 @@ int main() {
     std::printf("iteration %2d, cost %6.2f, best %6.2f\n", progress.iteration, progress.cost, progress.best_cost);
     std::fflush(stdout);
   };
-  const RfpiOptions options{.budget = {.seconds = 4},  // counted work of one core: the same result on any machine
-                            .horizon = 100,            // transitions of a simulated run, here 5 s
-                            .on_progress = tell};      // left out: silence
+  const RfpiOptions options{
+      .budget = {.counted_seconds = 4},  // counted work of one core: the same result on any machine
+      .horizon = 100,                    // transitions of a simulated run, here 5 s
+      .on_progress = tell};              // left out: silence
   const auto result = rfpi(cart, options, threads, /*seed*/ 1);
   const Estimate learnt = evaluate(cart, result.policy, trials, threads, /*seed*/ 1);
   std::printf("cost: %.1f without control, %.2f by hand, %.2f learnt (+- %.2f)\n", -without.mean, -tuned.mean,

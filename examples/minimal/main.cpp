@@ -41,7 +41,8 @@ int main() {
   std::printf("cost without control: %.0f\n", -surefoot::evaluate(pendulum, still, trials, threads, /*seed*/ 1).mean);
 
   // [solve]
-  const auto result = surefoot::rfpi(pendulum, {.budget = {.seconds = 10}, .horizon = 200}, threads, /*seed*/ 1);
+  const auto result =
+      surefoot::rfpi(pendulum, {.budget = {.counted_seconds = 10}, .horizon = 200}, threads, /*seed*/ 1);
   const auto learnt = surefoot::evaluate(pendulum, result.policy, trials, threads, /*seed*/ 1);
   std::printf("cost of the learnt policy: %.0f +- %.0f\n", -learnt.mean, learnt.half_width());
   // [solve]

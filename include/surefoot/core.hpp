@@ -1,4 +1,4 @@
-// All of surefoot/core: problems, policies, executors, random numbers, rollouts.
+// The face of surefoot/core: problems, policies, executors, random numbers, rollouts.
 #pragma once
 
 #include "surefoot/core/binary.hpp"
@@ -7,6 +7,7 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/policy.hpp"
 #include "surefoot/core/portable.hpp"
+#include "surefoot/core/pose2.hpp"
 #include "surefoot/core/problem.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/rollout.hpp"

@@ -8,4 +8,5 @@
 #include "surefoot/motion.hpp"
 #include "surefoot/optimize.hpp"
 #include "surefoot/solve.hpp"
+#include "surefoot/solve/policy_search.hpp"
 #include "surefoot/version.hpp"

@@ -37,7 +37,7 @@ class Surefoot(ConanFile):
     def generate(self):
         CMakeDeps(self).generate()
         toolchain = CMakeToolchain(self)
-        for part in ("TESTS", "EXAMPLES", "BENCHMARKS"):
+        for part in ("TESTS", "APPS", "EXAMPLES", "BENCHMARKS", "INSTALL_COMPILED"):
             toolchain.cache_variables[f"SUREFOOT_{part}"] = False
         toolchain.generate()
 

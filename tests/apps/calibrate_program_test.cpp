@@ -6,9 +6,9 @@
 #include <sstream>
 #include <string>
 
+#include "apps/calibrate/load_sequences.hpp"
 #include "apps/diagnose/equations.hpp"
 #include "apps/diagnose/load_recording.hpp"
-#include "apps/calibrate/load_sequences.hpp"
 #include "tests/apps/calibrate_walks.hpp"
 
 using approach_program::Outcome;
@@ -52,8 +52,8 @@ std::size_t check_model_file(const std::string& model, const std::string& csv) {
 }
 
 double chosen_test_error(const std::string& motion, int parameters) {
-  for (const JudgedModel& judged : read_motion_file(motion).test) {
-    if (judged.parameters == parameters) return judged.position;
+  for (const EvaluatedModel& model : read_motion_file(motion).test) {
+    if (model.parameters == parameters) return model.position;
   }
   return NAN;
 }
@@ -137,7 +137,7 @@ TEST_CASE("a robot whose leg bends raises the alarm") {
   write_motion_file(folder.file("motion.json"), robot);
   REQUIRE(calibrate("simulate --sequences 5 --seed 3 --out " + folder.file("before.csv")).code == 0);
   robot.parameters[1] *= 0.7;
-  robot.model = embedded(surefoot::FullLinearCorrection::from_parameters(surefoot::Vec<12>(robot.parameters)));
+  robot.model = embedded(robot.kind, robot.parameters);
   write_motion_file(folder.file("bent.json"), robot);
   REQUIRE(calibrate("simulate --sequences 10 --seed 4 --motion " + folder.file("bent.json") + " --out " +
                     folder.file("after.csv"))

@@ -6,7 +6,7 @@
 #include "apps/calibrate/fit_walk.hpp"
 #include "apps/calibrate/paper_robot.hpp"
 #include "apps/calibrate/walk_csv.hpp"
-#include "surefoot/motion/plan/command_plan.hpp"
+#include "surefoot/motion/plan.hpp"
 #include "surefoot/motion/simulate_walk.hpp"
 #include "tests/support/program.hpp"
 

@@ -139,7 +139,8 @@ class Checks(unittest.TestCase):
         names("bool held(int i);", (f"{header}:3", "'held'"))
         names("class A {\n  int rig_;\n\n public:\n  int rig() const;\n};", (f"{header}:7", "A::rig"))
         names("namespace detail {\nstruct Rig {};\n}")
-        self.expect(words.check, {"include/surefoot/diagnose/verdict/a.hpp": "// A.\nstruct Rig {};\n"})
+        self.expect(words.check, {"include/surefoot/diagnose/verdict/a.hpp":
+                                  "// A.\nnamespace surefoot::diagnosis {\nstruct Rig {};\n}\n"})
         self.expect(words.check, {"apps/calibrate/p.cpp": 'add("--orders");\n'}, ("apps/calibrate/p.cpp:1", "--orders"))
 
     def test_words_in_text(self):

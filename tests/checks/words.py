@@ -1,7 +1,7 @@
 """One word per meaning, the field's own: words.py REPOSITORY
 
-Looks for the words of words.toml in public names (the face of include/, options of the programs) and in plain text
-(comments, strings, pages).
+Looks for the words of words.toml in public names (all of include/ that is not in an internal namespace, headers of the
+face, options of the programs) and in plain text (comments, strings, pages).
 """
 import re
 import sys
@@ -41,9 +41,10 @@ def allowed(entry, name, full_name):
 def public_names(root):
     """(file, line, area, name, full name)"""
     for header, text in headers(root).items():
-        if not area_of(header) or not is_face(header):
+        if not area_of(header) or "/detail/" in header or header.endswith(".ipp"):
             continue
-        yield f"include/{header}", 1, area_of(header), Path(header).stem, Path(header).stem
+        if is_face(header):
+            yield f"include/{header}", 1, area_of(header), Path(header).stem, Path(header).stem
         for declaration in declarations(text):
             if INTERNAL.search(declaration.namespace) or not declaration.public:
                 continue

@@ -67,7 +67,7 @@ struct MyPolicy {
 
 int main() {
 #if defined(RFPI)
-  const auto result = surefoot::rfpi(Mine{}, {.budget = {.seconds = 300}}, surefoot::Threads{}, 1);
+  const auto result = surefoot::rfpi(Mine{}, {.budget = {.counted_seconds = 300}}, surefoot::Threads{}, 1);
   return result.policy(Mine::State::Zero())[0] > 0;
 #elif defined(VALIDATE)
   const auto complaints = surefoot::validate(Mine{});

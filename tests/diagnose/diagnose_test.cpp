@@ -231,7 +231,7 @@ TEST_CASE("only effects that the user asks for are looked for") {
   CHECK(right.effects.front().name == "coulomb_friction");
 }
 
-TEST_CASE("effects that make it worse on the test recordings are dropped, and it is said") {
+TEST_CASE("effects that make it worse on the held-out recordings are dropped, and it is said") {
   const auto rubbing = machine({{.name = "coulomb_friction", .attached_to = "omega", .values = {0.15}}});
   auto recordings = toys::servo_recordings(rubbing, 7, 18);
   const auto smooth = toys::servo_recordings(machine({}), 7, 18);
@@ -243,7 +243,7 @@ TEST_CASE("effects that make it worse on the test recordings are dropped, and it
   CHECK(diagnosis.effects.empty());
   CHECK(diagnosis.held_out_after >= diagnosis.held_out_before);
   CHECK(std::any_of(diagnosis.remarks.begin(), diagnosis.remarks.end(), [](const surefoot::Remark& remark) {
-    return remark.text.find("did not lower the error on the test recordings") != std::string::npos;
+    return remark.text.find("did not lower the error on the held-out recordings") != std::string::npos;
   }));
 }
 
@@ -258,18 +258,6 @@ TEST_CASE("a model that yields no numbers is refused") {
                        surefoot::DiagnoseError);
 }
 
-TEST_CASE("a start that was read off a sensor is known as well as that sensor reads") {
-  auto recordings = toys::servo_recordings(machine({}), 3, 20);
-  for (const std::size_t r : {0U, 1U}) recordings[r].initial[0] = recordings[r].outputs(0, 0);
-  surefoot::diagnosis::BoundSimulator bound = surefoot::diagnosis::bind_simulator(ServoPendulum{}, recordings);
-  surefoot::diagnosis::free_measured_starts(bound, {0, 1, 2});
-  for (const std::size_t r : {0U, 1U}) {
-    CHECK(bound.recordings[r].initial_scale[0] == doctest::Approx(0.001).epsilon(0.5));
-    CHECK(bound.recordings[r].initial_scale[1] == 0);
-  }
-  CHECK(bound.recordings[2].initial_scale[0] == 0);  // known from elsewhere
-}
-
 TEST_CASE("recordings that do not fit the simulator are refused by name") {
   auto recordings = toys::servo_recordings(machine({}), 4, 13);
   recordings[2].time[100] = recordings[2].time[99];
@@ -281,7 +269,7 @@ TEST_CASE("recordings that do not fit the simulator are refused by name") {
   options.effects = {"ghost"};
   CHECK_THROWS_WITH_AS(
       diagnose(ServoPendulum{}, toys::servo_recordings(machine({}), 4, 13), options, surefoot::Serial{}, 1),
-      "there is no effect called 'ghost'", surefoot::DiagnoseError);
+      doctest::Contains("there is no effect called 'ghost'"), surefoot::DiagnoseError);
 }
 
 TEST_CASE("a diagnosis that is stopped says so") {

@@ -18,7 +18,7 @@ line or as several:
 | cmake | not allowed | project (configured against the installed package), by |
 
 quick: s/OLD/NEW/, what the test shortens; first, then: commands before and after; needs: programs or packages without
-which the block is skipped; by: CTest cases that run the same, or a file of the repository that has the same line;
+which the block is skipped; by: CTest cases that run the same, or a workflow of CI that has each line as a step;
 prints: the program whose output this is ("..." stands for lines left out).
 """
 

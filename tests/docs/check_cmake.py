@@ -18,11 +18,12 @@ def main():
     parser = argparse.ArgumentParser()
     for name in ("prefix", "scratch", "cmake", "cxx"):
         parser.add_argument(f"--{name}", required=True)
-    parser.add_argument("--have", action="append", default=[])
+    parser.add_argument("--have", action="append", default=[], help="NAME or NAME=..., a package that is there")
     options = parser.parse_args()
+    have = {entry.partition("=")[0] for entry in options.have}
     good = True
     for number, block in enumerate(block for block in all_blocks() if block.language == "cmake" and "project" in block.rule):
-        if not set(block.rule.get("needs", "").split()) <= set(options.have):
+        if not set(block.rule.get("needs", "").split()) <= have:
             print(f"skipped: {block.where} needs {block.rule['needs']}")
             continue
         folder = pathlib.Path(options.scratch) / str(number)

@@ -1,6 +1,6 @@
 """Every block of C++ and C in the documentation compiles: those of C++ in one translation unit, each in its own namespace.
 
-check_code.py --cxx COMPILER --cc COMPILER --scratch FOLDER [--have mpi=FOLDER;FOLDER] -- FLAGS...
+check_code.py --cxx COMPILER --cc COMPILER --scratch FOLDER [--have mpi=FOLDER:FOLDER] -- FLAGS...
 """
 
 import argparse
@@ -56,7 +56,7 @@ def main():
     lacking = [block for block in blocks if block.rule.get("needs", "") not in {"", *have}]
     for block in lacking:
         print(f"skipped: {block.where} needs {block.rule['needs']}")
-    folders = [f"-isystem{folder}" for known in have.values() for folder in known.split(";") if folder]
+    folders = [f"-isystem{folder}" for known in have.values() for folder in known.split(":") if folder]
     taken = [block for block in blocks if block.language == "cpp" and block not in lacking]
     good = compile_unit([options.cxx], ["-std=c++20", *options.flags, *folders], taken, scratch / "blocks.cpp")
     for number, block in enumerate(block for block in blocks if block.language == "c"):

@@ -1,4 +1,5 @@
-"""Every block of the documentation has a rule, what it is quoted from is compiled, and what it is said to be run by exists.
+"""Every block of the documentation has a rule, what it is quoted from is compiled, and what runs it exists, as do all
+files that pages name.
 
 check_rules.py --build FOLDER [--compile-commands FILE]
 """
@@ -10,7 +11,7 @@ import re
 import subprocess
 import sys
 
-from blocks import KEYS, ROOT, Fault, all_blocks
+from blocks import KEYS, ROOT, Fault, all_blocks, pages
 
 
 def ctest_cases(build):
@@ -45,10 +46,21 @@ def faults_of(block, cases, compiled):
     for name in filter(None, re.split(r",\s*", block.rule.get("by", ""))):
         if "/" in name:
             text = (ROOT / name).read_text(encoding="utf-8") if (ROOT / name).is_file() else ""
-            if not any(command in text for command in commands_of(block)):
-                yield f"{block.where}: {name} runs nothing of this block"
+            for command in commands_of(block):
+                if not re.search(r"\brun: " + re.escape(command) + "$", text, re.M):
+                    yield f"{block.where}: {name} has no line 'run: {command}'"
         elif not name.endswith("?") and name not in cases:
             yield f"{block.where}: there is no CTest case {name}"
+
+
+def lost_paths():
+    """Headers and files of ours that pages name and that are not there."""
+    for path in pages():
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            for name in re.findall(r"`((?:surefoot|apps|examples|benchmarks|tests|docs|cmake)/[\w./-]+\.\w+)`", line):
+                placeholder = pathlib.Path(name).stem in ("AREA", "NAME")
+                if not placeholder and not (ROOT / name).exists() and not (ROOT / "include" / name).exists():
+                    yield f"{path.relative_to(ROOT)}:{number}: there is no {name}"
 
 
 def main():
@@ -58,7 +70,7 @@ def main():
     options = parser.parse_args()
     blocks = all_blocks()
     cases, compiled = ctest_cases(options.build), compiled_files(options.compile_commands)
-    faults = [fault for block in blocks for fault in faults_of(block, cases, compiled)]
+    faults = [fault for block in blocks for fault in faults_of(block, cases, compiled)] + list(lost_paths())
     counts = {language: sum(block.language == language for block in blocks) for language in KEYS}
     print(", ".join(f"{count} {language}" for language, count in counts.items()))
     print("\n".join(faults), file=sys.stderr)

@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "apps/calibrate/load_sequences.hpp"
 #include "examples/sigmaban/approach/winner2016.hpp"
 #include "examples/sigmaban/twin/mjcf.hpp"
 #include "examples/sigmaban/twin/play_approach.hpp"
 #include "examples/sigmaban/twin/share.hpp"
 #include "examples/sigmaban/twin/twin_sequence.hpp"
-#include "apps/calibrate/load_sequences.hpp"
 #include "surefoot/core/executor.hpp"
-#include "surefoot/motion/plan/command_plan.hpp"
+#include "surefoot/motion/plan.hpp"
 #include "tests/support/program.hpp"
 
 using namespace sigmaban;
@@ -21,7 +21,7 @@ using surefoot::Pose2, surefoot::Vec;
 
 namespace {
 
-WalkingTwinOptions with(double TwinSwitches::* member, double value) {
+WalkingTwinOptions with(double TwinSwitches::*member, double value) {
   WalkingTwinOptions options;
   options.switches.*member = value;
   return options;

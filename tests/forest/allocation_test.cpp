@@ -25,7 +25,7 @@ TEST_CASE_TEMPLATE("predicting allocates nothing", Leaf, ConstantLeaf, LinearLea
   const Vec<2> y = forest.predict(x);
   forest.predict(samples.inputs, out);
   forest.predict(samples.inputs.data(), 300, out.data());
-  const Spread<2> spread = forest.predict_spread(x);
+  const MeanAndDeviation<2> spread = forest.predict_with_deviation(x);
   std::array<std::uint32_t, 25> leaves;
   forest.leaf_indices(x, std::span(leaves).first(forest.trees()));
   CHECK(allocations == before);

@@ -20,8 +20,9 @@ TEST_CASE("one distilled tree is better than a forest of equal bytes") {
   const auto direct =
       train_extra_trees<LinearLeaf>(samples, {.trees = 5, .min_leaf = 10, .max_leaves = 8}, Serial{}, 1);
   CHECK(small.forest.bytes() <= direct.bytes());
-  CHECK(unexplained(small.forest, test) < 0.3 * unexplained(direct, test));
-  CHECK(small.loss == doctest::Approx(unexplained(small.forest, test)).epsilon(0.5));  // the teacher is nearly perfect
+  CHECK(fraction_of_variance_unexplained(small.forest, test) < 0.3 * fraction_of_variance_unexplained(direct, test));
+  CHECK(small.loss == doctest::Approx(fraction_of_variance_unexplained(small.forest, test))
+                          .epsilon(0.5));  // the teacher is nearly perfect
 }
 
 TEST_CASE("distillation is the same for any executor, and differs by seed") {

@@ -10,7 +10,7 @@
 
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rng.hpp"
-#include "surefoot/forest/train/unexplained_variance.hpp"
+#include "surefoot/forest/fraction_of_variance_unexplained.hpp"
 #include "tests/forest/samples.hpp"
 
 namespace surefoot {
@@ -255,7 +255,7 @@ TEST_CASE_TEMPLATE("a lone tree is better the more thresholds are drawn", Leaf, 
       for (std::uint64_t seed = 0; seed < 10; ++seed) {
         const ExtraTreesOptions options{
             .trees = 1, .draws = draws, .min_leaf = 10, .max_leaves = 40, .threshold_rule = rule};
-        sum += unexplained(train_extra_trees<Leaf>(samples, options, Serial{}, seed), test);
+        sum += fraction_of_variance_unexplained(train_extra_trees<Leaf>(samples, options, Serial{}, seed), test);
       }
       return sum;
     };

@@ -170,12 +170,12 @@ TEST_CASE_TEMPLATE("the spread is the mean and the standard deviation over the t
       }
       const Vec<2> mean = each.rowwise().mean();
       const Vec<2> deviation = (each.colwise() - mean).rowwise().squaredNorm().cwiseSqrt() / std::sqrt(trees);
-      const Spread<2> spread = forest.predict_spread(x);
+      const MeanAndDeviation<2> spread = forest.predict_with_deviation(x);
       CHECK(spread.mean == forest.predict(x));
       CHECK((spread.deviation - deviation).norm() < 1e-12);
       CHECK((trees == 1) == (spread.deviation == Vec<2>::Zero()));
-      CHECK(dynamic.predict_spread(x).mean == spread.mean);
-      CHECK(dynamic.predict_spread(x).deviation == spread.deviation);
+      CHECK(dynamic.predict_with_deviation(x).mean == spread.mean);
+      CHECK(dynamic.predict_with_deviation(x).deviation == spread.deviation);
     }
   }
 }
@@ -190,8 +190,8 @@ TEST_CASE("the spread is larger where the forest has seen nothing for long") {
     samples.outputs(0, i) = x;
   }
   const auto forest = train_extra_trees(samples, {.trees = 50, .min_leaf = 3}, Serial{}, 1);
-  const double known = forest.predict_spread(Vec<1>(0.75)).deviation[0];
-  CHECK(forest.predict_spread(Vec<1>(0.0)).deviation[0] > 10 * known);
+  const double known = forest.predict_with_deviation(Vec<1>(0.75)).deviation[0];
+  CHECK(forest.predict_with_deviation(Vec<1>(0.0)).deviation[0] > 10 * known);
 }
 
 TEST_CASE("leaf indices name the leaf of each tree") {

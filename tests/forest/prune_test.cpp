@@ -63,8 +63,8 @@ TEST_CASE("the best trees are better than the first") {
   const std::vector<std::size_t> fewer = best_trees(forest, ours, 2);
   CHECK(std::equal(fewer.begin(), fewer.end(), best.begin()));
   const std::array<std::size_t, 5> first{0, 1, 2, 3, 4};
-  CHECK(unexplained(keep_trees(forest, std::span<const std::size_t>(best)), fresh) <
-        0.95 * unexplained(keep_trees(forest, std::span<const std::size_t>(first)), fresh));
+  CHECK(fraction_of_variance_unexplained(keep_trees(forest, std::span<const std::size_t>(best)), fresh) <
+        0.95 * fraction_of_variance_unexplained(keep_trees(forest, std::span<const std::size_t>(first)), fresh));
 }
 
 TEST_CASE("the weakest link goes first") {
@@ -121,7 +121,7 @@ TEST_CASE("pruning meets every budget, and loses more the smaller it is") {
       CHECK(pruned.bytes() <= bytes);
       CHECK(pruned.bytes() > bytes - 400);
       CHECK(pruned.trees() == 5);
-      const double error = unexplained(pruned, test);
+      const double error = fraction_of_variance_unexplained(pruned, test);
       CHECK(error > 0.9 * before);
       before = error;
     }
@@ -136,7 +136,7 @@ TEST_CASE("pruning a fully grown tree takes noise out") {
   const auto test = toy::sample(toy::Cliff{}, 4000, 3);
   const auto forest = train_extra_trees(samples, {.trees = 1, .min_leaf = 1}, Serial{}, 1);
   const auto pruned = prune(forest, others, forest.bytes() / 20);
-  CHECK(unexplained(pruned, test) < 0.5 * unexplained(forest, test));
+  CHECK(fraction_of_variance_unexplained(pruned, test) < 0.5 * fraction_of_variance_unexplained(forest, test));
 }
 
 TEST_CASE("pruning gives the same forest for any executor") {
@@ -155,8 +155,8 @@ TEST_CASE("samples may miss parts of the tree, and weights count") {
     if (samples.inputs(0, i) > 0) samples.weights[i] = 1;
   }
   const auto pruned = prune(forest, samples, 3000);
-  CHECK(unexplained(pruned, samples) <
-        0.75 * unexplained(prune(forest, toy::sample(toy::Cliff{}, 2000, 1), 3000), samples));
+  CHECK(fraction_of_variance_unexplained(pruned, samples) <
+        0.75 * fraction_of_variance_unexplained(prune(forest, toy::sample(toy::Cliff{}, 2000, 1), 3000), samples));
 }
 
 TEST_CASE("what cannot be pruned is named") {
@@ -173,9 +173,9 @@ TEST_CASE("what cannot be pruned is named") {
 
 TEST_CASE("the unexplained share is 0 for perfect outputs and 1 for their mean") {
   Dataset<1, 1> samples{Eigen::Matrix<float, 1, 4>{1, 2, 3, 4}, Eigen::Matrix<double, 1, 4>{1, 2, 7, 10}, {}};
-  CHECK(unexplained(staircase(samples), samples) == 0);
-  CHECK(unexplained(train_extra_trees(samples, {.trees = 1, .min_leaf = 4}, Serial{}, 1), samples) ==
-        doctest::Approx(1));
+  CHECK(fraction_of_variance_unexplained(staircase(samples), samples) == 0);
+  CHECK(fraction_of_variance_unexplained(train_extra_trees(samples, {.trees = 1, .min_leaf = 4}, Serial{}, 1),
+                                         samples) == doctest::Approx(1));
 }
 
 }  // namespace

@@ -133,7 +133,7 @@ TEST_CASE_TEMPLATE("a forest is used where its bytes lie, without a copy", Leaf,
   CHECK(found == expected);
   const Vec<4> x = samples.inputs.col(0).template cast<double>();
   CHECK(in_place.predict(x) == forest.predict(x));
-  CHECK(in_place.predict_spread(x).deviation == forest.predict_spread(x).deviation);
+  CHECK(in_place.predict_with_deviation(x).deviation == forest.predict_with_deviation(x).deviation);
   CHECK(load<Laws<Leaf>>(std::span(bytes)) == forest);
 }
 

@@ -8,16 +8,16 @@
 #include <string_view>
 #include <vector>
 
+#include "apps/calibrate/paper_robot.hpp"
+#include "apps/calibrate/walk_csv.hpp"
 #include "examples/sigmaban/robot/dynamixel/protocol1.hpp"
 #include "examples/sigmaban/robot/dynamixel/protocol2.hpp"
 #include "examples/sigmaban/robot/walk/joints_file.hpp"
 #include "examples/sigmaban/robot/walk_engine/spline_walk.hpp"
-#include "apps/calibrate/paper_robot.hpp"
-#include "apps/calibrate/walk_csv.hpp"
 #include "surefoot/core/binary.hpp"
 #include "surefoot/diagnose/residual_model.hpp"
 #include "surefoot/forest/extra_trees.hpp"
-#include "surefoot/motion/plan/command_plan.hpp"
+#include "surefoot/motion/plan.hpp"
 #include "surefoot/motion/simulate_walk.hpp"
 #include "surefoot/optimize/cma_es.hpp"
 #include "surefoot/optimize/cma_es_serialize.hpp"

@@ -17,9 +17,3 @@ TEST_CASE("part of the last command is carried out in the next cycle") {
   CHECK(PreviousCommandCorrection::parameter_info()[18].name == "dt per last dx");
   CHECK(PreviousCommandCorrection::parameter_info()[18].unit == "rad/m");
 }
-
-TEST_CASE("a model that does not ask for the previous command is not told") {
-  const surefoot::FullLinearCorrection full;
-  CHECK(cycle_displacement(full, {1, 2, 3}, {4, 5, 6}).vec() == Vec<3>{1, 2, 3});
-  CHECK(surefoot::model_name<surefoot::FullLinearCorrection>() == "full linear");
-}

@@ -24,8 +24,8 @@ RfpiOptions tiny(RfpiOptions options = {}) {
   options.lookahead = {.candidates = 5, .samples = 2, .kept = 3, .refined = 5, .refined_samples = 2};
   options.value_forest.trees = options.policy_forest.trees = 3;
   options.first_states = 200;
-  options.blind_iterations = 2;
-  options.steady_iterations = 2;
+  options.initial_iterations = 2;
+  options.fixed_size_iterations = 2;
   options.value_runs = 3;
   options.evaluation_runs = 100;
   return options;
@@ -99,7 +99,8 @@ TEST_CASE("a limit by the clock ends the training in all processes together") {
   const MpiExecutor executor(MPI_COMM_WORLD);
   RfpiOptions options = tiny();
   options.max_iterations = 0;
-  options.budget = {.seconds = 1e6, .wall_seconds = 0.5 + static_cast<double>(executor.rank())};
+  options.budget.counted_seconds = 1e6;
+  options.max_seconds = 0.5 + static_cast<double>(executor.rank());
   const auto result = rfpi(Pendulum{}, options, executor, 1);
   CHECK(result.stop == RfpiStop::wall_clock);
   const auto costs = map(executor, executor.processes(), [&](std::size_t) { return result.cost.mean; });

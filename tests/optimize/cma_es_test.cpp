@@ -179,7 +179,8 @@ TEST_CASE("a search that is interrupted, saved, loaded and resumed has the bits 
 
 TEST_CASE("on_progress sees every generation in a state that can be resumed") {
   std::vector<CmaEsSearch> seen;
-  const CmaEsOptions observed{.target = 1e-6, .on_progress = [&](const CmaEsSearch& search) { seen.push_back(search); }};
+  const CmaEsOptions observed{.target = 1e-6,
+                              .on_progress = [&](const CmaEsSearch& search) { seen.push_back(search); }};
   const auto result = cma_es(toy::ellipsoid, VectorXd::Ones(4), 0.5, observed, Serial{}, 1);
   REQUIRE(seen.size() == result.descents.back().generations);
   const auto resumed = cma_es(toy::ellipsoid, seen[seen.size() / 2], {.target = 1e-6}, Serial{});

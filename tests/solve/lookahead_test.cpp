@@ -186,7 +186,7 @@ struct ManyMotors {
 
 TEST_CASE("many action dimensions have too many corners to try, and still the action is better than the centre") {
   const ManyMotors problem;
-  const LookaheadOptions options{.candidates = 40, .refined = 400, .spread = 0.2, .softness = 0};
+  const LookaheadOptions options{.candidates = 40, .refined = 400, .step = 0.2, .softness = 0};
   const auto found = Lookahead<ManyMotors, Value>(problem, no_value, 1, options)(Vec<1>(0), nullptr, Rng(1));
   CHECK(found.value > 0.05);  // the centre gives 0
 }

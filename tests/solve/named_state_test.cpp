@@ -43,7 +43,7 @@ struct Named {
 };
 static_assert(Problem<Named> && Portable<Cart>);
 
-const RfpiOptions brief{.budget = {.seconds = 1e9}, .max_iterations = 5, .first_states = 300};
+const RfpiOptions brief{.budget = {.counted_seconds = 1e9}, .max_iterations = 5, .first_states = 300};
 
 TEST_CASE("a problem with states of its own type gives the bits of the same with plain vectors") {
   const auto plain = rfpi(Named{}.plain, brief, Serial{}, 1);

@@ -94,7 +94,7 @@ TEST_CASE("a stop request ends the search and the best so far is returned") {
   std::stop_source stop;
   PolicySearchOptions options = small;
   int generations = 0;
-  options.observer = [&](const CmaEsSearch&) {
+  options.on_progress = [&](const CmaEsSearch&) {
     if (++generations == 20) stop.request_stop();
   };
   const auto result =

@@ -49,8 +49,8 @@ RfpiOptions tiny() {
   options.lookahead = {.candidates = 5, .samples = 2, .kept = 3, .refined = 5, .refined_samples = 2};
   options.value_forest.trees = options.policy_forest.trees = 3;
   options.first_states = 100;
-  options.blind_iterations = 2;
-  options.steady_iterations = 4;
+  options.initial_iterations = 2;
+  options.fixed_size_iterations = 4;
   options.evaluation_runs = 20;
   return options;
 }
@@ -84,7 +84,7 @@ void check_same(const RfpiResult<P>& a, const RfpiResult<P>& b) {
 
 TEST_CASE("a few counted seconds come close to the known optimum of a linear-quadratic problem") {
   RfpiOptions options;
-  options.budget.seconds = 3;
+  options.budget.counted_seconds = 3;
   options.first_states = 1000;
   const double optimum = -toy::DoubleIntegratorOptimum(noisy, options.horizon).expected_return();
   const auto result = rfpi(noisy, options, Threads(2), 1);
@@ -96,7 +96,7 @@ TEST_CASE("a few counted seconds come close to the known optimum of a linear-qua
 
 TEST_CASE("a few counted seconds swing the pendulum up") {
   RfpiOptions options;
-  options.budget.seconds = 3;
+  options.budget.counted_seconds = 3;
   options.horizon = toy::Pendulum::horizon;
   const auto result = rfpi(toy::Pendulum{}, options, Threads(2), 1);
   CHECK(result.cost.mean < 500);  // standing still costs 1224
@@ -232,7 +232,7 @@ TEST_CASE("a checkpoint that cannot be written is told by name") {
 TEST_CASE("a budget in counted seconds ends the same way after a resume") {
   RfpiOptions options = tiny();
   options.max_iterations = 0;
-  options.budget.seconds = 0.06;
+  options.budget.counted_seconds = 0.06;
   const auto whole = rfpi(noisy, options, Serial{}, 1);
   CHECK(whole.stop == RfpiStop::budget);
   REQUIRE(whole.history.size() > 5);
@@ -300,10 +300,14 @@ TEST_CASE("a checkpoint of another run is refused in words") {
   refused(noisy, options, 1, seeds);
   refused(Counted{{.push = 0.03}}, options, 1, {});
   const std::vector<std::function<void(RfpiOptions&)>> changes{
-      [](RfpiOptions& o) { o.discount = 0.97; },        [](RfpiOptions& o) { o.horizon = 21; },
-      [](RfpiOptions& o) { o.first_states = 101; },     [](RfpiOptions& o) { o.lookahead.softness = 0.2; },
-      [](RfpiOptions& o) { o.value_forest.ridge = 2; }, [](RfpiOptions& o) { o.policy_forest.max_leaves = 7; },
-      [](RfpiOptions& o) { o.remember = false; },       [](RfpiOptions& o) { o.value_method = ValueMethod::rollouts; },
+      [](RfpiOptions& o) { o.discount = 0.97; },
+      [](RfpiOptions& o) { o.horizon = 21; },
+      [](RfpiOptions& o) { o.first_states = 101; },
+      [](RfpiOptions& o) { o.lookahead.softness = 0.2; },
+      [](RfpiOptions& o) { o.value_forest.ridge = 2; },
+      [](RfpiOptions& o) { o.policy_forest.max_leaves = 7; },
+      [](RfpiOptions& o) { o.reuse_previous_samples = false; },
+      [](RfpiOptions& o) { o.value_method = ValueMethod::rollouts; },
       [](RfpiOptions& o) { o.evaluation_runs = 21; }};
   for (const auto& change : changes) {
     RfpiOptions changed = options;
@@ -371,14 +375,15 @@ TEST_CASE("the wall clock ends a training, says so, and leaves a policy") {
   RfpiOptions options = tiny();
   options.max_iterations = 0;
   options.growth = 1;
-  options.budget = {.seconds = 1e6, .wall_seconds = 0.5};
+  options.budget.counted_seconds = 1e6;
+  options.max_seconds = 0.5;
   const auto result = rfpi(noisy, options, Threads(2), 1);
   CHECK(result.stop == RfpiStop::wall_clock);
   CHECK(result.history.back().seconds < 10);
   CHECK(result.history.back().share < 0.1);
   CHECK(result.policy.forest().leaves() > 0);
   options.max_iterations = 2;
-  options.budget.wall_seconds = std::numeric_limits<double>::max();  // does not overflow
+  options.max_seconds = std::numeric_limits<double>::max();  // does not overflow
   CHECK(rfpi(noisy, options, Serial{}, 1).stop == RfpiStop::iterations);
 }
 
@@ -409,9 +414,9 @@ TEST_CASE("every bad option is refused in a sentence that names it") {
     std::function<void(RfpiOptions&)> make;
   };
   const std::vector<Bad> table{
-      {"budget.seconds", [](RfpiOptions& o) { o.budget.seconds = 0; }},
-      {"budget.seconds", [](RfpiOptions& o) { o.budget.seconds = nan; }},
-      {"budget.wall_seconds", [](RfpiOptions& o) { o.budget.wall_seconds = -1; }},
+      {"budget.counted_seconds", [](RfpiOptions& o) { o.budget.counted_seconds = 0; }},
+      {"budget.counted_seconds", [](RfpiOptions& o) { o.budget.counted_seconds = nan; }},
+      {"max_seconds", [](RfpiOptions& o) { o.max_seconds = -1; }},
       {"budget.step_ns", [](RfpiOptions& o) { o.budget.step_ns = -1; }},
       {"discount", [](RfpiOptions& o) { o.discount = 0; }},
       {"discount", [](RfpiOptions& o) { o.discount = 1.01; }},
@@ -420,7 +425,7 @@ TEST_CASE("every bad option is refused in a sentence that names it") {
       {"first_states", [](RfpiOptions& o) { o.first_states = 0; }},
       {"max_states", [](RfpiOptions& o) { o.max_states = 99; }},
       {"growth", [](RfpiOptions& o) { o.growth = 0.9; }},
-      {"blind_iterations", [](RfpiOptions& o) { o.blind_iterations = 0; }},
+      {"initial_iterations", [](RfpiOptions& o) { o.initial_iterations = 0; }},
       {"box_share", [](RfpiOptions& o) { o.box_share = 1.1; }},
       {"visited_share", [](RfpiOptions& o) { o.visited_share = -0.1; }},
       {"exploration", [](RfpiOptions& o) { o.exploration = nan; }},
@@ -434,7 +439,7 @@ TEST_CASE("every bad option is refused in a sentence that names it") {
       {"lookahead.refined", [](RfpiOptions& o) { o.lookahead.refined = -1; }},
       {"lookahead.refined_samples", [](RfpiOptions& o) { o.lookahead.refined_samples = 0; }},
       {"lookahead.softness", [](RfpiOptions& o) { o.lookahead.softness = nan; }},
-      {"lookahead.spread", [](RfpiOptions& o) { o.lookahead.spread = -1; }},
+      {"lookahead.step", [](RfpiOptions& o) { o.lookahead.step = -1; }},
       {"lookahead.radius", [](RfpiOptions& o) { o.lookahead.radius = -1; }},
       {"evaluation_runs", [](RfpiOptions& o) { o.evaluation_runs = 1; }},
       {"resume", [](RfpiOptions& o) { o.resume = true; }},

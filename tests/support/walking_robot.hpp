@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/core/pose2.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 #include "surefoot/diagnose/recording.hpp"
 #include "surefoot/diagnose/simulator.hpp"
-#include "surefoot/core/pose2.hpp"
 
 namespace toys {
 

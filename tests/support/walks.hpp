@@ -1,4 +1,5 @@
-// Recorded walks of the robot of the paper, made up: its correction and noise, random commands, poses after every cycle.
+// Recorded walks of the robot of the paper, made up: its correction and noise, random commands, poses after every
+// cycle.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +8,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/motion/linear_correction.hpp"
 #include "surefoot/motion/noise.hpp"
-#include "surefoot/motion/plan/command_plan.hpp"
+#include "surefoot/motion/plan.hpp"
 #include "surefoot/motion/simulate_walk.hpp"
 #include "surefoot/motion/walk_sequence.hpp"
 

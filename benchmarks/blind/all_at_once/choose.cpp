@@ -34,7 +34,7 @@ struct Reduced {
 };
 
 Reduced reduce(const LinearProblem& problem, const Rows& rows) {
-  const Eigen::MatrixXd slopes = problem.slopes(rows, Eigen::all);
+  const Eigen::MatrixXd slopes = problem.jacobian(rows, Eigen::all);
   Eigen::MatrixXd columns = problem.columns(rows, Eigen::all);
   Eigen::VectorXd residuals = problem.residuals(rows);
   const Eigen::VectorXd whole = columns.colwise().norm();
@@ -84,16 +84,16 @@ Eigen::VectorXd unseen(const LinearProblem& problem, std::size_t recording, cons
   const Eigen::Index from = problem.begin[recording], count = problem.begin[recording + 1] - from;
   Eigen::VectorXd left =
       problem.residuals.segment(from, count) + problem.columns.middleRows(from, count) * unknowns +
-      problem.slopes.middleRows(from, count) * (fitted.follow_residuals + fitted.follow_columns * unknowns);
+      problem.jacobian.middleRows(from, count) * (fitted.follow_residuals + fitted.follow_columns * unknowns);
   if (own.empty()) return left;
-  const Eigen::MatrixXd slopes = problem.slopes.middleRows(from, count)(Eigen::all, own);
+  const Eigen::MatrixXd slopes = problem.jacobian.middleRows(from, count)(Eigen::all, own);
   return left - slopes * Solver(slopes).solve(left);
 }
 
 std::vector<Eigen::Index> own_slopes(const LinearProblem& problem, const Rows& fitted, const Rows& held) {
   std::vector<Eigen::Index> own;
-  for (Eigen::Index j = 0; j < problem.slopes.cols(); ++j) {
-    const Eigen::VectorXd slope = problem.slopes.col(j);
+  for (Eigen::Index j = 0; j < problem.jacobian.cols(); ++j) {
+    const Eigen::VectorXd slope = problem.jacobian.col(j);
     if (slope(fitted).cwiseAbs().maxCoeff() == 0 && slope(held).cwiseAbs().maxCoeff() > 0) own.push_back(j);
   }
   return own;
@@ -101,7 +101,7 @@ std::vector<Eigen::Index> own_slopes(const LinearProblem& problem, const Rows& f
 
 // Held-out losses of one fold, by penalty, added to `scores`.
 void add_fold(const LinearProblem& problem, const std::vector<std::size_t>& fold, const std::vector<double>& penalties,
-              double robust, std::vector<surefoot::BlockLosses>& scores) {
+              double robust, std::vector<BlockLosses>& scores) {
   std::vector<std::size_t> others;
   for (std::size_t i = 0; i + 1 < problem.begin.size(); ++i) {
     if (std::ranges::find(fold, i) == fold.end()) others.push_back(i);
@@ -121,7 +121,7 @@ void add_fold(const LinearProblem& problem, const std::vector<std::size_t>& fold
 }
 
 // Index of the largest penalty that is within one standard error of the best.
-std::size_t one_standard_error(const std::vector<surefoot::BlockLosses>& scores) {
+std::size_t one_standard_error(const std::vector<BlockLosses>& scores) {
   std::size_t best = 0;
   for (std::size_t k = 1; k < scores.size(); ++k) {
     if (scores[k].total() < scores[best].total()) best = k;
@@ -169,7 +169,7 @@ Choice choose(const LinearProblem& problem, const std::vector<std::vector<std::s
 
   // The largest penalty, and beside it nothing at all: folds may have larger pulls than the whole.
   penalties.insert(penalties.begin(), std::numeric_limits<double>::infinity());
-  std::vector<surefoot::BlockLosses> scores(penalties.size());
+  std::vector<BlockLosses> scores(penalties.size());
   for (const auto& fold : folds) add_fold(problem, fold, penalties, robust, scores);
   const std::size_t chosen = one_standard_error(scores);
   if (chosen == 0) return {{}, 1};

@@ -1,4 +1,4 @@
-// Choice of candidates by an L1 penalty that held-out recordings set.
+// Which candidates survive an L1 penalty that held-out recordings choose.
 #pragma once
 
 #include <cstddef>

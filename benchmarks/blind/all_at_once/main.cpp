@@ -1,8 +1,7 @@
-// concealed_all_at_once: a baseline for the blind benchmark that knows every effect of the library but does not search.
+// concealed_all_at_once: a baseline for the concealed proof that knows every effect of the library but does not search.
 // Calibrates the nominal parameters, linearises all candidate effects at once, and names those that survive an L1
 // penalty. Same command line and diagnosis.json as surefoot-diagnose.
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -12,41 +11,45 @@
 #include <vector>
 
 #include "apps/diagnose/equations.hpp"
-#include "apps/diagnose/own_simulator.hpp"
+#include "apps/diagnose/known_effects.hpp"
+#include "apps/diagnose/load_all.hpp"
+#include "apps/diagnose/results.hpp"
+#include "apps/diagnose/run.hpp"
 #include "apps/diagnose/write_json.hpp"
 #include "choose.hpp"
 #include "prepare.hpp"
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/executor.hpp"
+#include "surefoot/diagnose/effects/catalogue.hpp"
 #include "surefoot/diagnose/verdict/describe.hpp"
+#include "surefoot/diagnose/text.hpp"
 #include "surefoot/diagnose/verdict/evaluate.hpp"
-
-using namespace surefoot::diagnosis;
 
 namespace {
 
-using namespace all_at_once;  // NOLINT(google-build-using-namespace): a program, not a header
+using namespace all_at_once;          // NOLINT(google-build-using-namespace): a program, not a header
+using namespace surefoot::diagnosis;  // NOLINT(google-build-using-namespace)
 using surefoot::Verdict;
 
-// Numbers of the strongest survivors, fitted together in the simulation. What cannot be simulated goes, the weakest
+// Parameters of the strongest survivors, fitted together in the simulation. What cannot be simulated goes, the weakest
 // first.
-surefoot::Fit fit_together(const surefoot::Investigation& investigation, const LinearProblem& problem,
-                           std::vector<Survivor> survivors, const surefoot::Parallel& parallel) {
-  surefoot::FitProblem longer = investigation.problem.fit;
+Hypothesis fit_together(const Prepared& prepared, const LinearProblem& problem, std::vector<Survivor> survivors,
+                        const Parallel& parallel) {
+  FitProblem longer = prepared.setup.problem;
   longer.max_iterations = 40;
   for (;; survivors.pop_back()) {
-    surefoot::Hypothesis hypothesis = investigation.selection.nominal.hypothesis;
+    Hypothesis hypothesis = prepared.calibration.calibrated.hypothesis;
     for (const Survivor& survivor : survivors) {
       hypothesis.effects.push_back(problem.candidates[survivor.candidate]);
       hypothesis.values.push_back(survivor.values);
     }
-    surefoot::Fit result = fit(investigation.bound, hypothesis, longer, parallel);
-    if (result.ok || survivors.empty()) return result;
+    const Fit result = fit(prepared.setup.bound, hypothesis, longer, parallel);
+    if (result.ok || survivors.empty()) return result.hypothesis;
   }
 }
 
 // Places of a fold's recordings among those of the training.
-std::vector<std::vector<std::size_t>> places_of(const surefoot::RecordingSplit& split) {
+std::vector<std::vector<std::size_t>> places_of(const RecordingSplit& split) {
   std::vector<std::vector<std::size_t>> folds = split.folds;
   for (auto& fold : folds) {
     for (std::size_t& r : fold) {
@@ -56,33 +59,32 @@ std::vector<std::vector<std::size_t>> places_of(const surefoot::RecordingSplit& 
   return folds;
 }
 
-surefoot::Diagnosis diagnose(const MakeRig& make, const surefoot::SimulatorInfo& info,
-                             std::vector<surefoot::Recording> recordings, const surefoot::DiagnoseOptions& options,
-                             const surefoot::Parallel& parallel, std::uint64_t seed) {
-  const auto began = std::chrono::steady_clock::now();
-  surefoot::Investigation investigation = prepare(make, info, std::move(recordings), options, parallel, seed);
-  const surefoot::BoundSimulator& bound = investigation.bound;
-  const surefoot::FitProblem& problem = investigation.problem.fit;
-  surefoot::Diagnosis& diagnosis = investigation.diagnosis;
-  const surefoot::Hypothesis& calibrated = investigation.selection.nominal.hypothesis;
+surefoot::Diagnosis diagnose(const BindSimulator& bind, const surefoot::SimulatorInfo& info,
+                             std::vector<surefoot::Recording> recordings, const RunContext& run) {
+  Prepared prepared = prepare(bind, info, std::move(recordings), run);
+  const EstimationSetup& setup = prepared.setup;
+  surefoot::Diagnosis& diagnosis = prepared.diagnosis;
+  const Hypothesis& calibrated = prepared.calibration.calibrated.hypothesis;
 
-  const LinearProblem linear = linearise(investigation, candidates(investigation, options, parallel), parallel);
-  Choice choice = choose(linear, places_of(investigation.split), problem.weighting.robust);
+  const LinearProblem linear = linearise(prepared, candidate_effects(setup, prepared.calibration, run), run.parallel);
+  Choice choice = choose(linear, places_of(setup.split), setup.problem.weighting.robust);
   const std::size_t survived = choice.survivors.size();
-  choice.survivors.resize(std::min(survived, static_cast<std::size_t>(options.max_effects)));
-  const surefoot::Hypothesis chosen = fit_together(investigation, linear, choice.survivors, parallel).hypothesis;
+  choice.survivors.resize(std::min(survived, static_cast<std::size_t>(run.options.max_effects)));
+  const Hypothesis chosen = fit_together(prepared, linear, choice.survivors, run.parallel);
 
   for (std::size_t e = calibrated.effects.size(); e < chosen.effects.size(); ++e) {
-    diagnosis.effects.push_back(surefoot::diagnosis::describe(bound, chosen, e, nullptr));
+    diagnosis.effects.push_back(describe(setup.bound, chosen, e, nullptr));
   }
-  diagnosis.parameters = surefoot::diagnosis::calibrated_parameters(bound, calibrated, {});
-  diagnosis.augmented_parameters = surefoot::diagnosis::calibrated_parameters(bound, chosen, {});
+  diagnosis.parameters = calibrated_parameters(setup.bound, calibrated, {});
+  diagnosis.augmented_parameters = calibrated_parameters(setup.bound, chosen, {});
   diagnosis.verdict = diagnosis.effects.empty() ? Verdict::parameters_only : Verdict::missing_physics;
   diagnosis.sentence = std::to_string(survived) + " of " + std::to_string(linear.candidates.size()) +
                        " effects survive a penalty of " + surefoot::in_digits(choice.penalty) +
                        " of the one that none survives; " + std::to_string(diagnosis.effects.size()) + " are named.";
-  surefoot::diagnosis::prove(investigation, calibrated, chosen, parallel, seed);
-  diagnosis.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  const FittedModels models{simulate_model(setup, prepared.calibration.nominal, run.parallel),
+                            fitted_model(setup, calibrated, run.parallel), fitted_model(setup, chosen, run.parallel)};
+  evaluate(setup, models, diagnosis, run.parallel, run.seed);
+  diagnosis.seconds = run.seconds();
   return diagnosis;
 }
 
@@ -99,14 +101,15 @@ int run(const S& simulator, const diagnose_program::Layout& layout, const diagno
   options.max_effects = line.max_effects;
   prepare_folder(line.out);
   const surefoot::Threads threads(line.threads);
-  const surefoot::Parallel parallel = [&](std::size_t count, const std::function<void(std::size_t)>& job) {
+  const Parallel parallel = [&](std::size_t count, const std::function<void(std::size_t)>& job) {
     threads.run(count, job);
   };
-  const MakeRig make = [&](std::vector<surefoot::Recording> some) {
+  const BindSimulator bind = [&](std::vector<surefoot::Recording> some) {
     return bind_simulator(simulator, std::move(some));
   };
+  check(options);
   surefoot::Diagnosis diagnosis =
-      diagnose(make, simulator.info(), std::move(loaded.recordings), options, parallel, line.seed);
+      diagnose(bind, simulator.info(), std::move(loaded.recordings), {options, parallel, line.seed});
   diagnosis.remarks.insert(diagnosis.remarks.begin(), loaded.remarks.begin(), loaded.remarks.end());
   surefoot::write_file_atomically(line.out / "diagnosis.json", diagnosis_json(diagnosis));
   if (!line.quiet) {

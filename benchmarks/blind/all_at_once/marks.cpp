@@ -22,7 +22,7 @@ Eigen::VectorXd alone(const surefoot::AttachedEffect& candidate, Eigen::VectorXd
   return values;
 }
 
-std::vector<Unknown> unknowns_of(const surefoot::BoundSimulator& bound, const surefoot::AttachedEffect& candidate,
+std::vector<Unknown> unknowns_of(const BoundSimulator& bound, const surefoot::AttachedEffect& candidate,
                                  const Eigen::VectorXd& start, std::size_t index) {
   std::vector<Unknown> result;
   const auto& parameters = candidate.effect->parameters;
@@ -39,34 +39,34 @@ std::vector<Unknown> unknowns_of(const surefoot::BoundSimulator& bound, const su
 
 }  // namespace
 
-LinearProblem linearise(const surefoot::Investigation& investigation,
-                        const std::vector<surefoot::AttachedEffect>& candidates, const surefoot::Parallel& parallel) {
-  const surefoot::BoundSimulator& bound = investigation.bound;
-  const surefoot::FitProblem& problem = investigation.problem.fit;
-  const surefoot::Hypothesis& base = investigation.selection.nominal.hypothesis;
-  const surefoot::diagnosis::FitFunctions functions(bound, base, problem, parallel);
+LinearProblem linearise(const Prepared& prepared, const std::vector<surefoot::AttachedEffect>& candidates,
+                        const Parallel& parallel) {
+  const BoundSimulator& bound = prepared.setup.bound;
+  const FitProblem& problem = prepared.setup.problem;
+  const Hypothesis& base = prepared.calibration.calibrated.hypothesis;
+  const FitFunctions functions(bound, base, problem, parallel);
   const double limit = problem.weighting.robust;
 
   LinearProblem result;
   result.begin = functions.begin();
-  const Eigen::VectorXd residuals = functions.residuals(functions.start());
+  const Eigen::VectorXd start = functions.start(), residuals = functions.residuals(start);
   result.residuals = residuals.unaryExpr([limit](double r) { return std::clamp(r, -limit, limit); });
-  result.slopes = functions.jacobian(functions.start());
-  for (const surefoot::Proposal& proposal : propose(bound, base, problem, candidates, parallel)) {
-    if (!(proposal.visible > 0)) continue;  // leaves no mark that the parameters could not
+  result.jacobian = functions.jacobian(start, residuals);
+  for (const Proposal& proposal : propose(bound, base, problem, candidates, parallel)) {
+    if (!(proposal.visible > 0)) continue;  // has no signature that the parameters could not
     const auto more = unknowns_of(bound, proposal.effect, proposal.tried, result.candidates.size());
     result.unknowns.insert(result.unknowns.end(), more.begin(), more.end());
     result.candidates.push_back(proposal.effect);
     result.starts.push_back(proposal.tried);
   }
   result.columns = Eigen::MatrixXd::Zero(residuals.size(), static_cast<Eigen::Index>(result.unknowns.size()));
-  const surefoot::Parallel on_this_thread = surefoot::serially();
+  const Parallel on_this_thread = serially();
   parallel(result.unknowns.size(), [&](std::size_t j) {
     const Unknown& unknown = result.unknowns[j];
-    surefoot::Hypothesis with = base;
+    Hypothesis with = base;
     with.effects.push_back(result.candidates[unknown.candidate]);
     with.values.push_back(alone(with.effects.back(), result.starts[unknown.candidate], unknown.parameter));
-    const surefoot::diagnosis::FitFunctions changed(bound, with, problem, on_this_thread);
+    const FitFunctions changed(bound, with, problem, on_this_thread);
     const Eigen::VectorXd after = changed.residuals(changed.start());
     if (after.allFinite()) result.columns.col(static_cast<Eigen::Index>(j)) = after - residuals;
   });

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "surefoot/diagnose/verdict/investigation.hpp"
+#include "prepare.hpp"
 
 namespace all_at_once {
 
@@ -17,21 +17,21 @@ struct Unknown {
   double low = 0, high = 1;  // multiples of the start
 };
 
-/// residuals + slopes * (parameters and initial states) + columns * unknowns, to be made small. Rows are those of the
+/// residuals + jacobian * (parameters and initial states) + columns * unknowns, to be made small. Rows are those of the
 /// recordings one after the other, cut off at the robust limit.
 struct LinearProblem {
   std::vector<surefoot::AttachedEffect> candidates;
-  std::vector<Eigen::VectorXd> starts;  // by candidate: the numbers around which it was linearised
+  std::vector<Eigen::VectorXd> starts;  // by candidate: the parameters around which it was linearised
   std::vector<Unknown> unknowns;
   Eigen::VectorXd residuals;
-  Eigen::MatrixXd slopes, columns;
+  Eigen::MatrixXd jacobian, columns;
   std::vector<Eigen::Index> begin;  // first row of each recording, then the number of rows
 };
 
 /// Linearises the candidates about the calibrated simulator. Of several starting values of an effect that is taken
 /// which by itself explains most. Cost: two simulations of all training recordings per candidate and strength, one more
 /// for each further start.
-LinearProblem linearise(const surefoot::Investigation& investigation,
-                        const std::vector<surefoot::AttachedEffect>& candidates, const surefoot::Parallel& parallel);
+LinearProblem linearise(const Prepared& prepared, const std::vector<surefoot::AttachedEffect>& candidates,
+                        const surefoot::diagnosis::Parallel& parallel);
 
 }  // namespace all_at_once

@@ -74,8 +74,8 @@ void train(const Problem& problem, const TrainOptions& options, const E& executo
   const example::Interrupt interrupt;
   const auto interrupted = [&] { return surefoot::in_any_process(executor, interrupt.requested()); };
   surefoot::RfpiOptions rfpi = options.preset == "paper" ? surefoot::RfpiOptions::paper() : surefoot::RfpiOptions{};
-  rfpi.budget.seconds = options.budget;
-  rfpi.budget.wall_seconds = options.wall;
+  rfpi.budget.counted_seconds = options.budget;
+  rfpi.max_seconds = options.wall;
   rfpi.checkpoint = options.checkpoint();
   rfpi.checkpoint_seconds = options.checkpoint_seconds;
   rfpi.resume = options.resume;

@@ -10,7 +10,7 @@
 #include "commands.hpp"
 #include "progress_line.hpp"
 #include "share.hpp"
-#include "surefoot/motion/plan/command_plan.hpp"
+#include "surefoot/motion/plan.hpp"
 #include "twin_sequence.hpp"
 
 namespace sigmaban {

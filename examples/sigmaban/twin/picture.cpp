@@ -8,10 +8,10 @@
 #include <variant>
 #include <vector>
 
+#include "../../../apps/calibrate/stoppable.hpp"
 #include "../../../apps/common/gnuplot.hpp"
 #include "../approach/commands.hpp"
 #include "../approach/plot.hpp"
-#include "../../../apps/calibrate/stoppable.hpp"
 #include "../robot/policy_option.hpp"
 #include "commands.hpp"
 #include "play_approach.hpp"

@@ -10,11 +10,11 @@
 #include <variant>
 #include <vector>
 
+#include "../../../apps/calibrate/stoppable.hpp"
 #include "../../../apps/common/files.hpp"
 #include "../approach/any_policy.hpp"
 #include "../approach/commands.hpp"
 #include "../approach/motion.hpp"
-#include "../../../apps/calibrate/stoppable.hpp"
 #include "../robot/policy_option.hpp"
 #include "commands.hpp"
 #include "play_approach.hpp"

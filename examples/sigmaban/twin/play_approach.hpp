@@ -8,8 +8,8 @@
 
 #include "../approach/approach.hpp"
 #include "surefoot/core/policy.hpp"
-#include "surefoot/core/rng.hpp"
 #include "surefoot/core/pose2.hpp"
+#include "surefoot/core/rng.hpp"
 #include "walking_twin.hpp"
 
 namespace sigmaban {

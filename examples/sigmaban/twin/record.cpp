@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "../../../apps/common/files.hpp"
 #include "../../../apps/calibrate/load_sequences.hpp"
 #include "../../../apps/calibrate/stoppable.hpp"
+#include "../../../apps/common/files.hpp"
 #include "commands.hpp"
 #include "progress_line.hpp"
-#include "surefoot/motion/plan/command_plan.hpp"
+#include "surefoot/motion/plan.hpp"
 #include "twin_sequence.hpp"
 
 namespace sigmaban {
@@ -64,7 +64,7 @@ void add_record(CLI::App& program) {
       "Ctrl-C ends early and keeps the sequences that are done.");
   add_sequence_options(*command, options->sequences, options->cycles);
   command
-      ->add_option("--commands", options->commands,
+      ->add_option("--commands,--orders", options->commands,
                    "CSV file of commands in place of random ones, as written by surefoot-calibrate plan or by record")
       ->check(CLI::ExistingFile);
   add_twin_options(*command, options->twin);

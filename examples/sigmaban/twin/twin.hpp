@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "../robot/walk_engine/joint_targets.hpp"
-#include "surefoot/core/vec.hpp"
 #include "surefoot/core/pose2.hpp"
+#include "surefoot/core/vec.hpp"
 #include "twin_parameters.hpp"
 #include "twin_switches.hpp"
 

@@ -25,22 +25,22 @@ inline constexpr double steps_per_cycle = 2;
 struct TwinSequence {
   std::size_t number = 0;
   std::vector<surefoot::Vec<3>> commands;  // per step (forward, left, turn) [m, m, rad]
-  std::vector<surefoot::Pose2> moved;    // in the trunk's frame at the start of the cycle [m, rad]
+  std::vector<surefoot::Pose2> moved;      // in the trunk's frame at the start of the cycle [m, rad]
   bool fell = false;
   double simulated = 0;  // from the stand on [s]
 };
 
-/// Walks a column of commands per cycle (what a perfect robot would do, as surefoot::plan_commands gives them). Noise on
-/// targets comes from the stream `number` of the seed.
+/// Walks a column of commands per cycle (what a perfect robot would do, as surefoot::plan_commands gives them). Noise
+/// on targets comes from the stream `number` of the seed.
 TwinSequence record_sequence(const WalkingTwinOptions& options, const Eigen::Matrix3Xd& commands, std::size_t number,
                              std::uint64_t seed);
 
 /// All of them, in order; those that a stop kept from being walked are missing. The same for every executor.
 /// `ended(count)` is called, one call at a time, when `count` sequences are done.
 template <surefoot::Executor E>
-std::vector<TwinSequence> record_sequences(const WalkingTwinOptions& options, std::span<const Eigen::Matrix3Xd> commands,
-                                           std::uint64_t seed, const E& executor,
-                                           const std::function<void(std::size_t)>& ended = {}) {
+std::vector<TwinSequence> record_sequences(const WalkingTwinOptions& options,
+                                           std::span<const Eigen::Matrix3Xd> commands, std::uint64_t seed,
+                                           const E& executor, const std::function<void(std::size_t)>& ended = {}) {
   std::vector<std::optional<TwinSequence>> walked(commands.size());
   std::mutex one_at_a_time;
   std::size_t done = 0;
@@ -63,8 +63,8 @@ std::vector<surefoot::Pose2> poses(const TwinSequence& sequence);
 /// As calibration sees it. Throws TwinError for an empty sequence.
 surefoot::WalkSequence walk_sequence(const TwinSequence& sequence);
 
-/// CSV, one row per cycle: seq, cycle, command per step, displacement, pose at the end of the cycle. Sequences that ended
-/// in a fall are left out.
+/// CSV, one row per cycle: seq, cycle, command per step, displacement, pose at the end of the cycle. Sequences that
+/// ended in a fall are left out.
 std::string sequences_csv(std::span<const TwinSequence> sequences);
 
 /// Displacement = A (1, commands per cycle), fitted to the displacements of single cycles by least squares. Throws

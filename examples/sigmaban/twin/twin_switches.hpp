@@ -33,7 +33,7 @@ struct TwinSwitch {
   std::string_view name, unit;
   double usual = 0, largest = 0;
   bool two_sided = false;
-  double TwinSwitches::* member = nullptr;
+  double TwinSwitches::*member = nullptr;
 };
 
 inline constexpr std::array<TwinSwitch, 8> twin_switches{{

@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "../robot/walk_engine/spline_walk.hpp"
+#include "surefoot/core/pose2.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
-#include "surefoot/core/pose2.hpp"
 #include "twin.hpp"
 
 namespace sigmaban {

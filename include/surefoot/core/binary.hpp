@@ -1,29 +1,20 @@
-// Reading and writing binary files: little-endian on every machine, bounds-checked, and never left half written.
+// Binary files: little-endian on every machine, bounds-checked, and never left half written.
 #pragma once
 
-#include <algorithm>
 #include <bit>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "surefoot/core/compiled.hpp"
 #include "surefoot/core/error.hpp"
-
-#if defined(__unix__) || defined(__APPLE__)
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
-#endif
 
 namespace surefoot {
 
@@ -62,26 +53,13 @@ struct WordOf<8> {
 
 /// A number (or a struct that is nothing but one, like a node of a tree) of 1, 4 or 8 bytes.
 template <class T>
-concept Word = std::is_trivially_copyable_v<T> && requires { typename detail::WordOf<sizeof(T)>::type; };
+concept Word = std::is_trivially_copyable_v<T> && requires {
+  typename detail::WordOf<sizeof(T)>::type;
+};
 
 /// A checksum of 64 bits. A change within one aligned group of 8 bytes is always noticed, any other with probability
 /// 1 - 2^-64. About 6 GB/s.
-inline std::uint64_t checksum(std::span<const std::byte> bytes) {
-  std::uint64_t hash = 0x9E3779B97F4A7C15U + bytes.size();
-  auto absorb = [&hash](std::uint64_t word) {  // one-to-one in `hash` and in `word`
-    hash = (hash ^ word) * 0xD6E8FEB86659FD93U;
-    hash ^= hash >> 32;
-  };
-  for (; bytes.size() >= 8; bytes = bytes.subspan(8)) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes.data(), 8);
-    absorb(detail::little(word));
-  }
-  std::uint64_t word = 0;
-  if (!bytes.empty()) std::memcpy(&word, bytes.data(), bytes.size());
-  absorb(detail::little(word));
-  return hash;
-}
+std::uint64_t checksum(std::span<const std::byte> bytes);
 
 /// Appends numbers to a growing array of bytes.
 class ByteWriter {
@@ -182,30 +160,22 @@ class ByteReader {
   }
 
   /// Throws unless the next 8 bytes are the checksum of everything from byte `start` up to here.
-  void expect_checksum(std::size_t start = 0) {
-    const std::uint64_t expected = checksum(bytes_.subspan(start, position_ - start));
-    if (u64() != expected) fail("is damaged: its checksum does not match");
-  }
+  void expect_checksum(std::size_t start = 0);
 
   /// Throws unless everything was read.
-  void expect_end() const {
-    if (remaining() != 0) fail("has " + std::to_string(remaining()) + " bytes more than expected");
-  }
+  void expect_end() const;
 
   std::size_t position() const { return position_; }
   std::size_t remaining() const { return bytes_.size() - position_; }
   const std::string& source() const { return source_; }
 
-  [[noreturn]] void fail(const std::string& what) const { throw CoreError(source_ + " " + what); }
+  [[noreturn]] void fail(const std::string& what) const;
 
  private:
   void need(std::uint64_t count, std::size_t size) const {
-    if (count > remaining() / size) {
-      fail("ends too early: " + std::to_string(count) + " items of " + std::to_string(size) +
-           " bytes expected at byte " + std::to_string(position_) + ", but only " + std::to_string(remaining()) +
-           " bytes follow");
-    }
+    if (count > remaining() / size) fail_at_end(count, size);
   }
+  [[noreturn]] void fail_at_end(std::uint64_t count, std::size_t size) const;
 
   std::size_t count() {
     const std::uint64_t count = u64();
@@ -225,65 +195,30 @@ class ByteReader {
   std::size_t position_ = 0;
 };
 
-namespace detail {
+/// What a file starts with: characters that tell its kind, and the version of its format.
+struct FileFormat {
+  std::string_view magic;
+  std::uint32_t version = 1;
+  std::string_view kind;  // for messages: "a forest"
+};
 
-/// Waits until the bytes of a file are on the disk, not only on their way there (fsync; nothing where POSIX is
-/// missing).
-inline std::error_code flush_to_disk([[maybe_unused]] const std::filesystem::path& path) {
-  std::error_code error;
-#if defined(__unix__) || defined(__APPLE__)
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool flushed = file >= 0 && (::fsync(file) == 0 || errno == EINVAL);  // EINVAL: no disk behind it
-  if (!flushed) error.assign(errno, std::generic_category());
-  if (file >= 0) ::close(file);
-#endif
-  return error;
-}
+void write_format(ByteWriter& out, const FileFormat& format);
 
-}  // namespace detail
+/// Throws a CoreError unless the next bytes are those of write_format().
+void expect_format(ByteReader& in, const FileFormat& format);
 
 /// Writes the file aside (path + ".part"), flushes it to the disk and renames it, so that `path` holds the old bytes or
 /// the new ones, never half, whether the program dies or the power goes. Waits for the disk, some milliseconds.
-inline void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  std::filesystem::path aside = path;
-  aside += ".part";
-  std::error_code error;
-  const auto old = std::filesystem::status(path, error);
-  if (std::filesystem::exists(old) && !std::filesystem::is_regular_file(old)) {  // the rename would take its place
-    throw CoreError("file " + path.string() + " is a folder or a device: give the name of a plain file");
-  }
-  error.clear();
-  {
-    std::ofstream file(aside, std::ios::binary | std::ios::trunc);
-    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    if (file) error = detail::flush_to_disk(aside);
-    if (file && !error) std::filesystem::rename(aside, path, error);
-    if (file && !error) return;
-  }
-  std::error_code ignored;
-  std::filesystem::remove(aside, ignored);
-  throw CoreError("file " + path.string() +
-                  " cannot be written: check that its folder exists, is writable and has space" +
-                  (error ? " (" + error.message() + ")" : ""));
-}
+void write_file_atomically(const std::string& path, std::span<const std::byte> bytes);
+void write_file_atomically(const std::string& path, std::string_view text);
 
-inline void write_file_atomically(const std::filesystem::path& path, std::string_view text) {
-  write_file_atomically(path, std::as_bytes(std::span(text)));
-}
+bool file_exists(const std::string& path);
 
 /// All bytes of a file.
-inline Bytes read_file(const std::filesystem::path& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) throw CoreError("file " + path.string() + " is a folder");
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : -1;
-  if (size < 0) throw CoreError("file " + path.string() + " cannot be opened: check its name and permissions");
-  Bytes bytes(static_cast<std::size_t>(size));
-  file.seekg(0);
-  file.read(reinterpret_cast<char*>(bytes.data()), size);
-  if (!file) throw CoreError("file " + path.string() + " cannot be read to its end");
-  return bytes;
-}
+Bytes read_file(const std::string& path);
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/core/binary.ipp"
+#endif

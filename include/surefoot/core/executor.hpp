@@ -1,21 +1,18 @@
-// Who does the work: independent jobs 0..count-1, on this thread, on several, or in several processes
+// Executors: who does independent jobs 0..count-1, this thread, several, or several processes
 // (mpi/mpi_executor.hpp). Results never depend on it.
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <concepts>
 #include <cstddef>
-#include <exception>
-#include <mutex>
 #include <span>
 #include <stop_token>
-#include <thread>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "surefoot/core/binary.hpp"
+#include "surefoot/core/compiled.hpp"
 #include "surefoot/core/error.hpp"
 #include "surefoot/core/portable.hpp"
 
@@ -49,47 +46,22 @@ struct Serial {
 class Threads {
  public:
   /// `count` threads; 0 means as many as the machine has.
-  explicit Threads(std::size_t count = 0)
-      : width_(count != 0 ? count : std::max<std::size_t>(1, std::thread::hardware_concurrency())) {}
+  explicit Threads(std::size_t count = 0);
 
   std::size_t width() const { return width_; }
 
   template <std::invocable<std::size_t> Job>
   bool run(std::size_t count, Job&& job, std::stop_token stop = {}) const {
-    const std::size_t threads = std::min(width_, count);
-    if (threads <= 1) return Serial{}.run(count, job, stop);
-    std::atomic<std::size_t> next{0};
-    std::atomic<bool> failed{false};
-    std::exception_ptr error;
-    std::size_t error_index = count;
-    std::mutex error_mutex;
-    auto work = [&] {
-      while (!failed.load(std::memory_order_relaxed) && !stop.stop_requested()) {
-        const std::size_t i = next.fetch_add(1, std::memory_order_relaxed);
-        if (i >= count) return;
-        try {
-          job(i);
-        } catch (...) {
-          failed.store(true, std::memory_order_relaxed);
-          const std::scoped_lock lock(error_mutex);
-          if (i < error_index) {
-            error_index = i;
-            error = std::current_exception();
-          }
-        }
-      }
-    };
-    {
-      std::vector<std::jthread> helpers;
-      helpers.reserve(threads - 1);
-      for (std::size_t t = 1; t < threads; ++t) helpers.emplace_back(work);
-      work();
-    }
-    if (error) std::rethrow_exception(error);
-    return next.load() >= count;
+    const auto each = [&job](std::size_t i) { job(i); };
+    return run_each(
+        count, [](const void* any, std::size_t i) { (*static_cast<decltype(&each)>(any))(i); }, &each, stop);
   }
 
  private:
+  // One copy for all kinds of jobs: call(job, i) does job i.
+  bool run_each(std::size_t count, void (*call)(const void* job, std::size_t i), const void* job,
+                const std::stop_token& stop) const;
+
   std::size_t width_;
 };
 
@@ -99,12 +71,12 @@ class Threads {
 /// pack(i, ByteWriter&) there and unpack(i, ByteReader&) in the others carry what job i wrote. What run_apart returns
 /// or throws is the same in all processes.
 template <class E>
-concept Distributed =
-    Executor<E> && requires(const E& executor, std::size_t count, void (*job)(std::size_t), std::stop_token stop,
-                            void (*pack)(std::size_t, ByteWriter&), void (*unpack)(std::size_t, ByteReader&)) {
-      { executor.processes() } -> std::convertible_to<std::size_t>;
-      { executor.run_apart(count, job, stop, pack, unpack) } -> std::same_as<bool>;
-    };
+concept Distributed = Executor<E> &&
+    requires(const E& executor, std::size_t count, void (*job)(std::size_t), std::stop_token stop,
+             void (*pack)(std::size_t, ByteWriter&), void (*unpack)(std::size_t, ByteReader&)) {
+  { executor.processes() } -> std::convertible_to<std::size_t>;
+  { executor.run_apart(count, job, stop, pack, unpack) } -> std::same_as<bool>;
+};
 
 /// What the jobs of a run write: job i writes items [i * per_job, (i + 1) * per_job), as far as there are any.
 template <class T>
@@ -182,3 +154,7 @@ bool in_any_process(const E& executor, bool flag) {
 }
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/core/executor.ipp"
+#endif

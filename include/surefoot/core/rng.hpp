@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "surefoot/core/compiled.hpp"
 #include "surefoot/core/error.hpp"
 
 namespace surefoot {
@@ -31,87 +32,55 @@ constexpr std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> c
   return counter;
 }
 
+namespace detail {
+
+/// first x^n + ... + last, by Horner's rule.
+template <class... Coefficient>
+constexpr double polynomial(double x, double first, Coefficient... rest) {
+  ((first = first * x + rest), ...);
+  return first;
+}
+
+/// The rational function of AS 241 around the median, q = p - 0.5.
+inline double normal_quantile_centre(double q) {
+  const double r = 0.180625 - q * q;
+  return q *
+         polynomial(r, 2509.0809287301226727, 33430.575583588128105, 67265.770927008700853, 45921.953931549871457,
+                    13731.693765509461125, 1971.5909503065514427, 133.14166789178437745, 3.387132872796366608) /
+         polynomial(r, 5226.495278852545925, 28729.085735721942674, 39307.89580009271061, 21213.794301586595867,
+                    5394.1960214247511077, 687.1870074920579083, 42.313330701600911252, 1.0);
+}
+
+/// The same in the tails, `tail` = sqrt(-log of the smaller of p and 1 - p).
+inline double normal_quantile_tail(double tail) {
+  if (tail <= 5) {
+    const double r = tail - 1.6;
+    return polynomial(r, 7.7454501427834140764e-4, 0.0227238449892691845833, 0.24178072517745061177,
+                      1.27045825245236838258, 3.64784832476320460504, 5.7694972214606914055, 4.6303378461565452959,
+                      1.42343711074968357734) /
+           polynomial(r, 1.05075007164441684324e-9, 5.475938084995344946e-4, 0.0151986665636164571966,
+                      0.14810397642748007459, 0.68976733498510000455, 1.6763848301838038494, 2.05319162663775882187,
+                      1.0);
+  }
+  const double r = tail - 5;
+  return polynomial(r, 2.01033439929228813265e-7, 2.71155556874348757815e-5, 0.0012426609473880784386,
+                    0.026532189526576123093, 0.29656057182850489123, 1.7848265399172913358, 5.4637849111641143699,
+                    6.6579046435011037772) /
+         polynomial(r, 2.04426310338993978564e-15, 1.4215117583164458887e-7, 1.8463183175100546818e-5,
+                    7.868691311456132591e-4, 0.0148753612908506148525, 0.13692988092273580531, 0.59983220655588793769,
+                    1.0);
+}
+
+}  // namespace detail
+
 /// Quantile of the standard normal distribution, for 0 < p < 1; relative accuracy about 1e-16.
 /// Algorithm AS 241 (Wichura, Applied Statistics 37, 1988).
 inline double normal_quantile(double p) {
   const double q = p - 0.5;
   if (std::abs(q) <= 0.425) {
-    const double r = 0.180625 - q * q;
-    const double above = (((((((2509.0809287301226727 * r + 33430.575583588128105) * r + 67265.770927008700853) * r +
-                              45921.953931549871457) *
-                                 r +
-                             13731.693765509461125) *
-                                r +
-                            1971.5909503065514427) *
-                               r +
-                           133.14166789178437745) *
-                              r +
-                          3.387132872796366608);
-    const double below = (((((((5226.495278852545925 * r + 28729.085735721942674) * r + 39307.89580009271061) * r +
-                              21213.794301586595867) *
-                                 r +
-                             5394.1960214247511077) *
-                                r +
-                            687.1870074920579083) *
-                               r +
-                           42.313330701600911252) *
-                              r +
-                          1.0);
-    return q * above / below;
+    return detail::normal_quantile_centre(q);
   }
-  const double tail = std::sqrt(-std::log(q < 0 ? p : 1.0 - p));
-  double magnitude = 0;
-  if (tail <= 5) {
-    const double r = tail - 1.6;
-    const double above =
-        (((((((7.7454501427834140764e-4 * r + 0.0227238449892691845833) * r + 0.24178072517745061177) * r +
-             1.27045825245236838258) *
-                r +
-            3.64784832476320460504) *
-               r +
-           5.7694972214606914055) *
-              r +
-          4.6303378461565452959) *
-             r +
-         1.42343711074968357734);
-    const double below =
-        (((((((1.05075007164441684324e-9 * r + 5.475938084995344946e-4) * r + 0.0151986665636164571966) * r +
-             0.14810397642748007459) *
-                r +
-            0.68976733498510000455) *
-               r +
-           1.6763848301838038494) *
-              r +
-          2.05319162663775882187) *
-             r +
-         1.0);
-    magnitude = above / below;
-  } else {
-    const double r = tail - 5;
-    const double above =
-        (((((((2.01033439929228813265e-7 * r + 2.71155556874348757815e-5) * r + 0.0012426609473880784386) * r +
-             0.026532189526576123093) *
-                r +
-            0.29656057182850489123) *
-               r +
-           1.7848265399172913358) *
-              r +
-          5.4637849111641143699) *
-             r +
-         6.6579046435011037772);
-    const double below =
-        (((((((2.04426310338993978564e-15 * r + 1.4215117583164458887e-7) * r + 1.8463183175100546818e-5) * r +
-             7.868691311456132591e-4) *
-                r +
-            0.0148753612908506148525) *
-               r +
-           0.13692988092273580531) *
-              r +
-          0.59983220655588793769) *
-             r +
-         1.0);
-    magnitude = above / below;
-  }
+  const double magnitude = detail::normal_quantile_tail(std::sqrt(-std::log(q < 0 ? p : 1.0 - p)));
   return q < 0 ? -magnitude : magnitude;
 }
 
@@ -211,21 +180,10 @@ class Rng {
 /// `count` points of `dims` numbers in [0,1), point after point: along every dimension each of `count` equal slices
 /// holds one point (Latin hypercube; McKay, Beckman, Conover 1979). Averages of smooth functions over them have far
 /// less variance than over independent draws.
-inline std::vector<double> latin_hypercube(std::uint32_t count, std::uint32_t dims, Rng& rng) {
-  std::vector<double> points(std::size_t{count} * dims);
-  std::vector<std::uint32_t> slices(count);
-  for (std::uint32_t d = 0; d < dims; ++d) {
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t j = rng.below(i + 1);
-      slices[i] = slices[j];
-      slices[j] = i;
-    }
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const double draw = (slices[i] + rng.uniform()) / count;
-      points[std::size_t{i} * dims + d] = draw < 1.0 ? draw : 1.0 - 0x1p-53;
-    }
-  }
-  return points;
-}
+std::vector<double> latin_hypercube(std::uint32_t count, std::uint32_t dims, Rng& rng);
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/core/rng.ipp"
+#endif

@@ -1,4 +1,4 @@
-// Runs a user's problem and says in plain English what is wrong with it, before hours of training do.
+// A check of a user's problem by running it, with complaints in plain English, before hours of training.
 // Cost: about 8 * runs * horizon steps of the problem, one thread besides the caller's.
 #pragma once
 
@@ -8,12 +8,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <future>
-#include <sstream>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/box.hpp"
+#include "surefoot/core/compiled.hpp"
 #include "surefoot/core/error.hpp"
 #include "surefoot/core/problem.hpp"
 #include "surefoot/core/rng.hpp"
@@ -25,15 +26,29 @@ struct ValidateOptions {
   int horizon = 30;  // [transitions]
 };
 
+/// Throws a CoreError that names the field and its range.
+void check(const ValidateOptions& options);
+
+namespace detail {
+
+/// A piece of a complaint; numbers with six digits.
+std::string text_of(double number);
+std::string text_of(std::integral auto number) { return std::to_string(number); }
+inline std::string_view text_of(std::string_view text) { return text; }
+
+/// "[1, 2.5]", numbers with four digits.
+std::string list_of(const double* numbers, std::size_t count);
+
+/// check() as another thread sees it; its exceptions come here.
+bool ask_another_thread(bool (*check)(const void*), const void* argument);
+
 /// What is behind one call of validate(); see there.
 template <Problem P>
 class Validation {
  public:
   Validation(const P& problem, const ValidateOptions& options, std::uint64_t seed)
       : problem_(problem), states_(problem.state_box()), actions_(problem.action_box()), seed_(seed) {
-    if (std::min(options.runs, options.horizon) < 1) {
-      throw CoreError("ValidateOptions: runs and horizon must be at least 1");
-    }
+    surefoot::check(options);
     check_boxes_and_names();
     const bool repeats = unless_it_throws("in a run with actions of action_box(): accept them",
                                           [&] { return make_runs(options) && check_repeats(); });
@@ -65,9 +80,9 @@ class Validation {
   // Adds a complaint; false, so that a check can end with it.
   template <class... Parts>
   bool complain(const Parts&... parts) {
-    std::ostringstream text;
-    (text << ... << parts);
-    complaints_.push_back(text.str());
+    std::string text;
+    ((text += detail::text_of(parts)), ...);
+    complaints_.push_back(std::move(text));
     return false;
   }
 
@@ -160,8 +175,8 @@ class Validation {
   }
 
   template <class Vector>
-  static auto list(const Vector& numbers) {
-    return numbers.transpose().format(Eigen::IOFormat(4, Eigen::DontAlignCols, ", ", "", "", "", "[", "]"));
+  static std::string list(const Vector& numbers) {
+    return list_of(numbers.data(), static_cast<std::size_t>(numbers.size()));
   }
 
   // Every step once more: backwards, which shows hidden memory, and on another thread.
@@ -175,7 +190,8 @@ class Validation {
           "step() gave another result for the same state, action and Rng: let it change nothing (no static or mutable "
           "variables) and draw all its randomness from the Rng it is given");
     }
-    if (std::async(std::launch::async, all_same).get()) return true;
+    const auto ask = [](const void* any) { return (*static_cast<decltype(&all_same)>(any))(); };
+    if (ask_another_thread(ask, &all_same)) return true;
     return complain(
         "step() gave another result on another thread: use no thread_local or otherwise thread-bound variables in it");
   }
@@ -289,13 +305,15 @@ class Validation {
   std::vector<std::string> complaints_;
 };
 
+}  // namespace detail
+
 /// Complaints about a problem, each one sentence that names the member and the cure; empty if there are none. What may
 /// well be meant starts with "remark: ". Checks: finite numbers, equal results for equal random numbers (again, and on
 /// another thread), states inside their box, boxes with width, actions that have an effect and may leave their box,
 /// rewards that differ, states that change, runs that last, features, names, exceptions.
 template <Problem P>
 std::vector<std::string> validate(const P& problem, const ValidateOptions& options = {}, std::uint64_t seed = 0) {
-  return Validation<P>(problem, options, seed).complaints();
+  return detail::Validation<P>(problem, options, seed).complaints();
 }
 
 /// What a type that is no Problem gets.
@@ -306,3 +324,7 @@ auto validate(const P&, const ValidateOptions& = {}, std::uint64_t = 0) {
 }
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/core/validate.ipp"
+#endif

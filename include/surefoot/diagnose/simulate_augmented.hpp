@@ -3,10 +3,12 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "surefoot/diagnose/effects/catalogue.hpp"
 #include "surefoot/diagnose/effects/named_effect.hpp"
+#include "surefoot/diagnose/estimation/hypothesis.hpp"
 #include "surefoot/diagnose/simulation/simulation_run.hpp"
 #include "surefoot/diagnose/simulation/structure.hpp"
 
@@ -40,6 +42,23 @@ SimulatedRun simulate_augmented(const S& simulator, const Augmented& augmented, 
   return diagnosis::SimulationRun<S>(s, info, structure, diagnosis::unit_sizes(info), recording, p, {attached, values},
                                      augmented.integration)
       .run(recording.initial);
+}
+
+/// Units of the values of an effect, in their order, at the nominal parameters of the simulator.
+template <Simulator S>
+std::vector<std::string> units_of(const S& simulator, const NamedEffect& named, const Recording& recording,
+                                  const std::vector<Effect>& effects = all_effects()) {
+  diagnosis::BoundSimulator bound;
+  bound.info = simulator.info();
+  Eigen::VectorXd p(static_cast<Eigen::Index>(bound.info.parameters.size()));
+  for (Eigen::Index i = 0; i < p.size(); ++i) p[i] = bound.info.parameters[static_cast<std::size_t>(i)].value;
+  bound.structure = diagnosis::find_structure(simulator, bound.info, recording, p);
+  const AttachedEffect attached = attach(bound.info, named, effects);
+  std::vector<std::string> units;
+  for (const auto& parameter : attached.effect->parameters) {
+    units.push_back(diagnosis::measure_unit(bound, attached, parameter.measure));
+  }
+  return units;
 }
 
 }  // namespace surefoot

@@ -15,12 +15,12 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/forest/dataset.hpp"
+#include "surefoot/forest/trees.hpp"
 #include "surefoot/forest/extra_trees.hpp"
-#include "surefoot/forest/options.hpp"
 #include "surefoot/forest/forest.hpp"
+#include "surefoot/forest/fraction_of_variance_unexplained.hpp"
 #include "surefoot/forest/leaf.hpp"
-#include "surefoot/forest/evaluate/trees.hpp"
-#include "surefoot/forest/train/unexplained_variance.hpp"
+#include "surefoot/forest/options.hpp"
 
 namespace surefoot {
 
@@ -35,22 +35,12 @@ struct DistillOptions {
 };
 
 /// Throws a ForestError that names the field and its range.
-inline void check(const DistillOptions& options) {
-  auto require = [](bool good, const char* what) {
-    if (!good) throw ForestError(std::string("DistillOptions: ") + what);
-  };
-  require(options.trees >= 1, "trees must be at least 1");
-  require(options.max_leaves >= 1, "max_leaves must be at least 1");
-  require(options.min_leaf >= 1, "min_leaf must be at least 1");
-  require(options.draws >= 1, "draws must be at least 1");
-  require(options.points >= 1, "points must be at least 1");
-  require(options.mixing >= 0 && options.mixing <= 1, "mixing must be 0 to 1");
-}
+void check(const DistillOptions& options);
 
 template <int Inputs, int Outputs, LeafModel Leaf>
 struct Distilled {
   Forest<Inputs, Outputs, Leaf> forest;
-  double loss = 0;  // share of the variance of the larger forest's answers at fresh points that is lost; 0: none
+  double loss = 0;  // fraction of the variance of the larger forest's answers at fresh points that is lost; 0: none
 };
 
 /// Points where the data is, and the forest's answers there: each is a sample's input, but every component comes from
@@ -104,8 +94,12 @@ Distilled<Inputs, Outputs, Leaf> distill(const Forest<Inputs, Outputs, Teacher>&
   for (std::size_t tree = 1; tree < grown.size(); ++tree) trees.append(grown[tree]);
   Distilled<Inputs, Outputs, Leaf> result{Forest<Inputs, Outputs, Leaf>(std::move(trees)), 0};
   const auto fresh = ask(forest, inputs, std::max(1000, options.points / 4), options.mixing, Rng(seed, 0, 2));
-  result.loss = unexplained(result.forest, fresh);
+  result.loss = fraction_of_variance_unexplained(result.forest, fresh);
   return result;
 }
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/forest/distill.ipp"
+#endif

@@ -8,19 +8,18 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/core/error.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/forest/evaluate/descend.hpp"
 #include "surefoot/forest/evaluate/descend_batch.hpp"
+#include "surefoot/forest/trees.hpp"
 #include "surefoot/forest/leaf.hpp"
-#include "surefoot/forest/evaluate/trees.hpp"
 
 namespace surefoot {
 
@@ -28,10 +27,17 @@ namespace surefoot {
 /// from it (0 for a single tree). Large where the forest has seen little or the function is steep: a doubt, not an
 /// error bound.
 template <int Outputs>
-struct Spread {
+struct MeanAndDeviation {
   Vec<Outputs> mean;
   Vec<Outputs> deviation;
 };
+
+namespace detail {
+
+[[noreturn]] void fail_shape(const TreesShape& trees);
+[[noreturn]] void fail_room(std::size_t trees, std::size_t leaves);
+
+}  // namespace detail
 
 /// A trained forest. Inputs and Outputs may be Eigen::Dynamic. Made by train_extra_trees or load. `Storage` has the
 /// trees: its own, or (ForestView) those that lie elsewhere.
@@ -54,7 +60,7 @@ class Forest {
     if ((Inputs != Eigen::Dynamic && trees_.inputs != Inputs) ||
         (Outputs != Eigen::Dynamic && trees_.outputs != Outputs) ||
         trees_.leaf_parameters != Leaf::parameters(trees_.inputs, trees_.outputs)) {
-      throw ForestError("Forest: the trees have another shape: " + trees_.shape());
+      detail::fail_shape(trees_);
     }
   }
 
@@ -83,7 +89,7 @@ class Forest {
 
   /// The output for one input, the same bits as those of predict, and how far the trees are apart. Allocates nothing if
   /// the number of outputs is fixed.
-  Spread<Outputs> predict_spread(const Vec<Inputs>& x) const {
+  MeanAndDeviation<Outputs> predict_with_deviation(const Vec<Inputs>& x) const {
     const Rounded rounded = round(x);
     Vec<Outputs> sum = Vec<Outputs>::Zero(outputs());
     Vec<Outputs> squares = Vec<Outputs>::Zero(outputs());  // squared distances from the mean (Welford 1962)
@@ -111,8 +117,7 @@ class Forest {
   /// leaf). Allocates nothing. Throws ForestError unless `leaves` has room for exactly as many as there are trees.
   void leaf_indices(const Vec<Inputs>& x, std::span<std::uint32_t> leaves) const {
     if (leaves.size() != trees()) {
-      throw ForestError("leaf_indices: " + std::to_string(trees()) + " trees, but room for " +
-                        std::to_string(leaves.size()) + " leaves");
+      detail::fail_room(trees(), leaves.size());
     }
     const Rounded rounded = round(x);
     const Keys keys = wide_keys(rounded.data());
@@ -301,3 +306,7 @@ Forest<Inputs, Outputs, Leaf> merge(std::span<const Forest<Inputs, Outputs, Leaf
 }
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/forest/forest.ipp"
+#endif

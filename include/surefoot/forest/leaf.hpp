@@ -2,17 +2,14 @@
 // linear, PWL); users can add their own.
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <string>
+
+#include "surefoot/core/compiled.hpp"
 
 namespace surefoot {
 
@@ -80,25 +77,13 @@ struct ConstantLeaf {
 
   static constexpr std::size_t parameters(int /*inputs*/, int outputs) { return static_cast<std::size_t>(outputs); }
 
-  static void fit(const LeafSamples& samples, const LeafOptions&, std::span<float> parameters) {
-    for (int o = 0; o < samples.outputs(); ++o) {
-      double sum = 0;
-      double weight = 0;
-      for (std::size_t i = 0; i < samples.count(); ++i) {
-        sum += samples.weight(i) * static_cast<double>(samples.output(i)[o]);
-        weight += samples.weight(i);
-      }
-      parameters[static_cast<std::size_t>(o)] = static_cast<float>(sum / weight);
-    }
-  }
+  static void fit(const LeafSamples& samples, const LeafOptions& options, std::span<float> parameters);
 
   static void add(const float* parameters, const float* /*x*/, int /*inputs*/, int outputs, double* sum) {
     for (int o = 0; o < outputs; ++o) sum[o] += static_cast<double>(parameters[o]);
   }
 
-  static std::string c_code(int /*inputs*/, int outputs) {
-    return "for (o = 0; o < " + std::to_string(outputs) + "; ++o) out[o] += (double)number(p + o);";
-  }
+  static std::string c_code(int inputs, int outputs);
 };
 
 /// An affine function per output: slopes, offset, and the range its value is clamped to; inputs + 3 floats per output.
@@ -114,53 +99,7 @@ struct LinearLeaf {
     return static_cast<std::size_t>(outputs) * (static_cast<std::size_t>(inputs) + 3);
   }
 
-  static void fit(const LeafSamples& samples, const LeafOptions& options, std::span<float> parameters) {
-    const int inputs = samples.inputs();
-    const int outputs = samples.outputs();
-    const auto row = [&](std::size_t i) {
-      return Eigen::Map<const Eigen::VectorXf>(samples.input(i), inputs + outputs).cast<double>();
-    };
-    Eigen::VectorXd mean = Eigen::VectorXd::Zero(inputs + outputs);
-    double weight = 0;
-    for (std::size_t i = 0; i < samples.count(); ++i) {
-      mean += samples.weight(i) * row(i);
-      weight += samples.weight(i);
-    }
-    mean /= weight;
-    Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(inputs + outputs, inputs);  // about the mean
-    Eigen::VectorXd offset(inputs + outputs);
-    for (std::size_t i = 0; i < samples.count(); ++i) {
-      offset = row(i) - mean;
-      for (int k = 0; k < inputs; ++k) moments.col(k) += offset[k] * (samples.weight(i) * offset);
-    }
-    // To enlarge the diagonal by a factor is to add a constant to it if all inputs have unit spread.
-    Eigen::MatrixXd normal = moments.topRows(inputs);
-    normal.diagonal() *= 1 + std::max(options.ridge, least_ridge) / static_cast<double>(samples.count());
-    for (int k = 0; k < inputs; ++k) {
-      if (!(normal(k, k) > 0)) normal(k, k) = 1;
-    }
-    const Eigen::MatrixXd slopes = normal.llt().solve(moments.bottomRows(outputs).transpose());
-    for (int o = 0; o < outputs; ++o) {
-      float* p = parameters.data() + static_cast<std::ptrdiff_t>(o) * (inputs + 3);
-      float low = samples.output(0)[o];
-      float high = low;
-      for (std::size_t i = 1; i < samples.count(); ++i) {
-        low = std::min(low, samples.output(i)[o]);
-        high = std::max(high, samples.output(i)[o]);
-      }
-      for (int k = 0; k < inputs; ++k) p[k] = static_cast<float>(slopes(k, o));
-      double constant = mean[inputs + o];
-      for (int k = 0; k < inputs; ++k) constant -= static_cast<double>(p[k]) * mean[k];
-      p[inputs] = static_cast<float>(constant);
-      const bool usable = std::all_of(p, p + inputs + 1, [](float v) { return std::isfinite(v); });
-      if (!usable) {
-        std::fill(p, p + inputs, 0.0F);
-        p[inputs] = static_cast<float>(mean[inputs + o]);
-      }
-      p[inputs + 1] = options.clamp ? low : std::numeric_limits<float>::lowest();
-      p[inputs + 2] = options.clamp ? high : std::numeric_limits<float>::max();
-    }
-  }
+  static void fit(const LeafSamples& samples, const LeafOptions& options, std::span<float> parameters);
 
   // A product of two floats is exact in double, so a fused multiply-add gives the same bits as none.
   static void add(const float* parameters, const float* x, int inputs, int outputs, double* sum) {
@@ -172,14 +111,36 @@ struct LinearLeaf {
     }
   }
 
-  static std::string c_code(int inputs, int outputs) {
-    const std::string n = std::to_string(inputs);
-    const auto at = [&](int i) { return "(double)number(p + " + std::to_string(inputs + i) + ")"; };
-    return "for (o = 0; o < " + std::to_string(outputs) + "; ++o, p += " + std::to_string(inputs + 3) + ") {\n" +
-           "  double y = " + at(0) + ";\n" + "  for (k = 0; k < " + n +
-           "; ++k) y += (double)number(p + k) * (double)x[k];\n" + "  if (y < " + at(1) + ") y = " + at(1) + ";\n" +
-           "  if (y > " + at(2) + ") y = " + at(2) + ";\n" + "  out[o] += y;\n" + "}";
-  }
+  static std::string c_code(int inputs, int outputs);
 };
 
+namespace detail {
+
+/// A leaf model as tree growing sees it: one copy of that for all leaf models.
+struct LeafKind {
+  bool linear = false;                                      // splits are scored by affine fits
+  std::size_t (*parameters)(int inputs, int outputs) = {};  // floats per leaf
+  void (*fit)(const LeafSamples&, const LeafOptions&, std::span<float>) = {};
+  void (*add)(const float* parameters, const float* x, int inputs, int outputs, double* sum) = {};
+};
+
+template <LeafModel Leaf>
+constexpr LeafKind leaf_kind() {
+  return {requires {requires Leaf::linear;
+}
+, [](int inputs, int outputs) { return Leaf::parameters(inputs, outputs); },
+    [](const LeafSamples& samples, const LeafOptions& options, std::span<float> parameters) {
+      Leaf::fit(samples, options, parameters);
+    },
+    [](const float* parameters, const float* x, int inputs, int outputs, double* sum) {
+      Leaf::add(parameters, x, inputs, outputs, sum);
+    }
+};  // namespace detail
 }  // namespace surefoot
+
+}  // namespace detail
+}  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/forest/leaf.ipp"
+#endif

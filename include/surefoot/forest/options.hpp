@@ -1,10 +1,7 @@
-// What can be chosen when a forest is trained.
+// Options of training.
 #pragma once
 
-#include <cmath>
-#include <string>
-
-#include "surefoot/core/error.hpp"
+#include "surefoot/core/compiled.hpp"
 
 namespace surefoot {
 
@@ -29,17 +26,10 @@ struct ExtraTreesOptions {
 };
 
 /// Throws a ForestError that names the field and its range.
-inline void check(const ExtraTreesOptions& options) {
-  auto require = [](bool good, const char* what) {
-    if (!good) throw ForestError(std::string("ExtraTreesOptions: ") + what);
-  };
-  require(options.trees >= 1, "trees must be at least 1");
-  require(options.candidates >= 0, "candidates must be at least 1, or 0 for all inputs");
-  require(options.draws >= 1, "draws must be at least 1");
-  require(options.min_leaf >= 1, "min_leaf must be at least 1");
-  require(options.max_depth >= 0, "max_depth must be at least 1, or 0 for no limit");
-  require(options.max_leaves >= 0, "max_leaves must be at least 1, or 0 for no limit");
-  require(options.ridge >= 0 && std::isfinite(options.ridge), "ridge must be finite and at least 0");
-}
+void check(const ExtraTreesOptions& options);
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/forest/options.ipp"
+#endif

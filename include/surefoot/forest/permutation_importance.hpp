@@ -15,8 +15,8 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/forest/dataset.hpp"
 #include "surefoot/forest/forest.hpp"
+#include "surefoot/forest/fraction_of_variance_unexplained.hpp"
 #include "surefoot/forest/leaf.hpp"
-#include "surefoot/forest/train/unexplained_variance.hpp"
 
 namespace surefoot {
 
@@ -41,7 +41,7 @@ PermutationImportance permutation_importance(const Forest<Inputs, Outputs, Leaf>
     throw ForestError("permutation_importance: there can be at most 2^31 - 1 samples");
   }
   const Eigen::Index inputs = samples.inputs.rows();
-  const double before = unexplained(forest, samples);
+  const double before = fraction_of_variance_unexplained(forest, samples);
   const auto rises = map(
       executor, static_cast<std::size_t>(inputs * repeats),
       [&](std::size_t job) {
@@ -53,7 +53,7 @@ PermutationImportance permutation_importance(const Forest<Inputs, Outputs, Leaf>
           const auto other = static_cast<Eigen::Index>(rng.below(static_cast<std::uint32_t>(i) + 1));
           std::swap(shuffled.inputs(input, i), shuffled.inputs(input, other));
         }
-        return unexplained(forest, shuffled) - before;
+        return fraction_of_variance_unexplained(forest, shuffled) - before;
       },
       stop);
   PermutationImportance importance{Eigen::VectorXd(inputs), Eigen::VectorXd(inputs)};

@@ -2,238 +2,88 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
-#include <chrono>
+#include <Eigen/Eigenvalues>
 #include <cmath>
+#include <cstddef>
 #include <limits>
-#include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/optimize/least_squares.hpp"
-#include "surefoot/optimize/linear_algebra.hpp"
 #include "surefoot/optimize/robust_loss.hpp"
 
-namespace surefoot {
+namespace surefoot::detail {
 
-SUREFOOT_INLINE void check(const LeastSquaresOptions& options) {
-  const auto demand = [](bool condition, const char* sentence) {
-    if (!condition) throw OptimizeError(std::string("LeastSquaresOptions: ") + sentence);
-  };
-  demand(options.loss_scale > 0, "loss_scale must be positive");
-  demand(options.max_iterations >= 0, "max_iterations must not be negative");
-  demand(options.tol_gradient >= 0 && options.tol_step >= 0 && options.tol_cost >= 0,
-         "tol_gradient, tol_step and tol_cost must not be negative");
-  demand(options.max_seconds >= 0, "max_seconds must not be negative");
+/// The inverse of a^T a by its eigenvectors, and how many of them it is determined by. `open` becomes true for
+/// parameters that take part in a combination that `a` does not determine.
+SUREFOOT_INLINE Eigen::MatrixXd invert_normal_matrix(const Eigen::MatrixXd& a, Eigen::Index& rank,
+                                                     std::vector<bool>& open) {
+  constexpr double least_eigenvalue = 1e-12;  // per parameter; columns of `a` have length 1
+  constexpr double takes_part = 1e-4;         // component of an eigenvector
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a.transpose() * a);
+  const Eigen::Index count = a.cols();
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(count, count);
+  open.assign(static_cast<std::size_t>(count), false);
+  rank = 0;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::VectorXd axis = solver.eigenvectors().col(k);
+    if (solver.eigenvalues()[k] > least_eigenvalue * static_cast<double>(count)) {
+      ++rank;
+      inverse += axis * axis.transpose() / solver.eigenvalues()[k];
+    } else {
+      for (Eigen::Index i = 0; i < count; ++i) {
+        if (std::abs(axis[i]) > takes_part) open[static_cast<std::size_t>(i)] = true;
+      }
+    }
+  }
+  return inverse;
 }
 
-namespace detail {
-
-// A fit under way.
-class LeastSquaresFit {
- public:
-  LeastSquaresFit(const VectorFunction& function, const MatrixFunction& jacobian, Eigen::VectorXd start,
-                  const LeastSquaresOptions& options)
-      : function_(function), jacobian_(jacobian), options_(options), x_(std::move(start)) {
-    if (x_.size() == 0 || !x_.allFinite()) {
-      throw OptimizeError("least_squares: the start must have at least one parameter and be finite");
-    }
-    if (options_.box && (options_.box->size() != x_.size() || !options_.box->contains(x_))) {
-      throw OptimizeError("least_squares: the start must lie in the box and have its dimension");
-    }
-    residuals_ = function_(x_);
-    if (residuals_.size() == 0 || !residuals_.allFinite()) {
-      throw OptimizeError("least_squares: the residuals at the start must be finite and at least one; got " +
-                          std::to_string(residuals_.size()));
-    }
-    cost_ = cost(residuals_);
+/// The asymptotic covariance of an M-estimate (Huber 1981, section 7.6); for the squared loss the usual one, the
+/// variance of a residual times the inverse of J^T J.
+SUREFOOT_INLINE void estimate_covariance(LeastSquaresResult& result, const Eigen::MatrixXd& full_jacobian,
+                                         const LeastSquaresOptions& options) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < result.x.size(); ++i) {
+    if (!result.active_bound[static_cast<std::size_t>(i)]) free.push_back(i);
   }
-
-  LeastSquaresResult run() {
-    LeastSquaresStop reason = LeastSquaresStop::max_iterations;
-    int iteration = 0;
-    linearise();
-    for (; iteration < options_.max_iterations; ++iteration) {
-      if (iteration > 0 && seconds() >= options_.max_seconds) {
-        reason = LeastSquaresStop::time_budget;
-        break;
-      }
-      if (const auto ended = improve()) {
-        reason = *ended;
-        break;
-      }
-      if (options_.on_progress) options_.on_progress(iteration + 1, cost_);
-      if (options_.covariance || iteration + 1 < options_.max_iterations) linearise();
-    }
-    LeastSquaresResult result{.x = x_,
-                              .cost = cost_,
-                              .residuals = residuals_,
-                              .reason = reason,
-                              .iterations = iteration,
-                              .covariance = {},
-                              .active_bound = active_bound_};
-    if (options_.covariance) estimate_covariance(result);
-    return result;
+  double squares = 0, mean_slope = 0;
+  for (const double r : result.residuals) {
+    const LossTerms terms = loss_terms(options.loss, r / options.loss_scale);
+    squares += terms.weight * r * terms.weight * r;
+    mean_slope += terms.slope;
   }
+  const double spare = static_cast<double>(result.residuals.size()) - static_cast<double>(free.size());
+  mean_slope /= static_cast<double>(result.residuals.size());
+  result.deviation = spare > 0 && mean_slope > 0 ? std::sqrt(squares / spare) / mean_slope : infinity;
 
- private:
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
+  result.covariance = Eigen::MatrixXd::Zero(result.x.size(), result.x.size());
+  if (free.empty()) return;
 
-  double cost(const Eigen::VectorXd& residuals) const {
-    double sum = 0;
-    for (const double r : residuals) sum += loss_terms(options_.loss, r / options_.loss_scale).rho;
-    return 0.5 * options_.loss_scale * options_.loss_scale * sum;
-  }
-
-  // Gradient and Gauss-Newton matrix of the cost at x_, and which parameters are at an active bound.
-  void linearise() {
-    jacobian_at_x_ = jacobian_(x_);
-    if (jacobian_at_x_.rows() != residuals_.size() || jacobian_at_x_.cols() != x_.size() ||
-        !jacobian_at_x_.allFinite()) {
-      throw OptimizeError(
-          "least_squares: the Jacobian must be finite with one row per residual and one column per parameter");
-    }
-    Eigen::VectorXd weights(residuals_.size());
-    for (Eigen::Index i = 0; i < weights.size(); ++i) {
-      weights[i] = loss_terms(options_.loss, residuals_[i] / options_.loss_scale).weight;
-    }
-    const Eigen::VectorXd weighted = weights.cwiseProduct(residuals_);
-    gradient_ = jacobian_at_x_.transpose() * weighted;
-    hessian_ = jacobian_at_x_.transpose() * weights.asDiagonal() * jacobian_at_x_;
-    weighted_norm_ = weighted.norm();
-    active_bound_.assign(static_cast<std::size_t>(x_.size()), false);
-    if (!options_.box) return;
-    for (Eigen::Index i = 0; i < x_.size(); ++i) {
-      active_bound_[static_cast<std::size_t>(i)] = (x_[i] <= options_.box->low()[i] && gradient_[i] >= 0) ||
-                                                   (x_[i] >= options_.box->high()[i] && gradient_[i] <= 0);
+  const Eigen::MatrixXd jacobian = full_jacobian(Eigen::all, free);
+  const Eigen::VectorXd norms = jacobian.colwise().norm().transpose();
+  const Eigen::VectorXd scale = norms.unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 1.0; });
+  const Eigen::MatrixXd scaled = jacobian * scale.asDiagonal();
+  std::vector<bool> open;
+  Eigen::MatrixXd inverse = invert_normal_matrix(scaled, result.rank, open);
+  inverse = scale.asDiagonal() * inverse * scale.asDiagonal();
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    for (std::size_t j = 0; j < free.size(); ++j) {
+      const auto a = static_cast<Eigen::Index>(i), b = static_cast<Eigen::Index>(j);
+      double value = inverse(a, b) * result.deviation * result.deviation;
+      if (open[i] || open[j]) value = a == b ? infinity : std::numeric_limits<double>::quiet_NaN();
+      result.covariance(free[i], free[j]) = value;
     }
   }
-
-  std::vector<Eigen::Index> free_parameters() const {
-    std::vector<Eigen::Index> free;
-    for (Eigen::Index i = 0; i < x_.size(); ++i) {
-      if (!active_bound_[static_cast<std::size_t>(i)]) free.push_back(i);
-    }
-    return free;
-  }
-
-  // Steps until one makes the cost smaller; the reason to stop when there is nothing left to gain.
-  std::optional<LeastSquaresStop> improve() {
-    const std::vector<Eigen::Index> free = free_parameters();
-    const Eigen::VectorXd norms = jacobian_at_x_.colwise().norm().transpose();
-    double steepest = 0;
-    for (const Eigen::Index i : free) {
-      if (norms[i] > 0 && weighted_norm_ > 0)
-        steepest = std::max(steepest, std::abs(gradient_[i]) / (norms[i] * weighted_norm_));
-    }
-    if (steepest <= options_.tol_gradient) return LeastSquaresStop::gradient;
-
-    const Eigen::MatrixXd hessian = hessian_(free, free);
-    const Eigen::VectorXd gradient = gradient_(free);
-    const Eigen::VectorXd scale = hessian.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 1.0; });
-    const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
-    while (true) {
-      Eigen::MatrixXd damped = scaled;
-      damped.diagonal().array() += damping_;
-      Eigen::VectorXd next = x_;
-      next(free) -= scale.cwiseProduct(solve_symmetric(damped, scale.cwiseProduct(gradient)));
-      if (options_.box) next = options_.box->clamp(next);
-      const Eigen::VectorXd step = next - x_;
-      if (!(step.norm() > options_.tol_step * (x_.norm() + options_.tol_step))) return LeastSquaresStop::step;
-      const Eigen::VectorXd residuals = function_(next);
-      const double next_cost = residuals.size() == residuals_.size() && residuals.allFinite()
-                                   ? cost(residuals)
-                                   : std::numeric_limits<double>::infinity();
-      if (next_cost < cost_) {
-        const double gain = cost_ - next_cost;
-        const double expected = -(gradient_.dot(step) + 0.5 * step.dot(hessian_ * step));
-        const double ratio = expected > 0 ? gain / expected : 1;
-        damping_ *= std::max(1.0 / 3, 1 - std::pow(2 * ratio - 1, 3));
-        growth_ = 2;
-        const bool done = gain <= options_.tol_cost * cost_;
-        x_ = next;
-        residuals_ = residuals;
-        cost_ = next_cost;
-        if (!done) return std::nullopt;
-        if (options_.covariance) linearise();
-        return LeastSquaresStop::cost;
-      }
-      damping_ *= growth_;
-      growth_ *= 2;
-    }
-  }
-
-  // The asymptotic covariance of an M-estimate (Huber 1981, section 7.6); for the squared loss the usual one, the
-  // variance of a residual times the inverse of J^T J.
-  void estimate_covariance(LeastSquaresResult& result) const {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    const std::vector<Eigen::Index> free = free_parameters();
-    double squares = 0, mean_slope = 0;
-    for (const double r : residuals_) {
-      const LossTerms terms = loss_terms(options_.loss, r / options_.loss_scale);
-      squares += terms.weight * r * terms.weight * r;
-      mean_slope += terms.slope;
-    }
-    const double spare = static_cast<double>(residuals_.size()) - static_cast<double>(free.size());
-    mean_slope /= static_cast<double>(residuals_.size());
-    result.deviation = spare > 0 && mean_slope > 0 ? std::sqrt(squares / spare) / mean_slope : infinity;
-
-    result.covariance = Eigen::MatrixXd::Zero(x_.size(), x_.size());
-    if (free.empty()) return;
-
-    const Eigen::MatrixXd jacobian = jacobian_at_x_(Eigen::all, free);
-    const Eigen::VectorXd norms = jacobian.colwise().norm().transpose();
-    const Eigen::VectorXd scale = norms.unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 1.0; });
-    const Eigen::MatrixXd scaled = jacobian * scale.asDiagonal();
-    const SymmetricEigen eigen = eigen_of_symmetric(scaled.transpose() * scaled);
-    const auto count = static_cast<Eigen::Index>(free.size());
-    Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(count, count);
-    std::vector<bool> open(free.size(), false);
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const Eigen::VectorXd axis = eigen.vectors.col(k);
-      if (eigen.values[k] > 1e-12 * static_cast<double>(count)) {
-        ++result.rank;
-        inverse += axis * axis.transpose() / eigen.values[k];
-      } else {
-        for (Eigen::Index i = 0; i < count; ++i) {
-          if (std::abs(axis[i]) > 1e-4) open[static_cast<std::size_t>(i)] = true;
-        }
-      }
-    }
-    inverse = scale.asDiagonal() * inverse * scale.asDiagonal();
-    for (Eigen::Index a = 0; a < count; ++a) {
-      for (Eigen::Index b = 0; b < count; ++b) {
-        const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
-        double value = inverse(a, b) * result.deviation * result.deviation;
-        if (open[i] || open[j]) value = a == b ? infinity : std::numeric_limits<double>::quiet_NaN();
-        result.covariance(free[i], free[j]) = value;
-      }
-    }
-  }
-
-  const VectorFunction& function_;
-  const MatrixFunction& jacobian_;
-  const LeastSquaresOptions& options_;
-  Eigen::VectorXd x_, residuals_;
-  double cost_ = 0;
-  Eigen::MatrixXd jacobian_at_x_;  // the Jacobian at x_
-  Eigen::VectorXd gradient_;
-  Eigen::MatrixXd hessian_;
-  double weighted_norm_ = 0;  // of the weighted residuals
-  std::vector<bool> active_bound_;
-  double damping_ = 1e-3;
-  double growth_ = 2;
-  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
-};
+}
 
 SUREFOOT_INLINE LeastSquaresResult least_squares(const VectorFunction& residuals, const Eigen::VectorXd& start,
                                                  const LeastSquaresOptions& options, const MatrixFunction& jacobian) {
-  check(options);
-  return LeastSquaresFit(residuals, jacobian, start, options).run();
+  LeastSquaresEnd end = minimise_squares(residuals, start, options, jacobian);
+  if (options.covariance) estimate_covariance(end.result, end.jacobian, options);
+  return std::move(end.result);
 }
 
-}  // namespace detail
-
-}  // namespace surefoot
+}  // namespace surefoot::detail

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <utility>
@@ -13,12 +12,12 @@
 
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/box.hpp"
+#include "surefoot/core/error.hpp"
 #include "surefoot/core/policy.hpp"
 #include "surefoot/core/problem.hpp"
 #include "surefoot/forest/forest.hpp"
 #include "surefoot/forest/leaf.hpp"
 #include "surefoot/forest/serialize.hpp"
-#include "surefoot/solve/rfpi_options.hpp"
 
 namespace surefoot {
 
@@ -69,8 +68,7 @@ class ForestPolicy {
 
 namespace detail {
 
-constexpr std::string_view policy_magic = "SUREPLCY";
-constexpr std::uint32_t policy_version = 1;
+constexpr FileFormat policy_format{"SUREPLCY", 1, "a policy file"};
 
 /// Features at a few fixed states: tells whether a file and a problem speak of the same features.
 template <Problem P>
@@ -88,11 +86,10 @@ std::vector<double> feature_probe(const P& problem) {
 
 /// Writes a policy file: magic, version, dimensions, action box, probe of the features, forest, checksum.
 template <Problem P>
-void save_policy(const std::filesystem::path& path, const ForestPolicy<P>& policy) {
+void save_policy(const std::string& path, const ForestPolicy<P>& policy) {
   const Box<P::action_dim> box = policy.problem().action_box();
   ByteWriter out;
-  out.raw(std::as_bytes(std::span(detail::policy_magic)));
-  out.u32(detail::policy_version);
+  write_format(out, detail::policy_format);
   out.u32(P::state_dim);
   out.u32(P::action_dim);
   out.u32(feature_dim<P>());
@@ -106,17 +103,10 @@ void save_policy(const std::filesystem::path& path, const ForestPolicy<P>& polic
 
 /// Reads a policy file. Throws SolveError, CoreError or ForestError if it is damaged or was made for another problem.
 template <Problem P>
-ForestPolicy<P> load_policy(const P& problem, const std::filesystem::path& path) {
+ForestPolicy<P> load_policy(const P& problem, const std::string& path) {
   const Bytes bytes = read_file(path);
-  ByteReader in(bytes, "policy file " + path.string());
-  const auto magic = in.raw(detail::policy_magic.size());
-  if (!std::ranges::equal(magic, std::as_bytes(std::span(detail::policy_magic)))) {
-    in.fail("is not a policy file: it must start with \"" + std::string(detail::policy_magic) + "\"");
-  }
-  if (const auto version = in.u32(); version != detail::policy_version) {
-    in.fail("has format version " + std::to_string(version) + ", this library reads version " +
-            std::to_string(detail::policy_version));
-  }
+  ByteReader in(bytes, "policy file " + path);
+  expect_format(in, detail::policy_format);
   auto expect = [&](int wanted, const char* what) {
     if (const auto found = in.u32(); found != static_cast<std::uint32_t>(wanted)) {
       throw SolveError(in.source() + " has " + std::to_string(found) + " " + what + ", this problem has " +

@@ -1,6 +1,6 @@
-// The best action of a state by one-step lookahead: simulate candidate actions, add the value of where they lead.
-// Q(s, a) = mean over noise of r + discount V(s'). The paper tries random actions (Algorithm 4); this one looks twice,
-// roughly everywhere, then finely around the best, and lets all candidates meet the same noise, so that their
+// One-step lookahead, the best action of a state: simulate candidate actions, add the value of where they lead.
+// Q(s, a) = mean over noise of r + discount V(s'). The paper tries random actions (Algorithm 4); this one has two
+// stages, roughly everywhere, then finely around the best, and lets all candidates meet the same noise, so that their
 // differences have little variance. Cost: candidates * samples + refined * refined_samples transitions and values.
 #pragma once
 
@@ -110,7 +110,7 @@ class Lookahead {
       } else {  // a bell-shaped step (sum of three uniform draws)
         Unit unit = from;
         for (int d = 0; d < dims; ++d) {
-          unit[d] += options_.spread * (rng.uniform() + rng.uniform() + rng.uniform() - 1.5);
+          unit[d] += options_.step * (rng.uniform() + rng.uniform() + rng.uniform() - 1.5);
         }
         add(unit);
       }
@@ -122,8 +122,8 @@ class Lookahead {
     constexpr int width = feature_dim<P>();
     noise_.clear();
     if (options_.common_noise) {
-      Rng spread = rng.stream(count);
-      draws_ = latin_hypercube(static_cast<std::uint32_t>(samples), noise_dims, spread);
+      Rng slices = rng.stream(count);
+      draws_ = latin_hypercube(static_cast<std::uint32_t>(samples), noise_dims, slices);
       for (std::size_t m = 0; m < count; ++m) {
         noise_.push_back(rng.stream(m).with_draws(std::span(draws_).subspan(m * noise_dims, noise_dims)));
       }

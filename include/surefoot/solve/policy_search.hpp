@@ -123,7 +123,7 @@ PolicySearchResult<N> policy_search(const P& problem, const MakePolicy& make_pol
     stage.population = population;
     stage.max_evaluations = runs / static_cast<std::uint64_t>(runs_per_call);
     stage.tolerances.x = options.precision;
-    stage.on_progress = options.observer;
+    stage.on_progress = options.on_progress;
     const Box<Eigen::Dynamic> bounds{Eigen::VectorXd(box.low()), Eigen::VectorXd(box.high())};
     const CmaEsResult found =
         cma_es(cost, Eigen::VectorXd(result.parameters), bounds, stage, executor, stage_seed(number), stop);

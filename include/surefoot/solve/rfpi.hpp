@@ -6,20 +6,14 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <ctime>
-#include <filesystem>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <stop_token>
-#include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -32,6 +26,7 @@
 #include "surefoot/solve/rfpi_options.hpp"
 #include "surefoot/solve/rfpi_rollouts.hpp"
 #include "surefoot/solve/rfpi_state.hpp"
+#include "surefoot/solve/time_limit.hpp"
 
 namespace surefoot {
 
@@ -45,37 +40,6 @@ struct RfpiResult {
 
 namespace detail {
 
-/// Passes a stop request on, and makes one of its own when the time is up.
-class TimeLimit {
- public:
-  TimeLimit(std::stop_token outer, double seconds) : forward_(std::move(outer), Request{&source_}) {
-    if (!(seconds < 1e9)) return;  // 30 years: as good as no limit, and no overflow of the clock
-    timer_ = std::jthread([this, seconds](std::stop_token ended) {
-      std::mutex mutex;
-      std::unique_lock lock(mutex);
-      std::condition_variable_any never;
-      never.wait_for(lock, ended, std::chrono::duration<double>(std::max(0.0, seconds)), [] { return false; });
-      if (!ended.stop_requested()) {
-        struck_ = true;
-        source_.request_stop();
-      }
-    });
-  }
-
-  std::stop_token token() const { return source_.get_token(); }
-  bool struck() const { return struck_; }
-
- private:
-  struct Request {
-    std::stop_source* source;
-    void operator()() const { source->request_stop(); }
-  };
-  std::stop_source source_;
-  std::atomic<bool> struck_ = false;
-  std::stop_callback<Request> forward_;
-  std::jthread timer_;
-};
-
 /// A number that tells runs apart: the seed, the options that matter, and how the problem answers a few questions.
 template <Problem P>
 std::uint64_t rfpi_fingerprint(const P& problem, const RfpiOptions& o, std::uint64_t seed,
@@ -83,11 +47,11 @@ std::uint64_t rfpi_fingerprint(const P& problem, const RfpiOptions& o, std::uint
   ByteWriter all;
   all.u64(seed);
   const auto number = [&all](auto... values) { (all.f64(static_cast<double>(values)), ...); };
-  number(o.discount, o.horizon, o.value_method, o.first_states, o.steady_iterations, o.growth, o.max_states,
-         o.blind_iterations, o.box_share, o.visited_share, o.exploration, o.backup_steps, o.backup_runs,
-         o.backup_weight, o.remember, o.value_runs, o.evaluation_runs);
+  number(o.discount, o.horizon, o.value_method, o.first_states, o.fixed_size_iterations, o.growth, o.max_states,
+         o.initial_iterations, o.box_share, o.visited_share, o.exploration, o.backup_steps, o.backup_runs,
+         o.backup_weight, o.reuse_previous_samples, o.value_runs, o.evaluation_runs);
   const LookaheadOptions& l = o.lookahead;
-  number(l.candidates, l.samples, l.corners, l.common_noise, l.kept, l.refined, l.refined_samples, l.spread, l.softness,
+  number(l.candidates, l.samples, l.corners, l.common_noise, l.kept, l.refined, l.refined_samples, l.step, l.softness,
          l.radius);
   for (const ExtraTreesOptions* f : {&o.value_forest, &o.policy_forest}) {
     number(f->trees, f->candidates, f->min_leaf, f->max_depth, f->max_leaves, f->bootstrap, f->threshold_rule,
@@ -106,40 +70,160 @@ std::uint64_t rfpi_fingerprint(const P& problem, const RfpiOptions& o, std::uint
   return checksum(all.bytes());
 }
 
-inline void check(const RfpiOptions& o) {
-  auto require = [](bool good, const char* what) {
-    if (!good) throw SolveError(std::string("RfpiOptions: ") + what);
-  };
-  auto share = [](double x) { return x >= 0 && x <= 1; };
-  require(o.budget.seconds > 0 && o.budget.wall_seconds > 0, "budget.seconds and budget.wall_seconds must be positive");
-  require(o.budget.step_ns >= 0, "budget.step_ns must not be negative");
-  require(o.discount > 0 && o.discount <= 1, "discount must be in (0, 1]");
-  require(o.horizon >= 1, "horizon must be at least 1");
-  require(o.max_iterations >= 0, "max_iterations must be at least 1, or 0 for no limit");
-  require(o.first_states >= 1 && o.max_states >= o.first_states,
-          "first_states must be at least 1 and at most max_states");
-  require(o.growth >= 1, "growth must be at least 1");
-  require(o.blind_iterations >= 1, "blind_iterations must be at least 1: the first policy comes from one");
-  require(share(o.box_share) && share(o.visited_share) && share(o.exploration) && share(o.backup_weight),
-          "box_share, visited_share, exploration and backup_weight must be in [0, 1]");
-  require(o.backup_steps >= 0 && o.backup_runs >= 1 && o.value_runs >= 1,
-          "backup_steps must not be negative; backup_runs and value_runs must be at least 1");
-  const LookaheadOptions& l = o.lookahead;
-  require(l.candidates >= 1 && l.samples >= 1, "lookahead.candidates and lookahead.samples must be at least 1");
-  require(l.refined >= 0, "lookahead.refined must not be negative");
-  require(l.refined == 0 || (l.refined_samples >= 1 && l.kept >= 1),
-          "lookahead.kept and lookahead.refined_samples must be at least 1");
-  require(l.softness >= 0 && l.spread >= 0 && l.radius >= 0,
-          "lookahead.softness, lookahead.spread and lookahead.radius must not be negative");
-  require(o.evaluation_runs >= 2, "evaluation_runs must be at least 2");
-  require(!o.resume || !o.checkpoint.empty(), "resume needs the name of the checkpoint file");
-  try {
-    surefoot::check(o.value_forest);
-    surefoot::check(o.policy_forest);
-  } catch (const ForestError& error) {
-    require(false, error.what());
+/// One call of rfpi(), step by step.
+template <Problem P, Executor E>
+class RfpiRun {
+ public:
+  using States = std::span<const typename P::State>;
+
+  RfpiRun(const P& problem, const RfpiOptions& options, const E& executor, std::uint64_t seed, States seed_states,
+          std::stop_token stop)
+      : problem_(problem),
+        options_(options),
+        executor_(executor),
+        seed_(seed),
+        seed_states_(seed_states),
+        fingerprint_(rfpi_fingerprint(problem, options, seed, seed_states)),
+        resumed_(resume()),
+        limit_(std::move(stop), options.max_seconds - resumed_.seconds) {}
+
+  RfpiResult<P> work() {
+    RfpiStop reason = RfpiStop::budget;
+    while (true) {
+      if (options_.max_iterations > 0 && state_.iteration >= options_.max_iterations) {
+        reason = RfpiStop::iterations;
+        break;
+      }
+      const double used = state_.work.seconds(options_.budget);
+      const double left = options_.budget.counted_seconds - used;
+      if (state_.history.size() > 1) {
+        last_work_ = used - state_.history[state_.history.size() - 2].counted_seconds;
+      }
+      if (left <= 0.3 * last_work_) break;
+      RfpiState<P> next = improve(left);
+      if (stopped()) {
+        reason = in_any_process(executor_, limit_.struck()) ? RfpiStop::wall_clock : RfpiStop::requested;
+        break;
+      }
+      accept(std::move(next));
+    }
+    once(executor_, [&] {
+      if (unsaved_ && !options_.checkpoint.empty()) save_checkpoint(options_.checkpoint, fingerprint_, state_);
+    });
+    return choose(reason);
   }
-}
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using ActionForest = typename ForestPolicy<P>::ActionForest;
+
+  /// Takes the state from the checkpoint if there is one; its last entry.
+  RfpiProgress resume() {
+    if (options_.resume) {
+      const std::vector<Bytes> found = map(executor_, 1, [&](std::size_t) {  // one process reads
+        std::vector<Bytes> file;
+        if (file_exists(options_.checkpoint)) file.push_back(read_file(options_.checkpoint));
+        return file;
+      })[0];
+      if (!found.empty()) state_ = load_checkpoint<P>(found[0], options_.checkpoint, fingerprint_);
+    }
+    for (RfpiProgress& past : state_.history) past.share = past.counted_seconds / options_.budget.counted_seconds;
+    return state_.history.empty() ? RfpiProgress{} : state_.history.back();
+  }
+
+  bool stopped() const { return in_any_process(executor_, limit_.token().stop_requested()); }
+
+  /// The state after one more iteration, with `left` nominal seconds of the budget; of no use after a stop.
+  RfpiState<P> improve(double left) const {
+    const Rng rng(seed_, 1, static_cast<std::uint64_t>(state_.iteration));
+    try {
+      if (options_.value_method == ValueMethod::rollouts) {
+        return improve_by_rollouts(problem_, options_, state_, seed_states_, executor_, rng, limit_.token());
+      }
+      const int grown = std::max(0, state_.iteration - options_.fixed_size_iterations);
+      double count = std::min<double>(options_.max_states, options_.first_states * std::pow(options_.growth, grown));
+      // The last iteration takes what is left.
+      if (grown > 0 && last_work_ > 0) count *= std::clamp(left / (last_work_ * options_.growth), 0.1, 1.0);
+      return improve_by_backup(problem_, options_, state_, static_cast<std::size_t>(count), seed_states_, executor_,
+                               rng, limit_.token());
+    } catch (const Error&) {  // work that a stop left incomplete
+      if (!stopped()) throw;
+    }
+    return {};
+  }
+
+  /// Minus the mean return over `runs` runs from random numbers of `stream`.
+  Estimate cost_of(const ActionForest& forest, int runs, std::uint64_t stream) const {
+    const RolloutOptions rollouts{.runs = runs, .horizon = options_.horizon};
+    Estimate cost =
+        evaluate(problem_, ForestPolicy<P>(problem_, forest), rollouts, executor_, Rng(seed_, stream).bits(), {});
+    cost.mean = -cost.mean;
+    return cost;
+  }
+
+  void accept(RfpiState<P> next) {
+    next.history = std::move(state_.history);
+    RfpiProgress progress;
+    progress.iteration = next.iteration;
+    progress.states = next.samples.size();
+    progress.leaves = next.policy.leaves();
+    progress.cost = cost_of(next.policy, options_.evaluation_runs, 2).mean;
+    const std::uint64_t steps =
+        static_cast<std::uint64_t>(options_.evaluation_runs) * static_cast<std::uint64_t>(options_.horizon);
+    next.work.steps += steps;
+    next.work.lookups += steps * next.policy.trees();
+    const bool better = next.history.empty() || progress.cost <= state_.best_cost;
+    next.best_cost = progress.best_cost = better ? progress.cost : state_.best_cost;
+    next.best_policy = better ? next.policy : std::move(state_.best_policy);
+    progress.counted_seconds = next.work.seconds(options_.budget);
+    progress.share = progress.counted_seconds / options_.budget.counted_seconds;
+    progress.seconds = resumed_.seconds + std::chrono::duration<double>(Clock::now() - wall_start_).count();
+    progress.cpu_seconds = resumed_.cpu_seconds + static_cast<double>(std::clock() - cpu_start_) / CLOCKS_PER_SEC;
+    next.history.push_back(progress);
+    state_ = std::move(next);
+    unsaved_ = true;
+    once(executor_, [&] { report(progress); });
+  }
+
+  /// Tells the user, and writes the checkpoint if it is due. In the process that writes files.
+  void report(const RfpiProgress& progress) {
+    if (options_.on_progress) options_.on_progress(progress);
+    if (options_.checkpoint.empty()) return;
+    const bool due = !last_write_ ||
+                     std::chrono::duration<double>(Clock::now() - *last_write_).count() >= options_.checkpoint_seconds;
+    if (!due) return;
+    save_checkpoint(options_.checkpoint, fingerprint_, state_);
+    last_write_ = Clock::now();
+    unsaved_ = false;
+  }
+
+  /// The last policy learnt most and the best one was lucky: new runs decide between the two, others tell the cost.
+  RfpiResult<P> choose(RfpiStop reason) {
+    if (state_.best_policy.empty()) {
+      throw SolveError("rfpi: stopped before there was a first policy: give it more time");
+    }
+    const int runs = 4 * options_.evaluation_runs;
+    const bool newest = cost_of(state_.policy, runs, 3).mean <= cost_of(state_.best_policy, runs, 3).mean;
+    auto& chosen = newest ? state_.policy : state_.best_policy;
+    const Estimate cost = cost_of(chosen, runs, 4);
+    return {ForestPolicy<P>(problem_, std::move(chosen)), cost, std::move(state_.history), reason};
+  }
+
+  const P& problem_;
+  const RfpiOptions& options_;
+  const E& executor_;
+  std::uint64_t seed_;
+  States seed_states_;
+  Clock::time_point wall_start_ = Clock::now();
+  std::clock_t cpu_start_ = std::clock();
+  std::uint64_t fingerprint_;
+  RfpiState<P> state_;
+  RfpiProgress resumed_;
+  TimeLimit limit_;
+  std::optional<Clock::time_point> last_write_;  // by the process that writes
+  double last_work_ = 0;                         // of the last iteration [nominal s]
+  bool unsaved_ = false;
+};
 
 }  // namespace detail
 
@@ -150,113 +234,8 @@ inline void check(const RfpiOptions& o) {
 template <Problem P, Executor E>
 RfpiResult<P> rfpi(const P& problem, const RfpiOptions& options, const E& executor, std::uint64_t seed,
                    std::span<const typename P::State> seed_states = {}, std::stop_token stop = {}) {
-  using Clock = std::chrono::steady_clock;
-  detail::check(options);
-  const auto wall_start = Clock::now();
-  const std::clock_t cpu_start = std::clock();
-  const bool keep_checkpoint = !options.checkpoint.empty();
-  const std::uint64_t fingerprint = detail::rfpi_fingerprint(problem, options, seed, seed_states);
-
-  RfpiState<P> state;
-  if (options.resume) {
-    const std::vector<Bytes> found = map(executor, 1, [&](std::size_t) {  // one process reads
-      std::vector<Bytes> file;
-      if (std::filesystem::exists(options.checkpoint)) file.push_back(read_file(options.checkpoint));
-      return file;
-    })[0];
-    if (!found.empty()) state = load_checkpoint<P>(found[0], options.checkpoint, fingerprint);
-  }
-  for (RfpiProgress& past : state.history) past.share = past.counted_seconds / options.budget.seconds;
-  const RfpiProgress resumed = state.history.empty() ? RfpiProgress{} : state.history.back();
-  const detail::TimeLimit limit(std::move(stop), options.budget.wall_seconds - resumed.seconds);
-  const RolloutOptions evaluation{.runs = options.evaluation_runs, .horizon = options.horizon};
-  const auto evaluate_policy = [&](const typename ForestPolicy<P>::ActionForest& forest, int runs,
-                                   std::uint64_t stream) {
-    RolloutOptions many = evaluation;
-    many.runs = runs;
-    Estimate cost = evaluate(problem, ForestPolicy<P>(problem, forest), many, executor, Rng(seed, stream).bits(), {});
-    cost.mean = -cost.mean;
-    return cost;
-  };
-
-  const auto stopped = [&] { return in_any_process(executor, limit.token().stop_requested()); };
-  RfpiStop reason = RfpiStop::budget;
-  std::optional<Clock::time_point> last_write;  // by the process that writes
-  double last_work = 0;                         // of the last iteration [nominal s]
-  bool unsaved = false;
-  while (true) {
-    if (options.max_iterations > 0 && state.iteration >= options.max_iterations) {
-      reason = RfpiStop::iterations;
-      break;
-    }
-    const double used = state.work.seconds(options.budget);
-    const double left = options.budget.seconds - used;
-    if (state.history.size() > 1) {
-      last_work = used - state.history[state.history.size() - 2].counted_seconds;
-    }
-    if (left <= 0.3 * last_work) break;
-    const Rng rng(seed, 1, static_cast<std::uint64_t>(state.iteration));
-    RfpiState<P> next;
-    try {
-      if (options.value_method == ValueMethod::backup) {
-        const int grown = std::max(0, state.iteration - options.steady_iterations);
-        double count = std::min<double>(options.max_states, options.first_states * std::pow(options.growth, grown));
-        // The last iteration takes what is left.
-        if (grown > 0 && last_work > 0) count *= std::clamp(left / (last_work * options.growth), 0.1, 1.0);
-        next = detail::improve_by_backup(problem, options, state, static_cast<std::size_t>(count), seed_states,
-                                         executor, rng, limit.token());
-      } else {
-        next = detail::improve_by_rollouts(problem, options, state, seed_states, executor, rng, limit.token());
-      }
-    } catch (const Error&) {  // work that a stop left incomplete
-      if (!stopped()) throw;
-    }
-    if (stopped()) {
-      reason = in_any_process(executor, limit.struck()) ? RfpiStop::wall_clock : RfpiStop::requested;
-      break;
-    }
-    next.history = std::move(state.history);
-    RfpiProgress progress;
-    progress.iteration = next.iteration;
-    progress.states = next.samples.size();
-    progress.leaves = next.policy.leaves();
-    progress.cost = evaluate_policy(next.policy, options.evaluation_runs, 2).mean;
-    next.work.steps +=
-        static_cast<std::uint64_t>(options.evaluation_runs) * static_cast<std::uint64_t>(options.horizon);
-    next.work.lookups += static_cast<std::uint64_t>(options.evaluation_runs) *
-                         static_cast<std::uint64_t>(options.horizon) * next.policy.trees();
-    const bool better = next.history.empty() || progress.cost <= state.best_cost;
-    next.best_cost = progress.best_cost = better ? progress.cost : state.best_cost;
-    next.best_policy = better ? next.policy : std::move(state.best_policy);
-    progress.counted_seconds = next.work.seconds(options.budget);
-    progress.share = progress.counted_seconds / options.budget.seconds;
-    progress.seconds = resumed.seconds + std::chrono::duration<double>(Clock::now() - wall_start).count();
-    progress.cpu_seconds = resumed.cpu_seconds + static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
-    next.history.push_back(progress);
-    state = std::move(next);
-    unsaved = true;
-    once(executor, [&] {
-      if (options.on_progress) options.on_progress(progress);
-      const bool due = !last_write ||
-                       std::chrono::duration<double>(Clock::now() - *last_write).count() >= options.checkpoint_seconds;
-      if (keep_checkpoint && due) {
-        save_checkpoint(options.checkpoint, fingerprint, state);
-        last_write = Clock::now();
-        unsaved = false;
-      }
-    });
-  }
-  once(executor, [&] {
-    if (keep_checkpoint && unsaved) save_checkpoint(options.checkpoint, fingerprint, state);
-  });
-  if (state.best_policy.empty()) throw SolveError("rfpi: stopped before there was a first policy: give it more time");
-
-  // The last policy learnt most and the best one was lucky: new runs decide between the two, others tell the cost.
-  const int runs = 4 * options.evaluation_runs;
-  const bool newest = evaluate_policy(state.policy, runs, 3).mean <= evaluate_policy(state.best_policy, runs, 3).mean;
-  auto& chosen = newest ? state.policy : state.best_policy;
-  const Estimate cost = evaluate_policy(chosen, runs, 4);
-  return {ForestPolicy<P>(problem, std::move(chosen)), cost, std::move(state.history), reason};
+  check(options);
+  return detail::RfpiRun<P, E>(problem, options, executor, seed, seed_states, std::move(stop)).work();
 }
 
 /// For a type that is not a Problem: one compile error that names the missing member.

@@ -43,10 +43,10 @@ std::vector<typename P::State> choose_states(const P& problem, const RfpiOptions
                                              std::size_t count, std::span<const typename P::State> seed_states,
                                              const E& executor, const Rng& rng, RfpiWork& work, std::stop_token stop) {
   std::vector<typename P::State> states;
-  const bool blind = before.iteration < options.blind_iterations;
+  const bool initial = before.iteration < options.initial_iterations;
   Rng choice = rng.stream(0);
   if (before.iteration == 0) states = random_subset(std::vector(seed_states.begin(), seed_states.end()), count, choice);
-  if (!blind) {
+  if (!initial) {
     const auto wanted = static_cast<std::size_t>(options.visited_share * static_cast<double>(count));
     const std::size_t runs = wanted / static_cast<std::size_t>(options.horizon) + 1;
     const ForestPolicy<P> policy(problem, before.policy);
@@ -56,8 +56,8 @@ std::vector<typename P::State> choose_states(const P& problem, const RfpiOptions
     work.steps += states.size();
     work.lookups += states.size() * before.policy.trees();
   }
-  const std::size_t from_box = blind ? count - std::min(count, seed_states.size())
-                                     : static_cast<std::size_t>(options.box_share * static_cast<double>(count));
+  const std::size_t from_box = initial ? count - std::min(count, seed_states.size())
+                                       : static_cast<std::size_t>(options.box_share * static_cast<double>(count));
   const Box<P::state_dim> box = problem.state_box();
   for (std::size_t i = 0; i < from_box; ++i) states.push_back(box.sample(choice));
   if (states.size() < count) {
@@ -172,7 +172,7 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& options, con
       choose_states(problem, options, before, count, seed_states, executor, rng.stream(0), after.work, stop);
   samples.values.resize(samples.size());
   samples.actions.resize(samples.size());
-  const bool blind = before.iteration < options.blind_iterations;
+  const bool initial = before.iteration < options.initial_iterations;
   const ForestPolicy<P> policy(problem, before.policy);
   constexpr std::size_t states_per_job = 16;
   const std::size_t jobs = (samples.size() + states_per_job - 1) / states_per_job;
@@ -186,17 +186,17 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& options, con
         const auto actions = std::span(samples.actions).subspan(begin, size);
         const auto values = std::span(samples.values).subspan(begin, size);
         const Rng noise = rng.stream(1, job);
-        const auto incumbents = blind ? std::vector<typename P::Action>() : policy.act(states);
+        const auto incumbents = initial ? std::vector<typename P::Action>() : policy.act(states);
         Lookahead<P, typename RfpiState<P>::LinearValue> look(problem, before.value, options.discount,
                                                               options.lookahead);
         for (std::size_t i = 0; i < size; ++i) {
-          const auto found = look(states[i], blind ? nullptr : &incumbents[i], noise.stream(i));
+          const auto found = look(states[i], initial ? nullptr : &incumbents[i], noise.stream(i));
           actions[i] = found.action;
           values[i] = found.value;
         }
         done[job].steps = size * look.transitions();
         done[job].lookups = done[job].steps * before.value.trees() + incumbents.size() * before.policy.trees();
-        if (!blind && options.backup_weight > 0) {
+        if (!initial && options.backup_weight > 0) {
           backup_values(problem, options, policy, before.value, states, std::span<const typename P::Action>(actions),
                         values, noise.stream(size), done[job]);
         }
@@ -209,7 +209,8 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& options, con
     after.work.lookups += part.lookups;
   }
   after.iteration = before.iteration + 1;
-  if (options.remember && before.iteration >= options.steady_iterations) after.previous = before.samples;
+  if (options.reuse_previous_samples && before.iteration >= options.fixed_size_iterations)
+    after.previous = before.samples;
   after.value = fit_value<LinearLeaf>(problem, samples, after.previous, options.value_forest, executor, rng.stream(2),
                                       after.work, stop);
   after.policy =

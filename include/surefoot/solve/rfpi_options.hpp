@@ -1,4 +1,4 @@
-// What RFPI can be told, what it tells while it works, and why it stopped.
+// Options of `rfpi()`, its progress reports, and why it stopped.
 #pragma once
 
 #include <cstddef>
@@ -7,30 +7,28 @@
 #include <limits>
 #include <string>
 
-#include "surefoot/core/error.hpp"
-#include "surefoot/forest/extra_trees.hpp"
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/forest/options.hpp"
 
 namespace surefoot {
 
-/// How long to work. `seconds` is counted, not measured: every simulated step, forest look-up and fit has a nominal
-/// price, so the same budget means the same work, and the same result, on any machine and any number of threads.
+/// How much work to do. It is counted, not measured: every simulated step, forest look-up and fit has a nominal price,
+/// so the same budget means the same work, and the same result, on any machine and any number of threads.
 struct Budget {
-  double seconds = 300;                                           // of one nominal core, all threads together
-  double wall_seconds = std::numeric_limits<double>::infinity();  // hard limit by the clock; if it strikes, the result
-                                                                  // depends on the speed of the machine
-  double step_ns = 80;                                            // nominal price of one step of the problem [ns]
+  double counted_seconds = 300;  // of one nominal core, all threads together
+  double step_ns = 80;           // nominal price of one step of the problem [ns]
 };
 
 /// How an action is looked for from a state by simulating one transition (see lookahead.hpp).
 struct LookaheadOptions {
-  int candidates = 11;       // actions of the first look: incumbent, centre, corners, random ones
+  int candidates = 11;       // actions of the first stage: incumbent, centre, corners, random ones
   int samples = 3;           // simulated transitions of each
   bool corners = true;       // false: all candidates are random
   bool common_noise = true;  // all candidates meet the same noise, spread evenly (Latin hypercube)
-  int kept = 6;              // best candidates that go to the second look
-  int refined = 12;          // actions of the second look, those kept included; 0: no second look
+  int kept = 6;              // best candidates that go to the second stage
+  int refined = 12;          // actions of the second stage, those kept included; 0: no second stage
   int refined_samples = 7;   // simulated transitions of each
-  double spread = 0.4;       // of new actions around those kept [half widths of the action box]
+  double step = 0.4;         // of new actions away from those kept [half widths of the action box]
   double softness = 0.1;     // the action is the mean of those about as good as the best: scale of "about"
                              // [gap between the best and the median action]; 0: the best alone
   double radius = 0.6;       // and no further from the best than this [half widths of the action box, root mean square]
@@ -44,9 +42,11 @@ enum class ValueMethod {
 
 struct RfpiOptions {
   Budget budget = {};
-  int max_iterations = 0;  // 0: no limit but the budget
-  double discount = 0.98;  // per transition
-  int horizon = 50;        // [transitions] of every simulated run
+  double max_seconds = std::numeric_limits<double>::infinity();  // wall clock; if it strikes, the result depends on the
+                                                                 // speed of the machine [s]
+  int max_iterations = 0;                                        // 0: no limit but the budget
+  double discount = 0.98;                                        // per transition
+  int horizon = 50;                                              // [transitions] of every simulated run
 
   ValueMethod value_method = ValueMethod::backup;
   LookaheadOptions lookahead = {};
@@ -54,18 +54,18 @@ struct RfpiOptions {
   ExtraTreesOptions policy_forest = {.trees = 8, .min_leaf = 30, .max_leaves = 1000};  // what the robot carries
 
   // ValueMethod::backup: every iteration samples new states and forgets older ones.
-  int first_states = 3000;     // samples of the first iterations
-  int steady_iterations = 12;  // iterations before that number grows
-  double growth = 1.25;        // factor per iteration from then on
-  int max_states = 400'000;    // where growth ends
-  int blind_iterations = 6;    // first iterations, on states from the whole state box, before there is a policy
-  double box_share = 0.05;     // of the samples from the whole state box, later
-  double visited_share = 0.5;  // of the samples from runs of the newest policy; the rest stays from before
-  double exploration = 0.3;    // chance per step of those runs to hold a random action for 1 to 3 steps
+  int first_states = 3000;         // samples of the first iterations
+  int fixed_size_iterations = 12;  // iterations of that size, before the number grows
+  double growth = 1.25;            // factor per iteration from then on
+  int max_states = 400'000;        // where growth ends
+  int initial_iterations = 6;      // first iterations, on states from the whole state box, before there is a policy
+  double box_share = 0.05;         // of the samples from the whole state box, later
+  double visited_share = 0.5;      // of the samples from runs of the newest policy; the rest stays from before
+  double exploration = 0.3;        // chance per step of those runs to hold a random action for 1 to 3 steps
   int backup_steps = 2;        // steps of the policy after the lookahead's action, before the last value forest counts
   int backup_runs = 4;         // simulated runs of those steps
   double backup_weight = 0.5;  // of their mean; the rest is the lookahead's own value
-  bool remember = true;        // once the number grows, the forests also learn from the iteration before
+  bool reuse_previous_samples = true;  // once the number grows, the forests also learn from the iteration before
 
   // ValueMethod::rollouts: all states ever visited are kept; policy n is improved after n more runs.
   int value_runs = 20;  // simulated runs per state
@@ -87,7 +87,7 @@ struct RfpiOptions {
         .candidates = 100, .samples = 10, .corners = false, .common_noise = false, .refined = 0, .softness = 0};
     options.value_forest = {.trees = 25, .min_leaf = 10};
     options.policy_forest = {.trees = 25, .min_leaf = 50, .model_score = true};
-    options.remember = false;
+    options.reuse_previous_samples = false;
     return options;
   }
 };
@@ -105,21 +105,17 @@ struct RfpiProgress {
   std::size_t leaves = 0;      // of the newest policy
 };
 
+/// Throws a SolveError that names the field and its range.
+void check(const LookaheadOptions& options);
+void check(const RfpiOptions& options);
+
 enum class RfpiStop { budget, iterations, wall_clock, requested };
 
 /// One sentence about why it stopped.
-inline std::string explain(RfpiStop stop) {
-  switch (stop) {
-    case RfpiStop::budget:
-      return "the budget is used up";
-    case RfpiStop::iterations:
-      return "all iterations are done";
-    case RfpiStop::wall_clock:
-      return "the wall clock ended it early, so the result depends on the speed of this machine";
-    case RfpiStop::requested:
-      return "it was asked to stop";
-  }
-  return {};
-}
+std::string explain(RfpiStop stop);
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/solve/rfpi_options.ipp"
+#endif

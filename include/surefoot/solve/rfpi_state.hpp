@@ -1,14 +1,12 @@
-// What RFPI knows between two iterations, and the checkpoint file that holds it.
+// The state of RFPI between two iterations, and the checkpoint file that holds it.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -70,8 +68,7 @@ struct RfpiState {
 
 namespace detail {
 
-constexpr std::string_view checkpoint_magic = "SURERFPI";
-constexpr std::uint32_t checkpoint_version = 1;
+constexpr FileFormat checkpoint_format{"SURERFPI", 1, "a checkpoint of RFPI"};
 
 template <class Vector>
 void write_vectors(ByteWriter& out, const std::vector<Vector>& vectors) {
@@ -125,10 +122,9 @@ F read_optional(ByteReader& in) {
 
 /// `fingerprint` names everything the run depends on (options, seed, problem); a resume must have the same.
 template <Problem P>
-void save_checkpoint(const std::filesystem::path& path, std::uint64_t fingerprint, const RfpiState<P>& state) {
+void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const RfpiState<P>& state) {
   ByteWriter out;
-  out.raw(std::as_bytes(std::span(detail::checkpoint_magic)));
-  out.u32(detail::checkpoint_version);
+  write_format(out, detail::checkpoint_format);
   out.u64(fingerprint);
   out.u32(static_cast<std::uint32_t>(state.iteration));
   out.u64(state.work.steps);
@@ -154,13 +150,9 @@ void save_checkpoint(const std::filesystem::path& path, std::uint64_t fingerprin
 /// From the bytes of the checkpoint file `path`. Throws SolveError if it belongs to another run, CoreError or
 /// ForestError if it is damaged.
 template <Problem P>
-RfpiState<P> load_checkpoint(std::span<const std::byte> bytes, const std::filesystem::path& path,
-                             std::uint64_t fingerprint) {
-  ByteReader in(bytes, "checkpoint " + path.string());
-  const auto magic = in.raw(detail::checkpoint_magic.size());
-  if (!std::ranges::equal(magic, std::as_bytes(std::span(detail::checkpoint_magic))))
-    in.fail("is not a checkpoint of RFPI");
-  if (in.u32() != detail::checkpoint_version) in.fail("was written by another version of this library");
+RfpiState<P> load_checkpoint(std::span<const std::byte> bytes, const std::string& path, std::uint64_t fingerprint) {
+  ByteReader in(bytes, "checkpoint " + path);
+  expect_format(in, detail::checkpoint_format);
   if (in.u64() != fingerprint) {
     throw SolveError(in.source() +
                      " belongs to a run with another problem, other options or another seed: "
@@ -195,7 +187,7 @@ RfpiState<P> load_checkpoint(std::span<const std::byte> bytes, const std::filesy
 }
 
 template <Problem P>
-RfpiState<P> load_checkpoint(const std::filesystem::path& path, std::uint64_t fingerprint) {
+RfpiState<P> load_checkpoint(const std::string& path, std::uint64_t fingerprint) {
   return load_checkpoint<P>(read_file(path), path, fingerprint);
 }
 

@@ -39,7 +39,8 @@ int main() {
   const surefoot::Threads threads;
   const auto drift = [](const Boat&) { return Docking::Action(0.0); };
   const double drifting = -surefoot::evaluate(Docking{}, drift, {.runs = 500}, threads, /*seed*/ 1).mean;
-  const auto learnt = surefoot::rfpi(Docking{}, {.budget = {.seconds = 1}, .max_iterations = 12}, threads, /*seed*/ 1);
+  const auto learnt =
+      surefoot::rfpi(Docking{}, {.budget = {.counted_seconds = 1}, .max_iterations = 12}, threads, /*seed*/ 1);
   std::printf("cost of drifting %.0f, of the learnt policy %.0f\n", drifting, learnt.cost.mean);
   return learnt.cost.mean < 0.5 * drifting ? 0 : 1;
 }

@@ -1,4 +1,4 @@
-// Scores and their comparison: is a difference believed as often as it should be?
+// Cross-validated losses and their comparison: is a difference believed as often as it should be?
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
 
 #include <doctest/doctest.h>
@@ -13,12 +13,12 @@
 namespace surefoot::diagnosis {
 namespace {
 
-BlockLosses score_of(std::vector<double> blocks) {
+BlockLosses losses_of(std::vector<double> blocks) {
   const std::vector<double> counts(blocks.size(), 60.0);
   return {std::move(blocks), counts};
 }
 
-// Share of 1000 repetitions in which two scores that differ by chance only seem to differ at 5 %.
+// Share of 1000 repetitions in which two hypotheses that differ by chance only seem to differ at 5 %.
 double rejections(std::size_t blocks, double spread, std::uint64_t seed) {
   Rng rng(seed);
   int rejected = 0;
@@ -29,7 +29,7 @@ double rejections(std::size_t blocks, double spread, std::uint64_t seed) {
       before.push_back(hard * (1 + 0.1 * rng.uniform()));
       after.push_back(hard * (1 + 0.1 * rng.uniform()));
     }
-    rejected += compare_losses(score_of(before), score_of(after)).p_value < 0.05 ? 1 : 0;
+    rejected += compare_losses(losses_of(before), losses_of(after)).p_value < 0.05 ? 1 : 0;
   }
   return rejected / 1000.0;
 }
@@ -44,8 +44,8 @@ TEST_CASE("of hypotheses that are equally good, about one in twenty seems better
 }
 
 TEST_CASE("a hypothesis that is better everywhere is believed, and its gain is that of the root mean square") {
-  const BlockLosses before = score_of({100, 120, 80, 90, 300, 110, 95, 105}),
-                    quarter = score_of({25, 30, 20, 22.5, 75, 27.5, 23.75, 26.25});
+  const BlockLosses before = losses_of({100, 120, 80, 90, 300, 110, 95, 105}),
+                    quarter = losses_of({25, 30, 20, 22.5, 75, 27.5, 23.75, 26.25});
   const Comparison better = compare_losses(before, quarter);
   CHECK(better.gain == doctest::Approx(0.5));
   CHECK(better.stderr_ == doctest::Approx(0));
@@ -76,9 +76,9 @@ TEST_CASE("a gain that each recording has in a few of its blocks is believed") {
 }
 
 TEST_CASE("one block alone convinces nobody, and no blocks do not either") {
-  CHECK(compare_losses(score_of({100, 100, 100, 900, 100, 100}), score_of({101, 99, 100, 100, 99, 101})).p_value >
+  CHECK(compare_losses(losses_of({100, 100, 100, 900, 100, 100}), losses_of({101, 99, 100, 100, 99, 101})).p_value >
         0.05);
-  CHECK(compare_losses(score_of({100}), score_of({1})).p_value == 1);
+  CHECK(compare_losses(losses_of({100}), losses_of({1})).p_value == 1);
   CHECK(compare_losses({}, {}).p_value == 1);
 }
 
@@ -92,7 +92,7 @@ TEST_CASE("the standard error of a gain is about its spread over repetitions") {
       before.push_back(100 * (1 + rng.uniform()));
       after.push_back(before.back() * (0.3 + 0.4 * rng.uniform()));
     }
-    const Comparison one = compare_losses(score_of(before), score_of(after));
+    const Comparison one = compare_losses(losses_of(before), losses_of(after));
     sum += one.gain;
     squares += one.gain * one.gain;
     claimed += one.stderr_ / repetitions;
@@ -110,17 +110,17 @@ TEST_CASE("tails of Student's t agree with the tables") {
 }
 
 TEST_CASE("blocks share out all cells, and a simulation that ran away costs much but not everything") {
-  BlockLosses score;
-  append_losses(score, Eigen::VectorXd::Constant(1000, 0.5), 4);
-  CHECK(score.blocks.size() == 8);
-  CHECK(score.cells() == 1000);
-  CHECK(score.rms() == doctest::Approx(0.5));
-  append_losses(score, Eigen::VectorXd::Constant(30, std::numeric_limits<double>::infinity()), 4);
-  CHECK(score.blocks.size() == 9);
-  CHECK(score.total() == doctest::Approx(250 + 30e6));
+  BlockLosses losses;
+  append_losses(losses, Eigen::VectorXd::Constant(1000, 0.5), 4);
+  CHECK(losses.blocks.size() == 8);
+  CHECK(losses.cells() == 1000);
+  CHECK(losses.rms() == doctest::Approx(0.5));
+  append_losses(losses, Eigen::VectorXd::Constant(30, std::numeric_limits<double>::infinity()), 4);
+  CHECK(losses.blocks.size() == 9);
+  CHECK(losses.total() == doctest::Approx(250 + 30e6));
 }
 
-TEST_CASE("a fold is judged by a fit that has not seen it") {
+TEST_CASE("a fold is evaluated by a fit that has not seen it") {
   std::vector<Recording> recordings;
   for (int r = 0; r < 3; ++r) {
     Recording recording = toys::tank_recording(r, 150);
@@ -133,12 +133,25 @@ TEST_CASE("a fold is judged by a fit that has not seen it") {
   problem.weighting.sigma.setConstant(1, 0.01);
   problem.weighting.robust = 1e6;
   problem.max_iterations = 40;
-  const CrossValidation judged = cross_validate(bound, nominal_hypothesis(bound), problem, {{0}, {1}, {2}}, serially());
-  REQUIRE(judged.folds.size() == 3);
-  CHECK(judged.folds[1].parameters[0] == doctest::Approx(1.5).epsilon(1e-3));  // from recordings 0 and 2 only
-  CHECK(judged.folds[0].parameters[0] > 1.8);
-  REQUIRE(judged.score.blocks.size() == 6);  // two a recording, in the order of the folds
-  CHECK(judged.score.blocks[2] + judged.score.blocks[3] > 10 * 60);
+  const CrossValidation validated =
+      cross_validate(bound, nominal_hypothesis(bound), problem, {{0}, {1}, {2}}, serially());
+  REQUIRE(validated.folds.size() == 3);
+  CHECK(validated.folds[1].parameters[0] == doctest::Approx(1.5).epsilon(1e-3));  // from recordings 0 and 2 only
+  CHECK(validated.folds[0].parameters[0] > 1.8);
+  REQUIRE(validated.losses.blocks.size() == 6);  // two a recording, in the order of the folds
+  CHECK(validated.losses.blocks[2] + validated.losses.blocks[3] > 10 * 60);
+}
+
+TEST_CASE("losses of runs that were made before are those of the hypothesis that made them") {
+  std::vector<Recording> recordings{toys::tank_recording(0, 150), toys::tank_recording(1, 90)};
+  const BoundSimulator bound = bind_simulator(toys::LeakyTank{}, recordings);
+  const Weighting weighting{.sigma = Vec<1>(0.1)};
+  const Hypothesis nominal = nominal_hypothesis(bound);
+  const auto runs = simulate_all(bound, nominal, {1, 0}, {}, serially());
+  const BlockLosses made = block_losses(bound, nominal, {1, 0}, weighting, {}, serially());
+  CHECK(made.total() > 1);
+  CHECK(block_losses(bound, {1, 0}, runs, weighting).blocks == made.blocks);
+  CHECK(block_losses(bound, {1, 0}, runs, weighting).ends == made.ends);
 }
 
 }  // namespace

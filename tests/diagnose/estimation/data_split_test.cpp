@@ -1,4 +1,4 @@
-// Splits into training, folds and test.
+// Splits into training, folds and held-out recordings.
 #include "surefoot/diagnose/estimation/data_split.hpp"
 
 #include <doctest/doctest.h>
@@ -18,11 +18,11 @@ std::vector<Recording> named(std::size_t count) {
   return recordings;
 }
 
-TEST_CASE("folds partition the training recordings, and with the test they are all recordings, once each") {
+TEST_CASE("folds partition the training recordings, and with those held out they are all recordings, once each") {
   for (std::size_t count = 2; count < 14; ++count) {
     for (const double share : {0.0, 0.25, 0.9, 1.0}) {
       const RecordingSplit split = split_recordings(named(count), {}, share, 4, count);
-      CHECK_FALSE(split.test.empty());
+      CHECK_FALSE(split.held_out.empty());
       CHECK_FALSE(split.training.empty());
       CHECK(split.folds.size() == (split.training.size() <= 6 ? split.training.size() : 4));
       std::vector<std::size_t> dealt;
@@ -33,7 +33,7 @@ TEST_CASE("folds partition the training recordings, and with the test they are a
       }
       std::sort(dealt.begin(), dealt.end());
       CHECK(dealt == split.training);
-      dealt.insert(dealt.end(), split.test.begin(), split.test.end());
+      dealt.insert(dealt.end(), split.held_out.begin(), split.held_out.end());
       std::sort(dealt.begin(), dealt.end());
       std::vector<std::size_t> every(count);
       std::iota(every.begin(), every.end(), std::size_t{0});
@@ -42,20 +42,20 @@ TEST_CASE("folds partition the training recordings, and with the test they are a
   }
 }
 
-TEST_CASE("the share of test recordings is the one asked for") {
+TEST_CASE("the share of held-out recordings is the one asked for") {
   CHECK(split_recordings(named(20), {}, 0.25, 4, 1).test.size() == 5);
   CHECK(split_recordings(named(3), {}, 0.25, 4, 1).test.size() == 1);
 }
 
-TEST_CASE("test recordings that are named are the test, and never in a fold") {
+TEST_CASE("recordings that are named are held out, and never in a fold") {
   const RecordingSplit split = split_recordings(named(6), {"r4", "r1"}, 0.9, 3, 1);
-  CHECK(split.test == std::vector<std::size_t>{1, 4});
+  CHECK(split.held_out == std::vector<std::size_t>{1, 4});
   CHECK(split.training == std::vector<std::size_t>{0, 2, 3, 5});
 }
 
 TEST_CASE("names that do not exist, and tests that leave nothing, are refused") {
   CHECK_THROWS_WITH_AS(split_recordings(named(3), {"r7"}, 0.25, 3, 1),
-                       "the test recording 'r7' is not among the recordings", DiagnoseError);
+                       "the held-out recording 'r7' is not among the recordings", DiagnoseError);
   CHECK_THROWS_AS(split_recordings(named(2), {"r0", "r1"}, 0.25, 3, 1), DiagnoseError);
 }
 
@@ -64,7 +64,7 @@ TEST_CASE("the same seed gives the same split, another seed another one") {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const RecordingSplit one = split_recordings(named(12), {}, 0.25, 4, seed);
     CHECK(one.folds == split_recordings(named(12), {}, 0.25, 4, seed).folds);
-    tests.insert(one.test);
+    tests.insert(one.held_out);
   }
   CHECK(tests.size() > 10);
 }

@@ -1,4 +1,4 @@
-// Fits: what they recover, what they leave alone, and what their standard errors are worth.
+// Fits: what they recover, and what they leave alone.
 #include "surefoot/diagnose/estimation/fit.hpp"
 
 #include <doctest/doctest.h>
@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
-#include "surefoot/diagnose/effects/catalogue.hpp"
 #include "surefoot/diagnose/effects/leak.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
+#include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/selection/candidates.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 #include "tests/support/servo_pendulum.hpp"
@@ -154,32 +154,6 @@ TEST_CASE("a few wild samples hardly move a fit") {
   const Fit fitted = fit(bound, nominal_hypothesis(bound), problem_of(3, 0.01), serially());
   CHECK(fitted.hypothesis.parameters[0] == doctest::Approx(1.7).epsilon(0.02));
   CHECK(fitted.hypothesis.parameters[1] == doctest::Approx(0.8).epsilon(0.02));
-}
-
-// Share of repetitions in which the truth is within two standard errors.
-double coverage(double memory) {
-  int within = 0;
-  constexpr int repetitions = 100;
-  for (int k = 0; k < repetitions; ++k) {
-    const BoundSimulator bound =
-        bind_simulator(LeakyTank{}, tanks(4, 200, 1.5, 0.7, 0.02, memory, 10 + static_cast<std::uint64_t>(k)));
-    const FitProblem problem = problem_of(4, 0.02);
-    const Fit fitted = fit(bound, nominal_hypothesis(bound), problem, serially());
-    const StandardErrors errors = standard_errors(bound, fitted.hypothesis, problem, serially());
-    REQUIRE(errors.deviation.size() == 2);
-    within += std::abs(fitted.hypothesis.parameters[0] - 1.5) < 2 * errors.deviation[0] ? 1 : 0;
-    within += std::abs(fitted.hypothesis.parameters[1] - 0.7) < 2 * errors.deviation[1] ? 1 : 0;
-  }
-  return within / (2.0 * repetitions);
-}
-
-TEST_CASE("two standard errors cover the truth about as often as they should, also where noise is correlated") {
-  for (const double memory : {0.0, 0.6}) {
-    const double covered = coverage(memory);
-    INFO("memory " << memory << ", covered " << covered);
-    CHECK(covered > 0.85);
-    CHECK(covered < 0.995);
-  }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Noise that accumulates is told from noise of measurement, and final poses are weighed by what it leaves in them.
+// Noise that accumulates is told from noise of measurement, and final poses are weighted by what it leaves in them.
 #include "surefoot/diagnose/estimation/noise_regime.hpp"
 
 #include <doctest/doctest.h>

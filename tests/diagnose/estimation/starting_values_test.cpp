@@ -3,7 +3,6 @@
 
 #include <doctest/doctest.h>
 
-#include "surefoot/diagnose/effects/catalogue.hpp"
 #include "surefoot/diagnose/effects/first_order_lag.hpp"
 #include "surefoot/diagnose/effects/overflow.hpp"
 #include "surefoot/diagnose/effects/stribeck_friction.hpp"
@@ -33,7 +32,7 @@ std::vector<Observed> observed(const BoundSimulator& bound) {
 
 TEST_CASE("a level that readings never pass is where an overflow starts") {
   const BoundSimulator bound = tank(0.05);
-  const auto starts = starts_of(bound, attached(bound, effects::overflow()), observed(bound));
+  const auto starts = starting_values(bound, attached(bound, effects::overflow()), observed(bound));
   REQUIRE_FALSE(starts.empty());
   for (const Eigen::VectorXd& start : starts) CHECK(start[0] == doctest::Approx(2.0));
 }
@@ -49,7 +48,7 @@ TEST_CASE("what starts at a share of the largest value does so where the velocit
                     .place = Place::velocity,
                     .parameters = {{.name = "where", .measure = {.position = 1}, .starts = {0.8}, .of_peak = true}},
                     .force = [](const EffectContext& m, Values p, Values) { return m.position > p[0] ? -1.0 : 0.0; }};
-  const auto starts = starts_of(bound, attached(bound, wall), observed(bound));
+  const auto starts = starting_values(bound, attached(bound, wall), observed(bound));
   REQUIRE(starts.size() == 1);
   CHECK(starts[0][0] == doctest::Approx(0.8 * runs[0].states.row(0).maxCoeff()));
 }
@@ -57,7 +56,7 @@ TEST_CASE("what starts at a share of the largest value does so where the velocit
 TEST_CASE("times start as shares of 200 rows, fast or slow") {
   for (const double interval : {0.001, 2.0}) {
     const BoundSimulator bound = tank(interval);
-    const auto starts = starts_of(bound, attached(bound, effects::first_order_lag()), observed(bound));
+    const auto starts = starting_values(bound, attached(bound, effects::first_order_lag()), observed(bound));
     REQUIRE(starts.size() == effects::first_order_lag().parameters[0].starts.size());
     CHECK(starts[1][0] == doctest::Approx(200 * interval * effects::first_order_lag().parameters[0].starts[1]));
   }
@@ -69,7 +68,7 @@ TEST_CASE("every combination of starting values is tried once") {
   const Effect effect = effects::stribeck_friction();
   std::size_t combinations = 1;
   for (const EffectParameter& parameter : effect.parameters) combinations *= parameter.starts.size();
-  CHECK(starts_of(bound, attached(bound, effect), observed(bound)).size() == combinations);
+  CHECK(starting_values(bound, attached(bound, effect), observed(bound)).size() == combinations);
 }
 
 }  // namespace

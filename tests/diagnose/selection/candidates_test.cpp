@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/diagnose/effects/catalogue.hpp"
 #include "surefoot/diagnose/effects/constant_rate.hpp"
 #include "surefoot/diagnose/effects/leak.hpp"
 #include "surefoot/diagnose/effects/overflow.hpp"

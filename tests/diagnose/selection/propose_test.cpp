@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/effects/constant_force.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 #include "tests/support/servo_pendulum.hpp"
@@ -102,6 +103,20 @@ TEST_CASE("where nothing is missing no proposal explains much") {
     INFO(proposal.effect.label());
     CHECK(proposal.gain < 0.1);
   }
+}
+
+TEST_CASE("the signature of an effect grows with its strength, and one that does nothing explains nothing") {
+  const Bench b = bench({});
+  const OpenResiduals open = open_residuals(b.bound, b.base, b.problem, serially());
+  const AttachedEffect force = attachments(b.bound, {effects::constant_force()}, {true, true, true}).front();
+  const Eigen::MatrixXd one = signatures(b.bound, b.base, b.problem, open.residuals, force, Vec<1>(0.01));
+  const Eigen::MatrixXd two = signatures(b.bound, b.base, b.problem, open.residuals, force, Vec<1>(0.02));
+  REQUIRE(one.cols() == 1);
+  CHECK(two.norm() == doctest::Approx(2 * one.norm()).epsilon(0.05));
+  const Proposal nothing = predict_gain(b.bound, open, force, Vec<1>(0.01), 0 * one, {});
+  CHECK(nothing.gain == 0);
+  CHECK(nothing.visible == 0);
+  CHECK_FALSE(predict_gain(b.bound, open, force, Vec<1>(0.01), {}, {}).effect.effect);  // it ran away
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/diagnose/effects/catalogue.hpp"
 #include "surefoot/diagnose/effects/constant_rate.hpp"
 #include "surefoot/diagnose/effects/sensor_bias.hpp"
 #include "surefoot/diagnose/effects/sensor_drift.hpp"
@@ -23,9 +22,8 @@ struct Bench {
   BoundSimulator bound;
   SearchProblem problem;
   std::vector<AttachedEffect> candidates;
-  SelectionCriteria options;
   Parallel parallel = serially();
-  Search search{bound, problem, candidates, options, parallel};
+  Search search{bound, problem, candidates, parallel};
 
   explicit Bench(const std::vector<NamedEffect>& truth) {
     std::vector<Recording> recordings;
@@ -49,7 +47,7 @@ struct Bench {
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;
 
-  /// A fit with these effects, as it is judged.
+  /// A fit with these effects, as it is evaluated.
   EvaluatedHypothesis with(const std::vector<std::string>& names) const {
     Hypothesis start = nominal_hypothesis(bound);
     for (const std::string& name : names) {
@@ -57,13 +55,13 @@ struct Bench {
       start.effects.push_back(*std::find_if(candidates.begin(), candidates.end(), of_name));
       start.values.emplace_back(Eigen::VectorXd::Constant(1, 0.01));
     }
-    return judge(bound, fit(bound, start, problem.fit, parallel), problem, parallel);
+    return evaluate_fit(bound, fit(bound, start, problem.fit, parallel), problem, parallel);
   }
 };
 
-std::string names_of(const EvaluatedHypothesis& judged) {
+std::string names_in(const EvaluatedHypothesis& evaluated) {
   std::vector<std::string> names;
-  for (const AttachedEffect& one : judged.hypothesis.effects) names.push_back(one.effect->name);
+  for (const AttachedEffect& one : evaluated.hypothesis.effects) names.push_back(one.effect->name);
   std::sort(names.begin(), names.end());
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
@@ -76,14 +74,14 @@ TEST_CASE("an effect that another one made idle is dropped") {
   const Bench bench({rate});
   EvaluatedHypothesis chosen = bench.with({"sensor_drift", "constant_rate"});
   drop_idle_effects(bench.search, chosen);
-  CHECK(names_of(chosen) == "constant_rate");
+  CHECK(names_in(chosen) == "constant_rate");
 }
 
 TEST_CASE("two effects that both do something stay") {
   const Bench bench({rate, drift});
   EvaluatedHypothesis chosen = bench.with({"sensor_drift", "constant_rate"});
   drop_idle_effects(bench.search, chosen);
-  CHECK(names_of(chosen) == "constant_rate, sensor_drift");
+  CHECK(names_in(chosen) == "constant_rate, sensor_drift");
 }
 
 TEST_CASE("a pair takes the place of one effect that leaves something open") {
@@ -92,7 +90,7 @@ TEST_CASE("a pair takes the place of one effect that leaves something open") {
   selection.nominal = bench.with({});
   selection.chosen = bench.with({"sensor_bias"});
   try_pair_instead(bench.search, selection);
-  CHECK(names_of(selection.chosen) == "constant_rate, sensor_drift");
+  CHECK(names_in(selection.chosen) == "constant_rate, sensor_drift");
 }
 
 TEST_CASE("an effect that stands where another one does better is replaced, until none does") {
@@ -104,8 +102,38 @@ TEST_CASE("an effect that stands where another one does better is replaced, unti
   while (rounds < 5 && compare_with_others(bench.search, selection, true)) ++rounds;
   CHECK(rounds > 0);
   CHECK(rounds < 5);
-  CHECK(names_of(selection.chosen) == "constant_rate, sensor_drift");
+  CHECK(names_in(selection.chosen) == "constant_rate, sensor_drift");
   CHECK(selection.evidence.size() == 2);
+}
+
+TEST_CASE("the search ends with the effects that act, and with none where none acts") {
+  const Bench both({rate, drift}), none({});
+  const auto found = [](const Bench& bench) {
+    const Fit calibrated = fit(bench.bound, nominal_hypothesis(bench.bound), bench.problem.fit, bench.parallel);
+    return select_effects(bench.bound, calibrated, bench.problem, bench.candidates, bench.parallel);
+  };
+  const Selection two = found(both);
+  CHECK(names_in(two.chosen) == "constant_rate, sensor_drift");
+  CHECK(two.evidence.size() == 2);
+  CHECK(two.candidates == 3);
+  CHECK(names_in(found(none).chosen).empty());
+}
+
+TEST_CASE("a search that is stopped at once chooses nothing") {
+  Bench bench({rate});
+  bench.problem.stopped = [] { return true; };
+  const Fit calibrated = fit(bench.bound, nominal_hypothesis(bench.bound), bench.problem.fit, bench.parallel);
+  CHECK(names_in(select_effects(bench.bound, calibrated, bench.problem, bench.candidates, bench.parallel).chosen)
+            .empty());
+}
+
+TEST_CASE("of residuals that look like noise only strong proposals are worth a fit") {
+  const Bench bench({});
+  const Hypothesis nominal = nominal_hypothesis(bench.bound);
+  const auto some = shortlisted(bench.bound, nominal, bench.problem, bench.candidates, 10, true, bench.parallel);
+  CHECK_FALSE(some.empty());
+  CHECK(shortlisted(bench.bound, nominal, bench.problem, bench.candidates, 10, false, bench.parallel).empty());
+  CHECK(shortlisted(bench.bound, nominal, bench.problem, bench.candidates, 1, true, bench.parallel).size() == 1);
 }
 
 }  // namespace

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/trees.hpp"
 
-namespace surefoot {
+namespace surefoot::detail {
 namespace {
 
 // A random tree of 3 inputs whose leaves carry their own numbers.
@@ -105,4 +105,4 @@ TEST_CASE("sort keys order floats as they are, zeros alike, NaN below all") {
 }
 
 }  // namespace
-}  // namespace surefoot
+}  // namespace surefoot::detail

@@ -4,7 +4,7 @@
 #include "apps/calibrate/load_sequences.hpp"
 #include "apps/calibrate/walk_csv.hpp"
 #include "surefoot/diagnose/recording.hpp"
-#include "surefoot/motion/plan/command_plan.hpp"
+#include "surefoot/motion/plan.hpp"
 #include "tests/fuzz/accepted.hpp"
 #include "tests/fuzz/feeds.hpp"
 #include "tests/fuzz/text_of.hpp"

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "surefoot/motion/previous_command_correction.hpp"
-#include "surefoot/optimize/numeric_jacobian.hpp"
 #include "tests/support/quadratic_correction.hpp"
 #include "tests/support/walks.hpp"
 
@@ -38,19 +37,6 @@ TEST_CASE_TEMPLATE("a walk is found again from final poses", Model, surefoot::Pr
       (fit.model.parameters() - truth.parameters()).cwiseQuotient(fit.standard_errors());
   CHECK(off.template lpNorm<Eigen::Infinity>() < 4);
   CHECK(surefoot::final_pose_error(fit.model, std::span<const surefoot::WalkSequence>(walks)).position < 0.02);
-}
-
-TEST_CASE("the slopes of the residuals are those of numeric differences") {
-  auto walks = toys::walks(toys::paper_walk(), toys::paper_noise(), 3, 2);
-  walks[1] = final_pose_only(walks[1]);
-  walks[2].poses(2, 24) = std::nan("");
-  const auto noise = toys::paper_noise().as_motion_noise();
-  const surefoot::detail::WeightedPoses<FullLinearCorrection> poses(toys::paper_walk(), noise, {}, walks);
-  const Eigen::VectorXd p = some_walk<FullLinearCorrection>().parameters();
-  const Eigen::MatrixXd exact = poses.jacobian(p);
-  const Eigen::MatrixXd numeric =
-      surefoot::numeric_jacobian([&](const Eigen::VectorXd& q) { return poses.residuals(q); }, p);
-  CHECK((exact - numeric).norm() < 1e-5 * numeric.norm());
 }
 
 TEST_CASE("what commands never excite keeps its default, and its standard error says so") {

@@ -48,20 +48,6 @@ TEST_CASE("final poses are as far from the model as the filter expects, also whe
   CHECK((square.array() - 1).matrix().lpNorm<Eigen::Infinity>() < 0.1);
 }
 
-TEST_CASE("straight ahead the mean of where the robot may be falls short, and it is unsure along the track too") {
-  surefoot::detail::PoseSpread spread;
-  Vec<3> mean = Vec<3>::Zero();
-  const surefoot::Pose2 step{0.1, 0, 0};
-  const double turn = 0.1;
-  spread.move(mean, step, Vec<3>(0, 0, turn * turn));
-  spread.move(mean, step, Vec<3>(0, 0, 0));
-  CHECK(mean[0] == doctest::Approx(0.1 + 0.1 * std::exp(-0.005)));
-  // x = 0.1 cos(turn): variance (1 - exp(-variance))^2 / 2; y = 0.1 sin(turn): (1 - exp(-2 variance)) / 2
-  CHECK(spread.covariance()(0, 0) == doctest::Approx(0.01 * std::pow(1 - std::exp(-0.01), 2) / 2));
-  CHECK(spread.covariance()(1, 1) == doctest::Approx(0.01 * (1 - std::exp(-0.02)) / 2));
-  CHECK(spread.covariance()(1, 2) == doctest::Approx(0.1 * 0.01 * std::exp(-0.005)));
-}
-
 TEST_CASE("without a measured heading only the position counts") {
   auto walks = toys::final_poses(toys::walks(toys::paper_walk(), toys::paper_noise(), 1, 5));
   walks[0].poses(2, 24) = std::nan("");

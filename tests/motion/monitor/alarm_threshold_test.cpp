@@ -17,7 +17,7 @@ std::vector<WalkSequence> wandering(const sigmaban::Model& model, int sequences,
   return sigmaban::walked(model, sigmaban::noise(), surefoot::plan_commands({}, sequences, cycles, seed), true, seed);
 }
 
-surefoot::MotionTracker<sigmaban::Model> calibrated(std::span<const WalkSequence> sequences) {
+surefoot::MotionTracker calibrated(std::span<const WalkSequence> sequences) {
   const auto fit = surefoot::fit_model<sigmaban::Model>(sequences, sigmaban::noise());
   return surefoot::track(fit.model, fit.covariance, sigmaban::noise());
 }
@@ -40,7 +40,7 @@ TEST_CASE("a threshold keeps its share of false alarms, and a jump by a fifth is
   const auto tracker = calibrated(sequences);
   const ThresholdOptions options{.false_alarms = 0.05, .runs = 90};
   const double threshold = surefoot::alarm_threshold(tracker, sequences, options, surefoot::Threads(), 1);
-  const surefoot::ChangeAlarm<sigmaban::Model> fresh{.tracker = tracker, .threshold = threshold};
+  const surefoot::ChangeAlarm fresh{.tracker = tracker, .threshold = threshold};
 
   int false_alarms = 0;
   for (std::uint64_t run = 0; run < 20; ++run) {

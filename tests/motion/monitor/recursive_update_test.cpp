@@ -10,11 +10,10 @@
 #include "tests/support/sigmaban_walk.hpp"
 
 using surefoot::MotionError;
-using surefoot::MotionTracker;
 using surefoot::Vec;
 using surefoot::WalkSequence;
 
-using Tracker = MotionTracker<sigmaban::Model>;
+using Tracker = surefoot::MotionTracker;
 
 namespace {
 
@@ -81,9 +80,9 @@ TEST_CASE("with forgetting the tracker follows a changed robot, and what is not 
   }
   CHECK(tracker.model.parameters()[1] == doctest::Approx(0.8 * 1.30).epsilon(0.05));
   // Never below the information of the prior in any direction.
-  const Eigen::SelfAdjointEigenSolver<Tracker::Square> excess(tracker.information - tracker.floor);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> excess(tracker.information - tracker.floor);
   CHECK(excess.eigenvalues().minCoeff() > -1e-6 * tracker.floor.norm());
-  const Vec<12> prior = Tracker::prior_information().diagonal().cwiseSqrt().cwiseInverse();
+  const Vec<12> prior = surefoot::prior_information(sigmaban::model()).diagonal().cwiseSqrt().cwiseInverse();
   CHECK((tracker.standard_errors().array() <= 1.0001 * prior.array()).all());
   CHECK(tracker.standard_errors()[6] > 0.9 * prior[6]);  // dy per dy was forgotten, down to the prior
 }
@@ -94,5 +93,6 @@ TEST_CASE("what a tracker cannot use is refused") {
   CHECK_THROWS_AS(update(tracker, WalkSequence{.name = "1", .commands = {}, .poses = {}}), MotionError);
   tracker.forgetting = 0;
   CHECK_THROWS_AS(update(tracker, wandering(1, sigmaban::noise(), true, 1)[0]), MotionError);
-  CHECK_THROWS_AS(surefoot::track(sigmaban::Model(), -Tracker::Square::Identity(), sigmaban::noise()), MotionError);
+  CHECK_THROWS_AS(surefoot::track(sigmaban::Model(), -Eigen::MatrixXd::Identity(12, 12), sigmaban::noise()),
+                  MotionError);
 }

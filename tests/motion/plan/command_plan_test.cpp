@@ -8,9 +8,9 @@
 
 #include "tests/support/sigmaban_walk.hpp"
 
-using surefoot::MotionError;
 using surefoot::CommandBounds;
 using surefoot::commands_within;
+using surefoot::MotionError;
 using surefoot::plan_commands;
 using surefoot::Vec;
 
@@ -37,14 +37,16 @@ TEST_CASE("a longer plan begins with the shorter one, and another seed plans som
 TEST_CASE("wrong bounds and counts are refused by name") {
   CommandBounds bounds;
   bounds.low[1] = 0.01;
-  CHECK_THROWS_WITH_AS(check(bounds), "CommandBounds: low of dy must be a finite number up to 0, got 0.01", MotionError);
+  CHECK_THROWS_WITH_AS(check(bounds), "CommandBounds: low of dy must be a finite number up to 0, got 0.01",
+                       MotionError);
   bounds = {};
   bounds.high[0] = std::nan("");
   CHECK_THROWS_AS(check(bounds), MotionError);
   bounds = {};
   bounds.acceleration[2] = 0;
-  CHECK_THROWS_WITH_AS(
-      check(bounds), "CommandBounds: acceleration of turn must be above 0 for commands that may vary, got 0", MotionError);
+  CHECK_THROWS_WITH_AS(check(bounds),
+                       "CommandBounds: acceleration of turn must be above 0 for commands that may vary, got 0",
+                       MotionError);
   CHECK_THROWS_WITH_AS(plan_commands({}, 0, 25, 1), "plan_commands: sequences must be at least 1, got 0", MotionError);
   CHECK_THROWS_WITH_AS(plan_commands({}, 1, 0, 1), "plan_commands: cycles must be at least 1, got 0", MotionError);
 }

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Cholesky>
 #include <limits>
 #include <span>
 #include <vector>
@@ -12,7 +13,7 @@ using surefoot::InformativeOptions;
 using surefoot::MotionError;
 using surefoot::Vec;
 
-using Tracker = surefoot::MotionTracker<sigmaban::Model>;
+using Tracker = surefoot::MotionTracker;
 
 namespace {
 
@@ -75,12 +76,12 @@ TEST_CASE("check walks see the change that is hardest to see several times bette
   const surefoot::CheckPlan plan = surefoot::plan_check_commands(tracker, jumps, options, 1);
   CHECK(plan.commands.size() == 10);
 
-  Tracker::Square together = Tracker::Square::Zero();
+  Eigen::MatrixXd together = Eigen::MatrixXd::Zero(12, 12);
   for (const auto& sequence :
        sigmaban::walked(sigmaban::model(), sigmaban::noise(), surefoot::plan_commands({}, 10, 25, 1), false, 1)) {
-    together += listen(tracker, sequence).information;
+    together += linearize(tracker, sequence).information;
   }
-  const Tracker::Square information = tracker.information * (tracker.information + together).llt().solve(together);
+  const Eigen::MatrixXd information = tracker.information * (tracker.information + together).llt().solve(together);
   double wandering = std::numeric_limits<double>::infinity();
   for (const int i : {1, 6, 11}) wandering = std::min(wandering, jumps[i] * jumps[i] * information(i, i));
   CHECK(plan.seen > 3 * wandering);

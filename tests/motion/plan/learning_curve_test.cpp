@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "surefoot/motion/linear_correction.hpp"
-#include "surefoot/motion/previous_command_correction.hpp"
 #include "tests/support/walks.hpp"
 
 using surefoot::FullLinearCorrection;
@@ -24,7 +23,7 @@ TEST_CASE("with few sequences the small model wins, with many the full one, by t
   CHECK(small.position[1] < full.position[1]);
   CHECK(full.position[2] < small.position[2]);
   CHECK(full.position_half_width[2] > 0);
-  CHECK(full.coefficients_spread(1, 2) < full.coefficients_spread(1, 0));
+  CHECK(full.coefficients_deviation(1, 2) < full.coefficients_deviation(1, 0));
   CHECK(full.coefficients(1, 2) == doctest::Approx(1.3).epsilon(0.3));
 }
 
@@ -45,13 +44,13 @@ TEST_CASE("a curve that is asked for no counts has them all, and reports its rep
   options.on_progress = [&](std::size_t done) { reported.push_back(done); };
   const std::span<const WalkSequence> all(walks);
   const auto curve = surefoot::learning_curve<ProportionalCorrection>(all, options, surefoot::Threads(2), 1);
-  CHECK(curve.counts == std::vector<std::size_t>{1, 2, 3});  // 5 judge
+  CHECK(curve.counts == std::vector<std::size_t>{1, 2, 3});  // 5 are held out
   CHECK(curve.position.size() == 3);
   CHECK(reported == std::vector<std::size_t>{1, 2, 3, 4});
   for (const std::size_t bad : {0U, 4U}) {
     options.counts = {1, bad};
     CHECK_THROWS_WITH_AS(surefoot::learning_curve<ProportionalCorrection>(all, options, surefoot::Serial{}, 1),
-                         "LearningCurveOptions: counts must be from 1 to all but those that judge",
+                         "LearningCurveOptions: counts must be from 1 to all but the held-out sequences",
                          surefoot::MotionError);
   }
 }
@@ -75,20 +74,4 @@ TEST_CASE("what more sequences bring follows from the curve") {
   CHECK(more.now == doctest::Approx(std::sqrt(0.05)));
   // (1.05 * 0.2)^2 = 0.04 + 0.2 / n at n = 48.8
   CHECK(more.worthwhile == 29);
-}
-
-TEST_CASE("models are compared on sequences they were not fitted to, and the simplest good one is chosen") {
-  const auto walks = toys::final_poses(toys::walks(toys::paper_walk(), toys::paper_noise(), 40, 4));
-  const auto scores = surefoot::compare_models<ProportionalCorrection, SimpleLinearCorrection, FullLinearCorrection,
-                                               surefoot::PreviousCommandCorrection>(walks, {}, surefoot::Threads(2), 1);
-  REQUIRE(scores.size() == 5);
-  CHECK(scores[0].name == "commands as they are");
-  CHECK(scores[0].position > scores[1].position);
-  CHECK(scores[1].position > scores[3].position);
-  CHECK(scores[3].chosen);
-  CHECK(scores[3].name == "full linear");
-  const auto straight = toys::final_poses(toys::walks(surefoot::ProportionalCorrection(), toys::paper_noise(), 40, 5));
-  const auto plain =
-      surefoot::compare_models<ProportionalCorrection, FullLinearCorrection>(straight, {}, surefoot::Serial{}, 1);
-  CHECK(plain[0].chosen);
 }

@@ -52,6 +52,9 @@ std::vector<Recording> cut_few_recordings(const BindSimulator& bind, std::vector
 EstimationSetup hold_out_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
                                     const RunContext& run);
 
+/// Fills in which recordings are for what.
+void name_recordings(const EstimationSetup& setup, Diagnosis& diagnosis);
+
 /// The model before and after its parameters were calibrated.
 struct Calibration {
   Hypothesis nominal;  // with the initial states of the training recordings

@@ -16,17 +16,9 @@
 
 #include "surefoot/core/error.hpp"
 #include "surefoot/forest/c/c_tables.hpp"
+#include "surefoot/forest/export_c_options.hpp"
 
-namespace surefoot {
-
-/// In what kind of numbers a C file compares inputs with thresholds.
-enum class CThreshold {
-  float32,  // as in the library: the same leaves always
-  int32,    // whole numbers, see c_fixed_point.hpp
-  int16,
-};
-
-namespace detail {
+namespace surefoot::detail {
 
 /// Largest size of a whole number of this kind.
 inline double c_limit(CThreshold kind) {
@@ -70,6 +62,4 @@ inline std::vector<std::int32_t> c_fixed_thresholds(const CTables& tables, std::
   return fixed;
 }
 
-}  // namespace detail
-
-}  // namespace surefoot
+}  // namespace surefoot::detail

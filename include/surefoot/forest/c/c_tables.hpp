@@ -9,17 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/trees.hpp"
+#include "surefoot/forest/export_c_options.hpp"
 
-namespace surefoot {
-
-/// How a C file spells its tables of numbers.
-enum class CTable {
-  integers,  // hexadecimal integers of 64 bits: no decoding, fastest
-  text,      // five characters per number in string literals: half the source, decoded at every use
-};
-
-namespace detail {
+namespace surefoot::detail {
 
 /// The tables of a forest in depth-first order. A descent needs only how many inner nodes lie left of a node: right of
 /// it go the rest, and among the leaves of a tree the one reached is known by how many inner nodes it passed on its
@@ -125,6 +118,4 @@ inline std::string c_numbers(const std::vector<std::uint32_t>& numbers, CTable t
          "  return n.value;\n}\n";
 }
 
-}  // namespace detail
-
-}  // namespace surefoot
+}  // namespace surefoot::detail

@@ -1,4 +1,4 @@
-// Makes sure that trees from a file can be used without looking: no input leads out of them or round in circles.
+// The check of trees from a file, which are then used without looking: no input leads out of them or round in circles.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "surefoot/core/binary.hpp"
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/trees.hpp"
 
 namespace surefoot::detail {
 

@@ -1,5 +1,6 @@
-// From inputs to leaves: the hottest loops of the library. No branch depends on the inputs except the end of a loop,
-// and eight descents are in flight at a time, enough to hide the latency of a load and few enough for the registers.
+// The descent from inputs to leaves: the hottest loops of the library. No branch depends on the inputs except the end
+// of a loop, and eight descents are in flight at a time, enough to hide the latency of a load and few enough for the
+// registers.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 #include <span>
 
 #include "surefoot/forest/evaluate/descend_avx2.hpp"
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/trees.hpp"
 
 namespace surefoot::detail {
 

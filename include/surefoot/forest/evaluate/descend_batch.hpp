@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "surefoot/forest/evaluate/descend.hpp"
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/trees.hpp"
 
 namespace surefoot::detail {
 

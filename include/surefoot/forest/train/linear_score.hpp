@@ -1,5 +1,5 @@
-// Scores the candidate splits of a node by what affine fits on both sides would explain: least squares by running sums
-// and a small Cholesky factorization per side, instead of a fit to the samples per candidate.
+// Scores of the candidate splits of a node by what affine fits on both sides would explain: least squares by running
+// sums and a small Cholesky factorization per side, instead of a fit to the samples per candidate.
 //
 // Cost per node of n records: O(n inputs (inputs + outputs)) for the products, O(n) and a quarter or so of the products
 // per candidate for the sums, and O(inputs^3) per side.

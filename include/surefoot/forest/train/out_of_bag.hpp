@@ -15,10 +15,9 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/forest/dataset.hpp"
-#include "surefoot/forest/extra_trees.hpp"
+#include "surefoot/forest/trees.hpp"
 #include "surefoot/forest/leaf.hpp"
-#include "surefoot/forest/train/tree_grower.hpp"
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/train/bootstrap.hpp"
 
 namespace surefoot {
 

@@ -1,7 +1,5 @@
-// The inner loops of growing a tree: ranges, sums and partitions over packed samples.
-//
-// A sample is a record of whole 4-float vectors: inputs, outputs, weight if any. Records are moved, not indexed, so
-// every loop here reads memory in order, and one comparison tests four inputs against their thresholds.
+// The inner loops of growing a tree: ranges, sums and partitions over records. Records are moved, not indexed, so every
+// loop here reads memory in order, and one comparison tests four inputs against their thresholds.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-#include "surefoot/forest/evaluate/trees.hpp"
+#include "surefoot/forest/train/records.hpp"
 
 namespace surefoot::detail {
 
@@ -26,31 +24,6 @@ inline Quad load(const float* memory) {
 }
 inline Quad splat(float value) { return Quad{value, value, value, value}; }
 inline Quad keep(QuadMask mask, Quad quad) { return reinterpret_cast<Quad>(reinterpret_cast<QuadMask>(quad) & mask); }
-
-/// Where things are in a record.
-struct RecordShape {
-  int inputs = 0;
-  int outputs = 0;
-  bool weighted = false;
-
-  std::size_t input_quads() const { return (static_cast<std::size_t>(inputs) + 3) / 4; }
-  std::size_t stride() const {
-    return (static_cast<std::size_t>(inputs) + static_cast<std::size_t>(outputs) + (weighted ? 1 : 0) + 3) / 4 * 4;
-  }
-  std::size_t output_at() const { return static_cast<std::size_t>(inputs); }
-  std::size_t weight_at() const { return static_cast<std::size_t>(inputs) + static_cast<std::size_t>(outputs); }
-};
-
-using Records = std::vector<float, CacheLineAllocator<float>>;
-
-/// Some consecutive records.
-struct RecordSpan {
-  const float* first = nullptr;
-  std::size_t count = 0;
-  std::size_t stride = 0;
-
-  const float* operator[](std::size_t i) const { return first + i * stride; }
-};
 
 /// Smallest, largest and (roughly, in single precision) mean value of every column.
 inline void find_range(const RecordSpan& records, float* low, float* high, float* mean) {

@@ -9,7 +9,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/motion/fit/fit_model.hpp"
 #include "surefoot/motion/fit/weighted_poses.hpp"
-#include "surefoot/optimize/least_squares.hpp"
+#include "surefoot/optimize/least_squares_loop.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot {
@@ -41,16 +41,18 @@ SUREFOOT_INLINE AnyModelFit fit_model(std::span<const WalkSequence> sequences, c
   AnyModelFit fit{.model = start.with_parameters(range.clamp(start.parameters()))};
   for (int i = 0; i < options.max_iterations && !fit.converged; ++i) {
     const detail::WeightedPoses poses = weighted(fit.model);
-    const auto result =
-        least_squares([&](const Eigen::VectorXd& p) { return poses.residuals(p); }, fit.model.parameters(), inner,
-                      [&](const Eigen::VectorXd& p) { return poses.jacobian(p); });
+    const LeastSquaresResult result =
+        detail::minimise_squares([&](const Eigen::VectorXd& p) { return poses.residuals(p); }, fit.model.parameters(),
+                                 inner, [&](const Eigen::VectorXd& p) { return poses.jacobian(p); })
+            .result;
     const Eigen::VectorXd change = (result.x - fit.model.parameters()).cwiseQuotient(range.high() - range.low());
     fit.model = fit.model.with_parameters(result.x);
     fit.cost = result.cost;
     fit.converged = change.lpNorm<Eigen::Infinity>() < negligible_change;
   }
   const Eigen::MatrixXd jacobian = weighted(fit.model).jacobian(fit.model.parameters());
-  fit.covariance = detail::invert_symmetric(jacobian.transpose() * jacobian);
+  const Eigen::MatrixXd transposed = jacobian.transpose();
+  fit.covariance = detail::invert_symmetric(transposed * jacobian);
   return fit;
 }
 

@@ -1,7 +1,6 @@
 // Definitions of surefoot/motion/fit/pose_filter.hpp.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -47,6 +46,38 @@ SUREFOOT_INLINE Vec<3> moved(const Vec<3>& pose, const Pose2& displacement) {
           pose[2] + displacement.angle};
 }
 
+// Cholesky of 2 x 2 and 3 x 3, by hand: in the innermost loop of every fit.
+
+/// Replaces the lower triangle of a positive definite matrix by its factor.
+SUREFOOT_INLINE void factorise_small(Innovation::Square& a) {
+  for (Eigen::Index k = 0; k < a.rows(); ++k) {
+    double squares = 0;
+    for (Eigen::Index j = 0; j < k; ++j) squares += a(k, j) * a(k, j);
+    a(k, k) = std::sqrt(a(k, k) - squares);
+    for (Eigen::Index i = k + 1; i < a.rows(); ++i) {
+      double sum = 0;
+      for (Eigen::Index j = 0; j < k; ++j) sum += a(i, j) * a(k, j);
+      a(i, k) = (a(i, k) - sum) / a(k, k);
+    }
+  }
+}
+
+/// Replaces x by the solution of lower y = x, or of lower^T y = x.
+SUREFOOT_INLINE void solve_lower_small(const Innovation::Square& lower, double* x) {
+  for (Eigen::Index i = 0; i < lower.rows(); ++i) {
+    x[i] *= 1 / lower(i, i);
+    for (Eigen::Index r = i + 1; r < lower.rows(); ++r) x[r] -= x[i] * lower(r, i);
+  }
+}
+
+SUREFOOT_INLINE void solve_upper_small(const Innovation::Square& lower, double* x) {
+  for (Eigen::Index i = lower.rows(); i-- > 0;) {
+    double sum = 0;
+    for (Eigen::Index r = i + 1; r < lower.rows(); ++r) sum += lower(r, i) * x[r];
+    x[i] = (x[i] - sum) * (1 / lower(i, i));
+  }
+}
+
 SUREFOOT_INLINE std::vector<Innovation> innovations(const Eigen::Matrix3Xd& displacements, const MotionNoise& noise,
                                                     const PoseAccuracy& accuracy, const WalkSequence& sequence) {
   constexpr double least_variance = 1e-14;  // [m^2, rad^2]: without any noise the expected pose would be certain
@@ -69,11 +100,17 @@ SUREFOOT_INLINE std::vector<Innovation> innovations(const Eigen::Matrix3Xd& disp
     Eigen::Matrix3d covariance = moments.covariance();
     Innovation::Square expected = covariance.topLeftCorner(count, count);
     expected.diagonal() += measured_variance.head(count);
-    const Eigen::LLT<Innovation::Square> root(expected);
+    factorise_small(expected);
     innovation.whitening = Innovation::Square::Identity(count, count);
-    root.matrixL().solveInPlace(innovation.whitening);
+    for (Eigen::Index k = 0; k < count; ++k) solve_lower_small(expected, innovation.whitening.col(k).data());
     innovation.log_det = -2 * innovation.whitening.diagonal().array().log().sum();
-    innovation.gain = root.solve(covariance.topRows(count)).transpose();
+    innovation.gain.resize(3, count);
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      Innovation::Values column = covariance.col(k).head(count);
+      solve_lower_small(expected, column.data());
+      solve_upper_small(expected, column.data());
+      innovation.gain.row(k) = column.transpose();
+    }
     pose += innovation.gain * innovation.error;
     covariance -= (innovation.gain * covariance.topRows(count)).eval();
     innovation.heading_variance = std::max(0.0, covariance(2, 2));

@@ -16,8 +16,8 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/motion/monitor/alarm_threshold.hpp"
+#include "surefoot/motion/monitor/cholesky.hpp"
 #include "surefoot/motion/simulate_walk.hpp"
-#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot {
 

@@ -12,7 +12,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/motion/monitor/change_alarm.hpp"
-#include "surefoot/optimize/linear_algebra.hpp"
+#include "surefoot/motion/monitor/cholesky.hpp"
 
 namespace surefoot {
 

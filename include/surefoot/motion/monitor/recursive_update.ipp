@@ -8,8 +8,8 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/motion/fit/weighted_poses.hpp"
+#include "surefoot/motion/monitor/cholesky.hpp"
 #include "surefoot/motion/monitor/recursive_update.hpp"
-#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot {
 

@@ -13,9 +13,9 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/motion/monitor/cholesky.hpp"
 #include "surefoot/motion/plan/informative_commands.hpp"
 #include "surefoot/motion/simulate_walk.hpp"
-#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot {
 

@@ -1,0 +1,178 @@
+// The text of a forest in C.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "surefoot/forest/c/c_branches.hpp"
+#include "surefoot/forest/c/c_fixed_point.hpp"
+#include "surefoot/forest/c/c_tables.hpp"
+#include "surefoot/forest/trees.hpp"
+#include "surefoot/forest/export_c_options.hpp"
+
+namespace surefoot::detail {
+
+inline std::string indented(std::string_view code, const std::string& by) {
+  std::string out = by;
+  for (const char c : code) {
+    out += c;
+    if (c == '\n') out += by;
+  }
+  return out;
+}
+
+/// Writes the C file of one forest.
+class CWriter {
+ public:
+  CWriter(const Trees& trees, std::uint32_t leaf_tag, const std::string& leaf_code, const ExportCOptions& options)
+      : options_(options),
+        name_(options.function),
+        inputs_(std::to_string(trees.inputs)),
+        outputs_(std::to_string(trees.outputs)),
+        trees_(std::to_string(trees.roots.size())),
+        leaf_code_(leaf_code),
+        leaf_parameters_(std::to_string(trees.leaf_parameters)),
+        head_("/* Regression forest: " + inputs_ + " inputs, " + outputs_ + " outputs, " + trees_ + " trees, " +
+              std::to_string(trees.leaves) + " leaves of kind " + std::to_string(leaf_tag) +
+              ". Written by surefoot. */\n"),
+        width_(static_cast<std::uint32_t>(trees.inputs)),
+        tables_(trees) {
+    if (options.thresholds != CThreshold::float32) {
+      whole_ = options.thresholds == CThreshold::int16 ? "int16_t" : "int32_t";
+      scales_ = c_scales(tables_, trees.inputs, options.thresholds, options.largest_inputs);
+      fixed_ = c_fixed_thresholds(tables_, scales_);
+    }
+  }
+
+  std::string code() const {
+    std::string code = head_ + "#include <stdint.h>\n\n";
+    if (!whole_.empty()) code += input_code();
+    code += options_.descent == CDescent::tables ? node_tables() : branches();
+    code += function();
+    if (!options_.wrapper.empty()) code += "\n" + options_.wrapper + (options_.wrapper.ends_with('\n') ? "" : "\n");
+    return code;
+  }
+
+ private:
+  bool numbers_hold_thresholds() const { return whole_.empty() && options_.descent == CDescent::tables; }
+
+  static std::string digits(double value) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.17g", value);
+    return text;
+  }
+
+  // How inputs become whole numbers.
+  std::string input_code() const {
+    const std::string limit = digits(c_limit(options_.thresholds));
+    const std::string head = whole_ + " " + name_ + "_input(int input, double value)";
+    return "/* Inputs are whole numbers: value * scale of the input, rounded. Where a value is farther than 1 / scale\n"
+           "   from all thresholds, the leaves are those of the forest in floats. */\n"
+           "static const double " +
+           name_ + "_scales[" + inputs_ + "] = " + c_list(std::span<const double>(scales_), "%.17g") + ";\n\n" + head +
+           ";\n" + head + " {\n" + "  const double scaled = value * " + name_ + "_scales[input];\n" +
+           "  if (!(scaled > -" + limit + ")) return -" + limit + ";\n" + "  if (scaled >= " + limit + ") return " +
+           limit + ";\n" + "  return (" + whole_ + ")(scaled < 0 ? scaled - 0.5 : scaled + 0.5);\n" + "}\n\n";
+  }
+
+  std::string node_tables() const {
+    std::vector<std::uint32_t> nodes;
+    for (std::size_t i = 0; i < tables_.left.size(); ++i) {
+      nodes.push_back(tables_.left[i] * width_ + static_cast<std::uint32_t>(tables_.inputs[i]));
+    }
+    const std::uint32_t widest = nodes.empty() ? 0 : *std::max_element(nodes.begin(), nodes.end());
+    const std::string type = widest < 0x100U ? "uint8_t" : widest < 0x10000U ? "uint16_t" : "uint32_t";
+    std::string code =
+        "/* inner nodes of each tree */\n"
+        "static const uint32_t " +
+        name_ + "_trees[] = " + c_list(std::span(tables_.trees), "%u") + ";\n\n" +
+        "/* of each inner node, depth first: (inner nodes below its left child) * inputs + its input */\n" +
+        "static const " + type + " " + name_ + "_nodes[] = " + c_list(std::span<const std::uint32_t>(nodes), "%u") +
+        ";\n\n";
+    std::vector<std::uint32_t> numbers;
+    if (whole_.empty()) {
+      for (const float threshold : tables_.thresholds) numbers.push_back(std::bit_cast<std::uint32_t>(threshold));
+      code += "/* floats: the threshold of each inner node, then the numbers of each leaf */\n";
+    } else {
+      code += "static const " + whole_ + " " + name_ +
+              "_thresholds[] = " + c_list(std::span<const std::int32_t>(fixed_), "%d") + ";\n\n" +
+              "/* floats: the numbers of each leaf */\n";
+    }
+    numbers.insert(numbers.end(), tables_.numbers.begin(), tables_.numbers.end());
+    return code + c_numbers(numbers, options_.table, name_) + "\n";
+  }
+
+  std::string branches() const {
+    const std::string type = whole_.empty() ? "float" : whole_;
+    std::string code = "/* floats: the numbers of each leaf */\n" + c_numbers(tables_.numbers, options_.table, name_) +
+                       "\n" + CBranches(tables_, fixed_).code(name_, type) + "static uint32_t (*const " + name_ +
+                       "_trees[])(const " + type + " *) = {";
+    for (std::size_t tree = 0; tree < tables_.trees.size(); ++tree) {
+      code += (tree == 0 ? "" : tree % 8 == 0 ? ",\n" : ", ") + name_ + "_tree" + std::to_string(tree);
+    }
+    return code + "};\n\n";
+  }
+
+  std::string function() const {
+    const std::string head = "void " + name_ + "(const " + (whole_.empty() ? "double" : whole_) + " in[" + inputs_ +
+                             "], double out[" + outputs_ + "])";
+    // Leaves of constants do not look at x.
+    const bool leaf_reads_x = leaf_code_.find("x[") != std::string::npos;
+    const bool needs_x = whole_.empty() || leaf_reads_x;
+    const std::string as_float = whole_.empty() ? "(float)in[k]" : "(float)(in[k] / " + name_ + "_scales[k])";
+    std::string code = options_.wrapper.empty() ? head + ";\n" + head : "static " + head;
+    code += " {\n#define number(i) " + name_ + "_number(i)\n";
+    if (needs_x) code += "  float x[" + inputs_ + "];\n";
+    code += "  uint32_t tree, o" + std::string(leaf_code_.find('k') != std::string::npos || needs_x ? ", k" : "");
+    code += options_.descent == CDescent::tables ? ", first = 0, first_leaf = 0;\n" : ";\n";
+    if (needs_x) code += "  for (k = 0; k < " + inputs_ + "; ++k) x[k] = " + as_float + ";\n";
+    code += "  for (o = 0; o < " + outputs_ + "; ++o) out[o] = 0;\n" + "  for (tree = 0; tree < " + trees_ +
+            "; ++tree) {\n" + (options_.descent == CDescent::tables ? table_descent() : branch_descent()) +
+            indented(leaf_code_, "    ") + "\n" + "  }\n" + "  for (o = 0; o < " + outputs_ +
+            "; ++o) out[o] *= " + digits(1.0 / static_cast<double>(tables_.trees.size())) + ";\n" + bounds() +
+            "#undef number\n" + "}\n";
+    return code;
+  }
+
+  std::string bounds() const {
+    if (options_.low.empty()) return {};
+    return "  for (o = 0; o < " + outputs_ + "; ++o) {\n" + "    static const double low[" + outputs_ +
+           "] = " + c_list(std::span<const double>(options_.low), "%.17g") + ";\n" + "    static const double high[" +
+           outputs_ + "] = " + c_list(std::span<const double>(options_.high), "%.17g") + ";\n" +
+           "    if (out[o] < low[o]) out[o] = low[o];\n" + "    if (out[o] > high[o]) out[o] = high[o];\n" + "  }\n";
+  }
+
+  std::string table_descent() const {
+    const std::string threshold = whole_.empty() ? "number(node)" : name_ + "_thresholds[node]";
+    return "    uint32_t node = first, leaf = first_leaf, rest = " + name_ + "_trees[tree], p;\n" +
+           "    first += rest;\n" + "    first_leaf += rest + 1;\n" + "    while (rest != 0) {\n" +
+           "      const uint32_t left = " + name_ + "_nodes[node] / " + inputs_ + ";\n" + "      if (" +
+           (whole_.empty() ? "x" : "in") + "[" + name_ + "_nodes[node] % " + inputs_ + "] > " + threshold + ") {\n" +
+           "        node += left + 1;\n" + "        leaf += left + 1;\n" + "        rest -= left + 1;\n" +
+           "      } else {\n" + "        node += 1;\n" + "        rest = left;\n" + "      }\n" + "    }\n" +
+           "    p = " + (numbers_hold_thresholds() ? std::to_string(tables_.left.size()) + " + " : std::string()) +
+           "leaf * " + leaf_parameters_ + ";\n";
+  }
+
+  std::string branch_descent() const {
+    return "    uint32_t p = " + name_ + "_trees[tree](" + (whole_.empty() ? "x" : "in") + ") * " + leaf_parameters_ +
+           ";\n";
+  }
+
+  const ExportCOptions& options_;
+  std::string name_, inputs_, outputs_, trees_, leaf_code_, leaf_parameters_, head_;
+  std::uint32_t width_;  // number of inputs
+  CTables tables_;
+  std::string whole_;  // the C type of inputs that are whole numbers, or empty
+  std::vector<double> scales_;
+  std::vector<std::int32_t> fixed_;
+};
+
+}  // namespace surefoot::detail

@@ -1,0 +1,49 @@
+// The choice of the integration.
+#include "surefoot/diagnose/estimation/choose_integration.hpp"
+
+#include <doctest/doctest.h>
+
+#include "tests/diagnose/small_simulators.hpp"
+#include "tests/support/walking_robot.hpp"
+
+namespace surefoot::diagnosis {
+namespace {
+
+Integration chosen(double residual_size, double leak) {
+  const BoundSimulator bound = bind_simulator(toys::LeakyTank{}, {toys::tank_recording(0, 100)});
+  Hypothesis hypothesis = nominal_hypothesis(bound);
+  hypothesis.parameters[1] = leak;
+  return choose_integration(bound, hypothesis, Vec<1>(residual_size), bound.integration, 0);
+}
+
+TEST_CASE("a coarse model is integrated coarsely, an exact one finely") {
+  const Integration coarse = chosen(0.1, 1), fine = chosen(1e-12, 1);
+  CHECK(coarse.order == 2);
+  CHECK(coarse.step == doctest::Approx(0.075));  // one step a row, with some slack
+  CHECK(fine.order == 4);
+  CHECK(fine.step == doctest::Approx(0.05 / 8));
+}
+
+TEST_CASE("the error of an integration that is chosen is small against the residuals") {
+  const BoundSimulator bound = bind_simulator(toys::LeakyTank{}, {toys::tank_recording(0, 100)});
+  const Hypothesis nominal = nominal_hypothesis(bound);
+  Integration exact;
+  exact.step = 0.001;
+  const SimulatedRun reference = simulate(bound, nominal, 0, exact);
+  for (const double size : {1e-2, 1e-4, 1e-6}) {
+    const SimulatedRun run = simulate(bound, nominal, 0, chosen(size, 1));
+    CHECK(root_mean_square(run.outputs.row(0) - reference.outputs.row(0)) < 0.06 * size);
+  }
+}
+
+TEST_CASE("a map is left as it is") {
+  const auto walks = toys::walk_recordings([](Pose2 moved, Pose2) { return moved; }, false, 1, 1);
+  const BoundSimulator bound = bind_simulator(toys::WalkingRobot{}, walks);
+  const Integration now = bound.integration;
+  const Integration after = choose_integration(bound, nominal_hypothesis(bound), Vec<3>(1, 1, 1), now, 0);
+  CHECK(after.order == now.order);
+  CHECK(after.step == now.step);
+}
+
+}  // namespace
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,51 @@
+// Hypotheses: their variables, sizes and units.
+#include "surefoot/diagnose/estimation/hypothesis.hpp"
+
+#include <doctest/doctest.h>
+
+#include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/effects/named_effect.hpp"
+#include "tests/diagnose/small_simulators.hpp"
+
+namespace surefoot::diagnosis {
+namespace {
+
+using toys::LeakyTank;
+using toys::SlidingBlock;
+
+TEST_CASE("variables are free parameters, effects and unknown initial states, as far as a fit may change them") {
+  Recording recording = toys::tank_recording(0, 50);
+  recording.initial_scale[0] = 0.1;
+  const BoundSimulator bound = bind_simulator(LeakyTank{}, {recording});
+  Hypothesis hypothesis = nominal_hypothesis(bound);
+  hypothesis.effects.push_back(attach(bound.info, {"constant_rate", "level", {}, {}, {0.1}}, all_effects()));
+  hypothesis.values.push_back(Vec<1>(0.1));
+  const auto kinds = [&](Free free) {
+    std::string text;
+    for (const Variable& one : variables_of(bound, hypothesis, {0}, free)) text += "pei"[static_cast<int>(one.kind)];
+    return text;
+  };
+  CHECK(kinds(Free::everything) == "ppei");
+  CHECK(kinds(Free::all_but_effects) == "ppi");
+  CHECK(kinds(Free::initial_only) == "i");
+  for (const Variable& one : variables_of(bound, hypothesis, {0})) {
+    CHECK(from_search(one, to_search(one, value_of(hypothesis, one))) ==
+          doctest::Approx(value_of(hypothesis, one)).epsilon(1e-12));
+    CHECK(from_search(one, 1e9) == one.high);
+  }
+}
+
+TEST_CASE("units of an effect's parameters are those of what it is attached to") {
+  const BoundSimulator block = bind_simulator(SlidingBlock{}, {toys::blank_recording(SlidingBlock{}.info(), 10, 0.1)});
+  const AttachedEffect friction = attach(block.info, {"coulomb_friction", "v", {}, {}, {1}}, all_effects());
+  CHECK(measure_unit(block, friction, {.effort = 1}) == "N");
+  CHECK(measure_unit(block, friction, {.effort = 1, .value = -1}) == "N/(m/s)");
+  CHECK(measure_unit(block, friction, {}) == "1");
+  BoundSimulator sized = block;
+  sized.sizes.effort[1] = 6;
+  sized.sizes.state[1] = 2;
+  CHECK(measure_size(sized, friction, {.effort = 1, .value = -1}) == doctest::Approx(3));
+}
+
+}  // namespace
+}  // namespace surefoot::diagnosis

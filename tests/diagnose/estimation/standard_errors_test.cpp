@@ -1,0 +1,82 @@
+// Standard errors: what they are worth, and what they say of parameters that trade off.
+#include "surefoot/diagnose/estimation/standard_errors.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
+#include "tests/diagnose/small_simulators.hpp"
+
+namespace surefoot::diagnosis {
+namespace {
+
+using toys::LeakyTank;
+
+FitProblem problem_of(std::size_t recordings, double sigma) {
+  FitProblem problem;
+  for (std::size_t r = 0; r < recordings; ++r) problem.recordings.push_back(r);
+  problem.weighting.sigma.setConstant(1, sigma);
+  problem.max_iterations = 40;
+  problem.tolerance = 1e-14;
+  return problem;
+}
+
+// Tanks with these parameters [m/s, 1/s] and noise [m] that is correlated by `memory` from row to row.
+std::vector<Recording> tanks(int count, Eigen::Index rows, double gain, double leak, double noise = 0,
+                             double memory = 0, std::uint64_t seed = 1) {
+  std::vector<Recording> recordings;
+  for (int r = 0; r < count; ++r) {
+    Recording recording = toys::tank_recording(r, rows);
+    recording.outputs = simulate_augmented(LeakyTank{}, toys::machine({gain, leak}), recording).outputs;
+    Rng rng(seed, static_cast<std::uint64_t>(r));
+    double off = 0;
+    for (double& level : recording.outputs.reshaped()) {
+      off = memory * off + noise * std::sqrt(1 - memory * memory) * rng.normal();
+      level += off;
+    }
+    recordings.push_back(std::move(recording));
+  }
+  return recordings;
+}
+
+// Share of repetitions in which the truth is within two standard errors.
+double coverage(double memory) {
+  int within = 0;
+  constexpr int repetitions = 100;
+  for (int k = 0; k < repetitions; ++k) {
+    const BoundSimulator bound =
+        bind_simulator(LeakyTank{}, tanks(4, 200, 1.5, 0.7, 0.02, memory, 10 + static_cast<std::uint64_t>(k)));
+    const FitProblem problem = problem_of(4, 0.02);
+    const Fit fitted = fit(bound, nominal_hypothesis(bound), problem, serially());
+    const StandardErrors errors = standard_errors(bound, fitted.hypothesis, problem, serially());
+    REQUIRE(errors.deviation.size() == 2);
+    within += std::abs(fitted.hypothesis.parameters[0] - 1.5) < 2 * errors.deviation[0] ? 1 : 0;
+    within += std::abs(fitted.hypothesis.parameters[1] - 0.7) < 2 * errors.deviation[1] ? 1 : 0;
+  }
+  return within / (2.0 * repetitions);
+}
+
+TEST_CASE("two standard errors cover the truth about as often as they should, also where noise is correlated") {
+  for (const double memory : {0.0, 0.6}) {
+    const double covered = coverage(memory);
+    INFO("memory " << memory << ", covered " << covered);
+    CHECK(covered > 0.85);
+    CHECK(covered < 0.995);
+  }
+}
+
+TEST_CASE("parameters that trade off are correlated, and a hypothesis without parameters has no errors") {
+  const BoundSimulator bound = bind_simulator(LeakyTank{}, tanks(2, 200, 1.5, 0.7, 0.02));
+  const StandardErrors errors = standard_errors(bound, nominal_hypothesis(bound), problem_of(2, 0.02), serially());
+  CHECK(errors.correlation(0, 0) == doctest::Approx(1));
+  CHECK(errors.correlation(0, 1) > 0.5);  // more inflow looks like less leakage's opposite
+  BoundSimulator fixed = bound;
+  for (ParameterInfo& parameter : fixed.info.parameters) parameter.fixed = true;
+  CHECK(standard_errors(fixed, nominal_hypothesis(bound), problem_of(2, 0.02), serially()).variables.empty());
+}
+
+}  // namespace
+}  // namespace surefoot::diagnosis

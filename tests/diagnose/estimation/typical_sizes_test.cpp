@@ -1,0 +1,46 @@
+// Typical sizes of outputs, states and forces.
+#include "surefoot/diagnose/estimation/typical_sizes.hpp"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "surefoot/diagnose/estimation/fit.hpp"
+#include "tests/diagnose/small_simulators.hpp"
+
+namespace surefoot::diagnosis {
+namespace {
+
+using toys::SlidingBlock;
+
+TEST_CASE("an output's deviation is that of what was measured, and 1 if it never changes") {
+  Recording recording = toys::blank_recording(SlidingBlock{}.info(), 5, 0.1);
+  recording.outputs.row(0) << 1, 3, std::numeric_limits<double>::quiet_NaN(), 1, 3;
+  recording.outputs.row(1).setConstant(7e3);
+  const Eigen::VectorXd deviations = output_deviations(bind_simulator(SlidingBlock{}, {recording}), {0});
+  CHECK(deviations[0] == doctest::Approx(1));
+  CHECK(deviations[1] == 1);
+}
+
+TEST_CASE("rates are changes by time, and one row alone has none") {
+  const Eigen::MatrixXd states{{0.0, 1.0, 4.0}};
+  CHECK(row_rates(Vec<3>(0, 0.5, 1.5), states).isApprox(Eigen::MatrixXd{{2.0, 3.0}}));
+  CHECK(row_rates(Vec<1>(0), states.leftCols(1)).cols() == 0);
+}
+
+TEST_CASE("sizes are root mean squares along the simulated motion, and peaks its largest values") {
+  Recording recording = toys::blank_recording(SlidingBlock{}.info(), 101, 0.01);
+  recording.inputs.setConstant(2);  // 1 m/s^2 on 2 kg
+  BoundSimulator bound = bind_simulator(SlidingBlock{}, {recording});
+  const Hypothesis nominal = nominal_hypothesis(bound);
+  const Sizes sizes = measure_sizes(bound, nominal, {0}, simulate_all(bound, nominal, {0}, {}, serially()));
+  CHECK(sizes.state[1] == doctest::Approx(std::sqrt(1.0 / 3)).epsilon(0.02));  // of a speed that rises to 1 m/s
+  CHECK(sizes.state_peak[0] == doctest::Approx(0.5).epsilon(0.01));
+  CHECK(sizes.rate[1] == doctest::Approx(1).epsilon(1e-6));
+  CHECK(sizes.effort[1] == doctest::Approx(2).epsilon(1e-6));  // [N]
+  CHECK(sizes.input[0] == doctest::Approx(2));
+  CHECK(sizes.time == doctest::Approx(2));  // 200 rows of 10 ms
+}
+
+}  // namespace
+}  // namespace surefoot::diagnosis

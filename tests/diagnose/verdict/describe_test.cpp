@@ -1,0 +1,106 @@
+// Descriptions: values with intervals, and sentences.
+#include "surefoot/diagnose/verdict/describe.hpp"
+
+#include <doctest/doctest.h>
+
+#include "tests/diagnose/verdict/tank_setup.hpp"
+
+namespace surefoot::diagnosis {
+namespace {
+
+BoundSimulator tank() { return bind_simulator(toys::LeakyTank{}, {toys::tank_recording(0, 50)}); }
+
+// Errors of the two parameters of a tank.
+StandardErrors errors_of(double gain, double leak, double correlation) {
+  StandardErrors errors;
+  errors.variables = {{Variable::Kind::parameter, 0, 0, 0.2, 5, 1, true},
+                      {Variable::Kind::parameter, 1, 0, 0.2, 5, 1, true}};
+  errors.deviation = Vec<2>(gain, leak);
+  errors.correlation = Eigen::Matrix2d{{1, correlation}, {correlation, 1}};
+  return errors;
+}
+
+TEST_CASE("intervals are two-sided 95 % of the standard errors, within the bounds") {
+  const BoundSimulator bound = tank();
+  const auto parameters = calibrated_parameters(bound, nominal_hypothesis(bound), errors_of(0.1, 1, 0));
+  REQUIRE(parameters.size() == 2);
+  CHECK(parameters[0].fit.low == doctest::Approx(1 - 0.196));
+  CHECK(parameters[0].fit.high == doctest::Approx(1.196));
+  CHECK(parameters[1].fit.low == 0.2);
+  CHECK_FALSE(parameters[0].at_bound);
+}
+
+TEST_CASE("a parameter that was fitted to its bound is said to be there") {
+  const BoundSimulator bound = tank();
+  Hypothesis hypothesis = nominal_hypothesis(bound);
+  hypothesis.parameters = Vec<2>(5, 0.2);
+  for (const CalibratedParameter& one : calibrated_parameters(bound, hypothesis, errors_of(0.1, 0.1, 0))) {
+    CHECK(one.at_bound);
+  }
+}
+
+TEST_CASE("pairs of parameters are named if the recordings hardly separate them") {
+  CHECK(correlated_pairs(tank(), errors_of(1, 1, 0.94)).empty());
+  CHECK(correlated_pairs(tank(), errors_of(1, 1, -0.96)) ==
+        std::vector<std::string>{"gain and leak (correlation -0.96)"});
+}
+
+TEST_CASE("an effect is described with its values, its units and its place") {
+  const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks({}, 0.01));
+  const Hypothesis hypothesis = toys::with_effects(setup, {{"constant_rate", "level", {}, {}, {0.2}}});
+  StandardErrors errors = errors_of(0.1, 0.1, 0);
+  errors.variables = {{Variable::Kind::effect, 0, 0, -1, 1, 1, false}};
+  errors.deviation = Vec<1>(0.01);
+  const FoundEffect found = describe(setup.bound, hypothesis, 0, &errors);
+  CHECK(found.name == "constant_rate");
+  CHECK(found.attached_to == "level");
+  REQUIRE(found.parameters.size() == 1);
+  CHECK(found.parameters[0].unit == "m/s");
+  CHECK(found.parameters[0].high == doctest::Approx(0.2 + 0.0196));
+  CHECK(found.sentence.find("0.2 m/s") != std::string::npos);
+  CHECK(describe(setup.bound, hypothesis, 0, nullptr).parameters[0].high == 0.2);
+}
+
+TEST_CASE("every verdict has its sentence") {
+  Diagnosis diagnosis;
+  diagnosis.held_out_before = 2;
+  diagnosis.held_out_after = 0.5;
+  CHECK(verdict_sentence(diagnosis, {}).find("with its nominal parameters") != std::string::npos);
+  diagnosis.verdict = Verdict::parameters_only;
+  CHECK(verdict_sentence(diagnosis, {"lag"}).find("with calibrated parameters") != std::string::npos);
+  FoundEffect effect;
+  effect.sentence = "a leak";
+  diagnosis.effects = {effect};
+  diagnosis.verdict = Verdict::missing_physics;
+  CHECK(verdict_sentence(diagnosis, {"lag"}) ==
+        "Left out of the model: a leak. With that, the error on held-out recordings falls by 75 %. These recordings "
+        "cannot tell it from lag.");
+  diagnosis.verdict = Verdict::unexplained;
+  diagnosis.regions = {{.rule = "level > 2 m"}};
+  CHECK(verdict_sentence(diagnosis, {"lag"}) ==
+        "The model leaves something out that no known effect explains; a part of it: a leak; it shows where level > 2 "
+        "m.");
+}
+
+TEST_CASE("the next experiment shows one effect, or the other if it has its own") {
+  const auto one = [](const std::string& name, const std::string& experiment) {
+    Effect effect;
+    effect.name = name;
+    effect.experiment = experiment;
+    Hypothesis hypothesis;
+    hypothesis.effects.push_back({std::make_shared<const Effect>(effect)});
+    return hypothesis;
+  };
+  CHECK(next_experiment(one("lag", "step the input"), one("delay", "send pulses")) ==
+        "step the input: separates lag from delay; or send pulses");
+  CHECK(next_experiment(one("lag", "step the input"), one("delay", "step the input")) ==
+        "step the input: separates lag from delay");
+}
+
+TEST_CASE("each kind of noise is told apart") {
+  CHECK(noise_sentence(NoiseKind::measurement) != noise_sentence(NoiseKind::process));
+  CHECK(noise_sentence(NoiseKind::process) != noise_sentence(NoiseKind::final_pose));
+}
+
+}  // namespace
+}  // namespace surefoot::diagnosis

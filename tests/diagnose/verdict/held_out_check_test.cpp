@@ -1,0 +1,68 @@
+// The final check on held-out recordings.
+#include "surefoot/diagnose/verdict/held_out_check.hpp"
+
+#include <doctest/doctest.h>
+
+#include "tests/diagnose/verdict/tank_setup.hpp"
+
+namespace surefoot::diagnosis {
+namespace {
+
+const HeldOutCriteria criteria;
+const std::vector<NamedEffect> rate{{"constant_rate", "level", {}, {}, {0.2}}};
+
+TEST_CASE("effects are confirmed if they lower the error, and do not raise that of whole recordings") {
+  CHECK(confirmed({1, 1}, {0.97, 1.01}, criteria));
+  CHECK_FALSE(confirmed({1, 1}, {0.99, 0.5}, criteria));
+  CHECK_FALSE(confirmed({1, 1}, {0.5, 1.03}, criteria));
+}
+
+Selection selection_of(const EstimationSetup& setup, const std::vector<NamedEffect>& effects) {
+  Selection selection;
+  selection.nominal.hypothesis = nominal_hypothesis(setup.bound);
+  selection.chosen.hypothesis = toys::with_effects(setup, effects);
+  return selection;
+}
+
+TEST_CASE("a choice that held-out recordings confirm is kept") {
+  const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(rate, 0.01));
+  const FittedModel calibrated = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
+  const CheckedChoice choice = check_on_held_out(setup, calibrated, selection_of(setup, rate), criteria, serially());
+  CHECK_FALSE(choice.rejected);
+  CHECK(choice.chosen.hypothesis.effects.size() == 1);
+  CHECK(held_out_errors(setup, choice.chosen).weighted < 0.3 * held_out_errors(setup, calibrated).weighted);
+}
+
+TEST_CASE("a choice that they do not confirm is rejected, and becomes the alternative to none") {
+  const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks({}, 0.01));
+  const FittedModel calibrated = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
+  const CheckedChoice choice = check_on_held_out(setup, calibrated, selection_of(setup, rate), criteria, serially());
+  CHECK(choice.rejected);
+  CHECK(choice.chosen.hypothesis.effects.empty());
+  CHECK(choice.selection.chosen.hypothesis.effects.empty());
+  REQUIRE(choice.selection.alternatives.size() == 1);
+  CHECK(choice.selection.alternatives[0].hypothesis.effects[0].effect->name == "constant_rate");
+}
+
+TEST_CASE("where nothing was chosen nothing is rejected") {
+  const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks({}, 0.01));
+  const FittedModel calibrated = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
+  CHECK_FALSE(check_on_held_out(setup, calibrated, selection_of(setup, {}), criteria, serially()).rejected);
+}
+
+TEST_CASE("what effects leave beyond noise is a share of what there was, and counts in units of the noise") {
+  EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(rate, 0.01));
+  setup.bound.info.outputs[0].noise = 0.01;
+  const FittedModel calibrated = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
+  const auto excess = [&](double value) {
+    const auto half = toys::with_effects(setup, {{"constant_rate", "level", {}, {}, {value}}});
+    return held_out_excess(setup, calibrated, fitted_model(setup, half, serially()), criteria);
+  };
+  CHECK(excess(0.2).share < 0.01);
+  CHECK(excess(0.2).ratio == doctest::Approx(1).epsilon(0.1));
+  CHECK(excess(0.1).share == doctest::Approx(0.25).epsilon(0.1));  // half the error, a quarter of its square
+  CHECK(excess(0.1).ratio > 3);
+}
+
+}  // namespace
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,117 @@
+// The stages of a diagnosis, one by one and together.
+#include "surefoot/diagnose/verdict/pipeline.hpp"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "surefoot/diagnose/diagnose.hpp"
+#include "tests/diagnose/verdict/tank_setup.hpp"
+
+namespace surefoot::diagnosis {
+namespace {
+
+const std::vector<NamedEffect> rate{{"constant_rate", "level", {}, {}, {0.2}}};
+const BindSimulator bind_tank = [](std::vector<Recording> recordings) {
+  return bind_simulator(toys::LeakyTank{}, std::move(recordings));
+};
+
+TEST_CASE("recordings are checked, freed of outliers, and remarked upon") {
+  auto recordings = toys::noisy_tanks({}, 0.01, 2);
+  recordings[1].outputs(0, 50) = 1000;
+  const auto remarks = screen_recordings(toys::LeakyTank{}.info(), recordings);
+  CHECK(std::isnan(recordings[1].outputs(0, 50)));
+  REQUIRE_FALSE(remarks.empty());
+  CHECK(remarks.front().recording == "tank 1");
+  std::vector<Recording> none;
+  CHECK_THROWS_AS(screen_recordings(toys::LeakyTank{}.info(), none), DiagnoseError);
+}
+
+TEST_CASE("few recordings are cut, unless those to hold out are named; one short recording is refused") {
+  DiagnoseOptions options;
+  options.starts = 2;
+  const Parallel parallel = serially();
+  const RunContext run{options, parallel};
+  CHECK(cut_few_recordings(bind_tank, toys::noisy_tanks({}, 0.01, 2), run).size() == 6);
+  CHECK(cut_few_recordings(bind_tank, toys::noisy_tanks({}, 0.01, 4), run).size() == 4);
+  options.held_out = {"tank 1"};
+  CHECK(cut_few_recordings(bind_tank, toys::noisy_tanks({}, 0.01, 2), run).size() == 2);
+  options.held_out = {};
+  auto short_one = toys::noisy_tanks({}, 0.01, 1);
+  short_one[0] = part_of(short_one[0], 0, 50, short_one[0].initial, short_one[0].initial_scale);
+  CHECK_THROWS_AS(cut_few_recordings(bind_tank, short_one, run), DiagnoseError);
+}
+
+TEST_CASE("what is held out takes no part in the fit") {
+  DiagnoseOptions options;
+  options.held_out = {"tank 2"};
+  const Parallel parallel = serially();
+  const EstimationSetup setup = hold_out_recordings(bind_tank, toys::noisy_tanks({}, 0.01), {options, parallel});
+  CHECK(setup.split.held_out == std::vector<std::size_t>{2});
+  CHECK(setup.problem.recordings == std::vector<std::size_t>{0, 1, 3, 4, 5});
+}
+
+TEST_CASE("candidates are the effects that were asked for, at every place that they fit") {
+  DiagnoseOptions options;
+  options.effects = {"constant_rate", "sensor_bias", "wind"};
+  options.more_effects = {{.name = "wind", .place = Place::state}};
+  options.starts = 2;
+  const Parallel parallel = serially();
+  const RunContext run{options, parallel};
+  EstimationSetup setup = hold_out_recordings(bind_tank, toys::noisy_tanks({}, 0.01), run);
+  const Calibration calibration = calibrate_model(setup, run);
+  std::string labels;
+  for (const AttachedEffect& one : candidate_effects(setup, calibration, run)) labels += one.label() + "; ";
+  CHECK(labels.find("constant_rate at level; ") != std::string::npos);
+  CHECK(labels.find("sensor_bias at level_m; ") != std::string::npos);
+  CHECK(labels.find("wind at level; ") != std::string::npos);
+  CHECK(labels.find("leak") == std::string::npos);
+  setup.noise = NoiseKind::process;  // rows start from readings: no fault of a sensor can be seen
+  for (const AttachedEffect& one : candidate_effects(setup, calibration, run)) {
+    CHECK(one.effect->place != Place::output);
+  }
+}
+
+TEST_CASE("small problems get a longer list of proposals, and the search ends when its time is over") {
+  DiagnoseOptions options;
+  const Parallel parallel = serially();
+  const EstimationSetup setup = hold_out_recordings(bind_tank, toys::noisy_tanks({}, 0.01), {options, parallel});
+  const SearchProblem problem = search_problem(setup, {options, parallel});
+  CHECK(problem.effort.shortlist == 50);
+  CHECK(problem.screened.size() <= 5);
+  CHECK_FALSE(problem.stopped());
+  options.max_seconds = 1e-9;
+  CHECK(search_problem(setup, {options, parallel}).stopped());
+}
+
+TEST_CASE("the pipeline names what is missing, and tells how far it is") {
+  DiagnoseOptions options;
+  options.effects = {"constant_rate", "sensor_drift"};
+  options.starts = 4;
+  std::vector<double> shares;
+  options.on_progress = [&](std::string_view, double share, std::string_view) { shares.push_back(share); };
+  const Diagnosis diagnosis = diagnose(toys::LeakyTank{}, toys::noisy_tanks(rate, 0.01), options, Serial{}, 1);
+  CHECK(diagnosis.verdict == Verdict::missing_physics);
+  REQUIRE(diagnosis.effects.size() == 1);
+  CHECK(diagnosis.effects[0].name == "constant_rate");
+  CHECK(diagnosis.effects[0].parameters[0].value == doctest::Approx(0.2).epsilon(0.1));
+  CHECK(diagnosis.complete);
+  CHECK(shares.front() == 0);
+  CHECK(shares.back() == 1);
+  for (std::size_t i = 1; i < shares.size(); ++i) CHECK(shares[i] >= shares[i - 1]);
+}
+
+TEST_CASE("effects that are part of the model already are calibrated with it, and not found again") {
+  DiagnoseOptions options;
+  options.effects = {"constant_rate", "sensor_drift"};
+  options.known = {{"constant_rate", "level", {}, {}, {0.1}}};
+  options.starts = 4;
+  const Diagnosis diagnosis = diagnose(toys::LeakyTank{}, toys::noisy_tanks(rate, 0.01), options, Serial{}, 1);
+  CHECK(diagnosis.effects.empty());
+  CHECK_FALSE(diagnosis.limits.empty());
+  REQUIRE(diagnosis.known_effects.size() == 1);
+  CHECK(diagnosis.known_effects[0].parameters[0].value == doctest::Approx(0.2).epsilon(0.1));
+}
+
+}  // namespace
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,46 @@
+// Preparation of recordings.
+#include "surefoot/diagnose/verdict/prepare.hpp"
+
+#include <doctest/doctest.h>
+
+#include "tests/diagnose/verdict/tank_setup.hpp"
+#include "tests/support/servo_pendulum.hpp"
+
+namespace surefoot::diagnosis {
+namespace {
+
+TEST_CASE("cuts keep every row once, and parts start from what was measured there") {
+  const BoundSimulator bound = bind_simulator(toys::LeakyTank{}, toys::noisy_tanks({}, 0.01, 1));
+  const Hypothesis nominal = nominal_hypothesis(bound);
+  const auto runs = simulate_all(bound, nominal, {0}, {}, serially());
+  const std::vector<Recording> parts = cut_recordings(bound, nominal, runs, 5);
+  REQUIRE(parts.size() == 5);
+  Eigen::Index rows = 0;
+  for (const Recording& part : parts) {
+    if (rows > 0) CHECK(part.initial[0] == bound.recordings[0].outputs(0, rows));
+    CHECK((part.initial_scale[0] > 0) == (rows > 0));  // the first start is known
+    rows += part.rows();
+  }
+  CHECK(rows == 120);
+  CHECK(cut_recordings(bound, nominal, runs, 7).empty());  // of 17 rows each: too short
+}
+
+TEST_CASE("an initial state that was read off a sensor is known as well as that sensor reads") {
+  auto recordings = toys::servo_recordings(toys::machine({1.4, 3.9, 0.014}), 3, 20);
+  for (const std::size_t r : {0U, 1U}) recordings[r].initial[0] = recordings[r].outputs(0, 0);
+  BoundSimulator bound = bind_simulator(toys::ServoPendulum{}, recordings);
+  free_measured_initial_states(bound, {0, 1, 2});
+  for (const std::size_t r : {0U, 1U}) {
+    CHECK(bound.recordings[r].initial_scale[0] == doctest::Approx(0.001).epsilon(0.5));
+    CHECK(bound.recordings[r].initial_scale[1] == 0);
+  }
+  CHECK(bound.recordings[2].initial_scale[0] == 0);  // known from elsewhere
+}
+
+TEST_CASE("some of many recordings are chosen evenly, and few are left as they are") {
+  CHECK(some_of({3, 5, 7}, 5) == std::vector<std::size_t>{3, 5, 7});
+  CHECK(some_of({0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, 5) == std::vector<std::size_t>{0, 2, 4, 6, 8});
+}
+
+}  // namespace
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,130 @@
+// The verdict on hand-made evidence: one case for every branch.
+#include "surefoot/diagnose/verdict/verdict.hpp"
+
+#include <doctest/doctest.h>
+
+namespace surefoot::diagnosis {
+namespace {
+
+const VerdictCriteria criteria;
+
+Verdict verdict_on(const VerdictEvidence& evidence) { return decide(evidence, criteria); }
+
+// Residuals that hold so much structure that nothing but effects could excuse it.
+VerdictEvidence structured(double share) {
+  VerdictEvidence evidence;
+  evidence.structure_p_value = 1e-6;
+  evidence.structure_share = share;
+  evidence.structure_energy = 1;
+  return evidence;
+}
+
+TEST_CASE("a model whose calibration changes nothing, and that leaves noise alone, is adequate") {
+  CHECK(verdict_on({}) == Verdict::adequate);
+  VerdictEvidence evidence;
+  evidence.calibration_gain = 0.5;
+  evidence.calibration_t = 1.9;
+  CHECK(verdict_on(evidence) == Verdict::adequate);  // large, but may be chance
+  evidence.calibration_gain = 0.019;
+  evidence.calibration_t = 50;
+  CHECK(verdict_on(evidence) == Verdict::adequate);  // sure, but too small
+}
+
+TEST_CASE("a model that only its calibration makes agree lacks parameters only") {
+  VerdictEvidence evidence;
+  evidence.calibration_gain = 0.03;
+  evidence.calibration_t = 3;
+  CHECK(verdict_on(evidence) == Verdict::parameters_only);
+}
+
+TEST_CASE("effects that leave noise alone are the missing physics, whatever the calibration did") {
+  VerdictEvidence evidence;
+  evidence.effects_found = true;
+  CHECK(verdict_on(evidence) == Verdict::missing_physics);
+  evidence.calibration_gain = 0.5;
+  evidence.calibration_t = 9;
+  CHECK(verdict_on(evidence) == Verdict::missing_physics);
+}
+
+TEST_CASE("structure in the residuals is unexplained if it is sure and large") {
+  CHECK(verdict_on(structured(0.13)) == Verdict::unexplained);
+  CHECK(verdict_on(structured(0.11)) == Verdict::adequate);
+  VerdictEvidence by_chance = structured(0.9);
+  by_chance.structure_p_value = 0.002;
+  CHECK(verdict_on(by_chance) == Verdict::adequate);
+}
+
+TEST_CASE("beside effects more structure is tolerated, and all of it if they took most away") {
+  VerdictEvidence evidence = structured(0.29);
+  evidence.effects_found = true;
+  CHECK(verdict_on(evidence) == Verdict::missing_physics);
+  evidence.structure_share = 0.31;
+  CHECK(verdict_on(evidence) == Verdict::unexplained);
+  evidence.structure_energy = 0.19;
+  CHECK(verdict_on(evidence) == Verdict::missing_physics);
+}
+
+TEST_CASE("where process noise accumulates no more structure is tolerated beside effects than without them") {
+  VerdictEvidence evidence = structured(0.13);
+  evidence.effects_found = true;
+  evidence.noise = NoiseKind::process;
+  CHECK(verdict_on(evidence) == Verdict::unexplained);
+}
+
+TEST_CASE("effects that leave much more than noise of the held-out recordings do not explain them") {
+  VerdictEvidence evidence;
+  evidence.effects_found = true;
+  evidence.held_out_share = 0.21;
+  evidence.held_out_ratio = 3.1;
+  CHECK(verdict_on(evidence) == Verdict::unexplained);
+  evidence.held_out_ratio = 2.9;
+  CHECK(verdict_on(evidence) == Verdict::missing_physics);
+  evidence.held_out_ratio = 30;
+  evidence.held_out_share = 0.19;
+  CHECK(verdict_on(evidence) == Verdict::missing_physics);
+  evidence.held_out_share = 1;
+  evidence.effects_found = false;  // then there is nothing that should have explained it
+  CHECK(verdict_on(evidence) == Verdict::adequate);
+}
+
+TEST_CASE("steps whose errors can be predicted, from the motion or by place, are unexplained") {
+  VerdictEvidence evidence;
+  evidence.noise = NoiseKind::process;
+  for (PredictionEvidence VerdictEvidence::*test : {&VerdictEvidence::prediction, &VerdictEvidence::by_place}) {
+    evidence.*test = {.gain = 0.04, .p_value = 0.004};
+    CHECK(verdict_on(evidence) == Verdict::unexplained);
+    evidence.*test = {.gain = 0.02, .p_value = 0.004};
+    CHECK(verdict_on(evidence) == Verdict::adequate);
+    evidence.*test = {.gain = 0.04, .p_value = 0.006};
+    CHECK(verdict_on(evidence) == Verdict::adequate);
+    evidence.*test = {};
+  }
+}
+
+TEST_CASE("tests of single steps say nothing where whole recordings are simulated") {
+  VerdictEvidence evidence;
+  evidence.prediction = {.gain = 0.9, .p_value = 1e-9};
+  CHECK(verdict_on(evidence) == Verdict::adequate);
+}
+
+TEST_CASE("of final poses only the test of whole sequences counts") {
+  VerdictEvidence evidence = structured(0.9);
+  evidence.noise = NoiseKind::final_pose;
+  evidence.prediction = {.gain = 0.9, .p_value = 1e-9};
+  CHECK(verdict_on(evidence) == Verdict::adequate);
+  evidence.sequence_p_value = 0.004;
+  CHECK(verdict_on(evidence) == Verdict::unexplained);
+  evidence.effects_found = true;
+  evidence.sequence_p_value = 0.006;
+  CHECK(verdict_on(evidence) == Verdict::missing_physics);
+}
+
+TEST_CASE("criteria are what decides, and may be others") {
+  VerdictCriteria strict;
+  strict.tolerated_share = 0.01;
+  CHECK(decide(structured(0.05), criteria) == Verdict::adequate);
+  CHECK(decide(structured(0.05), strict) == Verdict::unexplained);
+}
+
+}  // namespace
+}  // namespace surefoot::diagnosis
