@@ -32,8 +32,7 @@ struct ResidualModel {
 
 namespace detail {
 
-constexpr std::string_view residual_magic = "SUREFRES";
-constexpr std::uint32_t residual_version = 1;
+constexpr FileFormat residual_format{"SUREFRES", 1, "a residual model"};
 
 }  // namespace detail
 
