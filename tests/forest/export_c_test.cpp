@@ -14,6 +14,8 @@
 
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/executor.hpp"
+#include "surefoot/forest/c/c_fixed_point.hpp"
+#include "surefoot/forest/c/c_tables.hpp"
 #include "surefoot/forest/extra_trees.hpp"
 #include "tests/forest/samples.hpp"
 

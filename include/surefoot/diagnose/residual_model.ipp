@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "surefoot/core/binary.hpp"
@@ -21,15 +20,13 @@ namespace surefoot {
 
 namespace detail {
 
-inline constexpr std::string_view residual_magic = "SUREFRES";
-inline constexpr std::uint32_t residual_version = 1;
+inline constexpr FileFormat residual_format{"SUREFRES", 1, "a residual model"};
 
 }  // namespace detail
 
 SUREFOOT_INLINE void save_residual_model(const ResidualModel& model, const std::filesystem::path& path) {
   ByteWriter out;
-  out.raw(std::as_bytes(std::span(detail::residual_magic)));
-  out.u32(detail::residual_version);
+  write_format(out, detail::residual_format);
   out.u32(static_cast<std::uint32_t>(model.features.size()));
   out.u32(static_cast<std::uint32_t>(model.outputs.size()));
   for (const std::string& name : model.features) out.text(name);
@@ -43,14 +40,7 @@ SUREFOOT_INLINE void save_residual_model(const ResidualModel& model, const std::
 SUREFOOT_INLINE ResidualModel load_residual_model(const std::filesystem::path& path) {
   const Bytes bytes = read_file(path);
   ByteReader in(bytes, "file " + path.string());
-  const auto magic = in.raw(detail::residual_magic.size());
-  if (!std::ranges::equal(magic, std::as_bytes(std::span(detail::residual_magic)))) {
-    in.fail("is not a residual model: it must start with \"" + std::string(detail::residual_magic) + "\"");
-  }
-  if (const std::uint32_t version = in.u32(); version != detail::residual_version) {
-    in.fail("has format version " + std::to_string(version) + ", this library reads version " +
-            std::to_string(detail::residual_version));
-  }
+  expect_format(in, detail::residual_format);
   const std::uint32_t features = in.u32(), outputs = in.u32();
   ResidualModel model;
   for (std::uint32_t i = 0; i < features; ++i) model.features.push_back(in.text());

@@ -12,6 +12,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
 #include "surefoot/diagnose/estimation/noise_regime.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -27,8 +28,10 @@ SUREFOOT_INLINE Eigen::MatrixX3d step_correlations(const BoundSimulator& bound, 
     if (!trajectory.finite || bound.recordings[r].rows() < 5) continue;
     for (Eigen::Index k = 0; k < outputs; ++k) {
       Eigen::RowVectorXd off = trajectory.outputs.row(k) - bound.recordings[r].outputs.row(k);
-      if (bound.wrapped[static_cast<std::size_t>(k)]) off = off.unaryExpr(&wrap_angle);
-      off = off.tail(off.size() - 1).unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; }).eval();
+      const bool wrapped = bound.wrapped[static_cast<std::size_t>(k)];
+      for (double& value : off) value = wrapped ? wrap_angle(value) : value;
+      off = off.tail(off.size() - 1).eval();
+      for (double& value : off) value = std::isfinite(value) ? value : 0.0;
       off.array() -= off.mean();
       for (Eigen::Index lag = 1; lag <= 3; ++lag) {
         products(k, lag - 1) += off.tail(off.size() - lag).dot(off.head(off.size() - lag));
@@ -36,7 +39,10 @@ SUREFOOT_INLINE Eigen::MatrixX3d step_correlations(const BoundSimulator& bound, 
       squares[k] += off.squaredNorm();
     }
   }
-  return products.array().colwise() / squares.array().max(1e-300);
+  for (Eigen::Index k = 0; k < outputs; ++k) {
+    for (Eigen::Index lag = 0; lag < 3; ++lag) products(k, lag) /= std::max(squares[k], 1e-300);
+  }
+  return products;
 }
 
 SUREFOOT_INLINE bool only_final_pose(const BoundSimulator& bound) {
@@ -113,7 +119,8 @@ SUREFOOT_INLINE Eigen::Vector4d most_likely_variances(const std::vector<FinalRes
       const FinalResiduals& s = sequences[r];
       if (s.off.size() == 0 || !s.off.allFinite()) continue;
       const Eigen::LDLT<Eigen::MatrixXd> ldlt(covariance_of(s, logarithms.array().exp().matrix()));
-      sum += ldlt.vectorD().array().max(1e-30).log().sum() + s.off.dot(ldlt.solve(s.off));
+      const Eigen::VectorXd solved = ldlt.solve(s.off);
+      sum += ldlt.vectorD().array().max(1e-30).log().sum() + s.off.dot(solved);
     }
     return sum;
   };
@@ -150,8 +157,10 @@ SUREFOOT_INLINE std::vector<Eigen::MatrixXd> final_pose_whitening(const BoundSim
   for (std::size_t r = 0; r < sequences.size(); ++r) {
     const auto count = sequences[r].off.size();
     if (count == 0) continue;
-    const Eigen::LLT<Eigen::MatrixXd> llt(covariance_of(sequences[r], best.array().exp().matrix()));
-    whitening[r] = llt.matrixL().solve(Eigen::MatrixXd::Identity(count, count));
+    Eigen::MatrixXd factor = covariance_of(sequences[r], best.array().exp().matrix());
+    surefoot::detail::factorise_in_place(factor);
+    whitening[r] = Eigen::MatrixXd::Identity(count, count);
+    factor.triangularView<Eigen::Lower>().solveInPlace(whitening[r]);
   }
   return whitening;
 }

@@ -1,7 +1,6 @@
 // Definitions of surefoot/diagnose/estimation/standard_errors.hpp.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -11,8 +10,18 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
 #include "surefoot/diagnose/estimation/standard_errors.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
+
+/// Row and column i times scale[i].
+SUREFOOT_INLINE Eigen::MatrixXd scaled_by(const Eigen::VectorXd& scale, const Eigen::MatrixXd& matrix) {
+  Eigen::MatrixXd result = matrix;
+  for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) result(i, j) = scale[i] * matrix(i, j) * scale[j];
+  }
+  return result;
+}
 
 SUREFOOT_INLINE StandardErrors standard_errors(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                                const FitProblem& problem, const Parallel& parallel) {
@@ -26,28 +35,34 @@ SUREFOOT_INLINE StandardErrors standard_errors(const BoundSimulator& bound, cons
   const Eigen::VectorXd residuals = functions.residuals(z);
   const Eigen::MatrixXd jacobian = functions.jacobian(z, residuals);
   Eigen::MatrixXd hessian = jacobian.transpose() * jacobian, gradients = Eigen::MatrixXd::Zero(count, count);
-  const Eigen::VectorXd scale = hessian.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+  Eigen::VectorXd scale = hessian.diagonal();
+  for (double& value : scale) value = value > 0 ? 1 / std::sqrt(value) : 0.0;
   double blocks = 0;
   for (std::size_t i = 0; i + 1 < functions.begin().size(); ++i) {
     const Eigen::Index from = functions.begin()[i], length = functions.begin()[i + 1] - from;
     const Eigen::Index parts = std::clamp<Eigen::Index>(length / block_rows, 1, most_blocks);
     for (Eigen::Index part = 0; part < parts; ++part) {
       const Eigen::Index a = from + length * part / parts, b = from + length * (part + 1) / parts;
-      const Eigen::VectorXd gradient =
-          scale.cwiseProduct(jacobian.middleRows(a, b - a).transpose() * residuals.segment(a, b - a));
+      const Eigen::MatrixXd rows = jacobian.middleRows(a, b - a);
+      const Eigen::VectorXd off = residuals.segment(a, b - a);
+      Eigen::VectorXd gradient = rows.transpose() * off;
+      for (Eigen::Index k = 0; k < count; ++k) gradient[k] *= scale[k];
       gradients += gradient * gradient.transpose();
       ++blocks;
     }
   }
-  Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
+  Eigen::MatrixXd scaled = scaled_by(scale, hessian);
   scaled.diagonal().array() += ridge;
-  const Eigen::MatrixXd inverse = scaled.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
-  Eigen::MatrixXd covariance = inverse * gradients * inverse * (blocks / std::max(1.0, blocks - 1));
-  covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
+  const Eigen::MatrixXd inverse = surefoot::detail::invert_symmetric(scaled);
+  const Eigen::MatrixXd half = inverse * gradients;
+  Eigen::MatrixXd covariance = half * inverse;
+  covariance *= blocks / std::max(1.0, blocks - 1);
+  covariance = scaled_by(scale, covariance);
   result.deviation.resize(count);
-  result.correlation = scale.asDiagonal() * inverse * scale.asDiagonal();
-  Eigen::VectorXd norm = result.correlation.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  result.correlation = norm.asDiagonal() * result.correlation * norm.asDiagonal();
+  result.correlation = scaled_by(scale, inverse);
+  Eigen::VectorXd norm = result.correlation.diagonal();
+  for (double& value : norm) value = 1 / std::sqrt(std::max(value, 1e-300));
+  result.correlation = scaled_by(norm, result.correlation);
   Hypothesis copy = hypothesis;
   for (Eigen::Index i = 0; i < count; ++i) {
     const Variable& variable = result.variables[static_cast<std::size_t>(i)];

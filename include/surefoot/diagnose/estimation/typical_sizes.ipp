@@ -36,9 +36,12 @@ SUREFOOT_INLINE Eigen::VectorXd output_deviations(const BoundSimulator& bound,
 
 SUREFOOT_INLINE Eigen::MatrixXd row_rates(const Eigen::VectorXd& time, const Eigen::MatrixXd& states) {
   const Eigen::Index intervals = std::max<Eigen::Index>(0, states.cols() - 1);
-  const Eigen::VectorXd steps = time.tail(intervals) - time.head(intervals);
-  const Eigen::MatrixXd changes = states.rightCols(intervals) - states.leftCols(intervals);
-  return changes * steps.cwiseInverse().asDiagonal();
+  Eigen::MatrixXd rates(states.rows(), intervals);
+  for (Eigen::Index j = 0; j < intervals; ++j) {
+    const double per_second = 1 / (time[j + 1] - time[j]);
+    for (Eigen::Index i = 0; i < states.rows(); ++i) rates(i, j) = (states(i, j + 1) - states(i, j)) * per_second;
+  }
+  return rates;
 }
 
 /// Raises each peak to the largest absolute value of its row.
@@ -55,7 +58,7 @@ SUREFOOT_INLINE void add_squares(std::vector<double>& sums, const Eigen::MatrixX
                                  bool about_mean) {
   for (std::size_t k = 0; k < sums.size(); ++k) {
     const auto line = values.row(static_cast<Eigen::Index>(k));
-    const double size = about_mean ? spread(line) : root_mean_square(line);
+    const double size = about_mean ? standard_deviation(line) : root_mean_square(line);
     sums[k] += weight * size * size;
   }
 }

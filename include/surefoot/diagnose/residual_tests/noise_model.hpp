@@ -1,4 +1,4 @@
-// A model of noise: its size may grow with speed, and it may be correlated from row to row.
+// Model of noise: its size may grow with speed, and it may be correlated from row to row.
 //
 //   r = s e,   s^2 = rest^2 + (growth v)^2,   e = sqrt(share) x + sqrt(1 - share) w
 //
@@ -7,7 +7,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -109,6 +108,9 @@ double total_log_likelihood(const ResidualNoise& model, const std::vector<NoiseS
 /// Climbs the likelihood from z on, in steps along the coordinates from `width` down to `least`.
 double climb(const NoiseCoordinates& coordinates, const std::vector<NoiseSeries>& series, Eigen::VectorXd& z,
              double width, double least);
+
+/// By elimination with row pivots, O(n^3): for matrices of a few rows.
+Eigen::MatrixXd inverse_of_small(Eigen::MatrixXd a);
 
 /// Maximum likelihood by a coordinate search, from short and from long correlation; some hundred passes.
 NoiseFit fit_noise(const std::vector<NoiseSeries>& series, ResidualNoiseShape shape);

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -71,6 +71,37 @@ SUREFOOT_INLINE double climb(const NoiseCoordinates& coordinates, const std::vec
   return most;
 }
 
+SUREFOOT_INLINE Eigen::MatrixXd inverse_of_small(Eigen::MatrixXd a) {
+  const Eigen::Index n = a.rows();
+  Eigen::MatrixXd result = Eigen::MatrixXd::Identity(n, n);
+  for (Eigen::Index k = 0; k < n; ++k) {  // a = P L U, in place; the same exchanges of rows in the result
+    Eigen::Index pivot = k;
+    for (Eigen::Index i = k + 1; i < n; ++i) {
+      if (std::abs(a(i, k)) > std::abs(a(pivot, k))) pivot = i;
+    }
+    if (a(pivot, k) != 0) {
+      for (Eigen::Index j = 0; j < n && pivot != k; ++j) {
+        std::swap(a(k, j), a(pivot, j));
+        std::swap(result(k, j), result(pivot, j));
+      }
+      for (Eigen::Index i = k + 1; i < n; ++i) a(i, k) /= a(k, k);
+    }
+    for (Eigen::Index j = k + 1; j < n; ++j) {
+      for (Eigen::Index i = k + 1; i < n; ++i) a(i, j) -= a(i, k) * a(k, j);
+    }
+  }
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index k = 0; k < n; ++k) {
+      for (Eigen::Index i = k + 1; i < n; ++i) result(i, j) -= result(k, j) * a(i, k);
+    }
+    for (Eigen::Index k = n - 1; k >= 0; --k) {
+      result(k, j) *= 1 / a(k, k);
+      for (Eigen::Index i = 0; i < k; ++i) result(i, j) -= result(k, j) * a(i, k);
+    }
+  }
+  return result;
+}
+
 SUREFOOT_INLINE NoiseFit fit_noise(const std::vector<NoiseSeries>& series, ResidualNoiseShape shape) {
   const NoiseCoordinates coordinates(shape, series);
   NoiseFit best{.shape = shape};
@@ -104,7 +135,7 @@ SUREFOOT_INLINE NoiseFit fit_noise(const std::vector<NoiseSeries>& series, Resid
                        (4 * h * h);
     }
   }
-  const Eigen::MatrixXd covariance = curvature.inverse();
+  const Eigen::MatrixXd covariance = inverse_of_small(curvature);
   const auto half = [](double variance) { return 1.96 * std::sqrt(std::clamp(variance, 0.0, 4.0)); };
   const auto around = [&](double ResidualNoise::*number, double width) {
     best.low.*number = best.model.*number * std::exp(-width);

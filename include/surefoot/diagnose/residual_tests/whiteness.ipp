@@ -38,8 +38,8 @@ SUREFOOT_INLINE Eigen::VectorXd lagged_products(const std::vector<Eigen::VectorX
 
 SUREFOOT_INLINE double chi_square_tail(double value, double mean, double variance) {
   if (!(mean > 0) || !(variance > 0)) return 1;
-  const double spread = variance / (9 * mean * mean);  // 2 / (9 k), for k = 2 mean^2 / variance degrees of freedom
-  return normal_tail((std::cbrt(value / mean) - (1 - spread)) / std::sqrt(spread));
+  const double relative = variance / (9 * mean * mean);  // 2 / (9 k), for k = 2 mean^2 / variance degrees of freedom
+  return normal_tail((std::cbrt(value / mean) - (1 - relative)) / std::sqrt(relative));
 }
 
 SUREFOOT_INLINE WhitenessTest test_whiteness(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
@@ -65,12 +65,14 @@ SUREFOOT_INLINE WhitenessTest test_whiteness(const BoundSimulator& bound, const 
   if (to < from || longest < 6 * from) return result;
   double squares = 0;
   for (Eigen::VectorXd& series : all) {
-    series = series.unaryExpr(
-        [&](double v) { return std::isfinite(v) ? std::clamp(v, -5 * result.rms, 5 * result.rms) : 0.0; });
+    for (double& value : series) {
+      value = std::isfinite(value) ? std::clamp(value, -5 * result.rms, 5 * result.rms) : 0.0;
+    }
     squares += series.squaredNorm();
   }
   if (!(squares > 0)) return result;
-  const Eigen::VectorXd correlation = lagged_products(all, from, to) / squares;
+  Eigen::VectorXd correlation = lagged_products(all, from, to);
+  correlation /= squares;
   Rng rng(1);
   double mean = 0, variance = 0;
   std::vector<double> nulls;
@@ -79,10 +81,13 @@ SUREFOOT_INLINE WhitenessTest test_whiteness(const BoundSimulator& bound, const 
     for (std::size_t i = 0; i < all.size(); ++i) {
       for (Eigen::Index row = 0; row < all[i].size(); row += from) {
         const Eigen::Index length = std::min(from, all[i].size() - row);
-        turned[i].segment(row, length) = all[i].segment(row, length) * (rng.uniform() < 0.5 ? -1.0 : 1.0);
+        const double sign = rng.uniform() < 0.5 ? -1.0 : 1.0;
+        for (Eigen::Index k = row; k < row + length; ++k) turned[i][k] = all[i][k] * sign;
       }
     }
-    nulls.push_back((lagged_products(turned, from, to) / squares).squaredNorm());
+    Eigen::VectorXd null = lagged_products(turned, from, to);
+    null /= squares;
+    nulls.push_back(null.squaredNorm());
     mean += nulls.back() / draws;
   }
   for (const double null : nulls) variance += (null - mean) * (null - mean) / (draws - 1);

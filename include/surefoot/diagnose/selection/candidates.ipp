@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,10 @@ SUREFOOT_INLINE std::vector<bool> distinct_inputs(const BoundSimulator& bound, c
     bound.probe(bound, recordings[i], hypothesis.parameters, trajectories[i].states, efforts, signals);
     Eigen::MatrixXd all(products.rows(), signals.cols());
     all << bound.recordings[recordings[i]].inputs, signals;
-    all = all.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; }).eval();
-    products += all * all.transpose();
+    for (double& value : std::span(all.data(), static_cast<std::size_t>(all.size())))
+      value = std::isfinite(value) ? value : 0.0;
+    const Eigen::MatrixXd turned = all.transpose();
+    products += all * turned;
     for (std::size_t k = 0; k < count; ++k) {
       const auto line = all.row(static_cast<Eigen::Index>(k));
       changes[k] = changes[k] || line.maxCoeff() > line.minCoeff();
@@ -64,7 +67,7 @@ SUREFOOT_INLINE bool fits_state(const BoundSimulator& bound, const Effect& effec
   if (is_position || bound.structure.velocity[state] || pose) return false;  // there forces act, or walking effects
   const std::string& unit = info.states[state].unit;
   const bool angle = unit == "rad" || unit == "deg";
-  return !effect.needs_conserved_state || (!angle && bound.structure.matters[state]);
+  return !effect.needs_conserved_state || (!angle && bound.structure.affects_rates[state]);
 }
 
 SUREFOOT_INLINE std::vector<AttachedEffect> attachments(const BoundSimulator& bound, const std::vector<Effect>& effects,

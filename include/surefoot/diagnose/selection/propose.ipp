@@ -1,7 +1,6 @@
 // Definitions of surefoot/diagnose/selection/propose.hpp.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/QR>
 #include <algorithm>
@@ -16,12 +15,16 @@
 #include "surefoot/diagnose/estimation/starting_values.hpp"
 #include "surefoot/diagnose/selection/candidates.hpp"
 #include "surefoot/diagnose/selection/propose.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
 SUREFOOT_INLINE Eigen::VectorXd OpenResiduals::beyond_parameters(const Eigen::VectorXd& change) const {
   if (basis.cols() == 0) return change;
-  return change - basis * (basis.transpose() * change);
+  const Eigen::VectorXd along = basis.transpose() * change;
+  Eigen::VectorXd beyond = change;
+  beyond.noalias() -= basis * along;
+  return beyond;
 }
 
 SUREFOOT_INLINE OpenResiduals open_residuals(const BoundSimulator& bound, const Hypothesis& base,
@@ -35,8 +38,8 @@ SUREFOOT_INLINE OpenResiduals open_residuals(const BoundSimulator& bound, const 
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(functions.jacobian(z, result.residuals));
     result.basis = qr.householderQ() * Eigen::MatrixXd::Identity(result.residuals.size(), qr.rank());
   }
-  const Eigen::VectorXd clipped = result.residuals.unaryExpr(
-      [limit](double value) { return std::isfinite(value) ? std::clamp(value, -limit, limit) : 0.0; });
+  Eigen::VectorXd clipped = result.residuals;
+  for (double& value : clipped) value = std::isfinite(value) ? std::clamp(value, -limit, limit) : 0.0;
   result.open = result.beyond_parameters(clipped);
   result.energy = std::max(result.open.squaredNorm(), never_zero);
   return result;
@@ -91,10 +94,11 @@ SUREFOOT_INLINE Proposal predict_gain(const BoundSimulator& bound, const OpenRes
   proposal.distinct = all > 0 ? std::sqrt(left / all) : 0;
   if (!(left > criteria.negligible_signature * open.energy)) return proposal;
   proposal.visible = std::sqrt(criteria.visible_share * open.energy / left);
-  Eigen::VectorXd share =
-      (distinct.transpose() * distinct + criteria.ridge * left * Eigen::MatrixXd::Identity(count, count))
-          .ldlt()
-          .solve(-distinct.transpose() * open.open);
+  Eigen::MatrixXd gram = std::as_const(distinct).transpose() * distinct;
+  for (Eigen::Index m = 0; m < count; ++m) gram(m, m) += criteria.ridge * left;
+  Eigen::VectorXd against = std::as_const(distinct).transpose() * open.open;
+  for (double& value : against) value = -value;
+  Eigen::VectorXd share = surefoot::detail::solve_symmetric(gram, against);
   const std::vector<Eigen::Index> strengths = strengths_of(*candidate.effect);
   for (Eigen::Index m = 0; m < count; ++m) {
     if (strengths.empty()) {

@@ -1,16 +1,12 @@
-// A simulator together with its recordings, behind one function: what the stages of a diagnosis work on, so that they
-// are compiled once and not for each simulator.
+// Bound simulator: a simulator together with its recordings, behind one function: what the stages of a diagnosis work
+// on, so that they are compiled once and not for each simulator.
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -70,28 +66,21 @@ class SimulatorPool {
 
 double root_mean_square(const Eigen::Ref<const Eigen::RowVectorXd>& values);
 
-double spread(const Eigen::Ref<const Eigen::RowVectorXd>& values);
+double standard_deviation(const Eigen::Ref<const Eigen::RowVectorXd>& values);
 
 /// The nominal values of all parameters.
 Eigen::VectorXd nominal_parameters(const SimulatorInfo& info);
 
+/// Recordings and what was found out about a simulator, still without its functions.
+BoundSimulator without_functions(SimulatorInfo info, SimulatorStructure structure, std::vector<Recording> recordings);
+
+/// Throws DiagnoseError if there is no recording.
 template <Simulator S>
 BoundSimulator bind_simulator(const S& simulator, std::vector<Recording> recordings) {
   if (recordings.empty()) throw DiagnoseError("there is no recording to diagnose");
-  BoundSimulator bound;
-  bound.info = simulator.info();
-  bound.structure = find_structure(simulator, bound.info, recordings.front(), nominal_parameters(bound.info));
-  bound.sizes = unit_sizes(bound.info);
-  bound.recordings = std::move(recordings);
-  for (std::size_t k = 0; k < bound.info.outputs.size(); ++k) {
-    bool wrapped = bound.info.outputs[k].unit == "rad";
-    for (const Recording& recording : bound.recordings) {
-      for (const double value : recording.outputs.row(static_cast<Eigen::Index>(k))) {
-        wrapped = wrapped && !(std::abs(value) > 3.1416);
-      }
-    }
-    bound.wrapped.push_back(wrapped);
-  }
+  SimulatorInfo info = simulator.info();
+  SimulatorStructure structure = find_structure(simulator, info, recordings.front(), nominal_parameters(info));
+  BoundSimulator bound = without_functions(std::move(info), std::move(structure), std::move(recordings));
   const auto pool = std::make_shared<SimulatorPool<S>>(simulator, bound.recordings.size());
   bound.simulate = [pool](const BoundSimulator& self, std::size_t i, const Eigen::VectorXd& p,
                           const Augmentation& augmentation, const Eigen::VectorXd& initial,

@@ -31,7 +31,7 @@ SUREFOOT_INLINE double root_mean_square(const Eigen::Ref<const Eigen::RowVectorX
   return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0;
 }
 
-SUREFOOT_INLINE double spread(const Eigen::Ref<const Eigen::RowVectorXd>& values) {
+SUREFOOT_INLINE double standard_deviation(const Eigen::Ref<const Eigen::RowVectorXd>& values) {
   double sum = 0, squares = 0;
   Eigen::Index count = 0;
   for (const double value : values) {
@@ -49,6 +49,26 @@ SUREFOOT_INLINE Eigen::VectorXd nominal_parameters(const SimulatorInfo& info) {
   Eigen::VectorXd p(static_cast<Eigen::Index>(info.parameters.size()));
   for (std::size_t i = 0; i < info.parameters.size(); ++i) p[static_cast<Eigen::Index>(i)] = info.parameters[i].value;
   return p;
+}
+
+SUREFOOT_INLINE BoundSimulator without_functions(SimulatorInfo info, SimulatorStructure structure,
+                                                 std::vector<Recording> recordings) {
+  constexpr double half_turn = 3.1416;  // [rad] rounded up: readings beyond it are of an angle that counts turns
+  BoundSimulator bound;
+  bound.info = std::move(info);
+  bound.structure = std::move(structure);
+  bound.sizes = unit_sizes(bound.info);
+  bound.recordings = std::move(recordings);
+  for (std::size_t k = 0; k < bound.info.outputs.size(); ++k) {
+    bool wrapped = bound.info.outputs[k].unit == "rad";
+    for (const Recording& recording : bound.recordings) {
+      for (Eigen::Index row = 0; row < recording.outputs.cols(); ++row) {
+        wrapped = wrapped && !(std::abs(recording.outputs(static_cast<Eigen::Index>(k), row)) > half_turn);
+      }
+    }
+    bound.wrapped.push_back(wrapped);
+  }
+  return bound;
 }
 
 }  // namespace surefoot::diagnosis

@@ -4,13 +4,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
-#include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/simulator.hpp"
 
 namespace surefoot::diagnosis {
@@ -18,7 +15,7 @@ namespace surefoot::diagnosis {
 struct SimulatorStructure {
   std::vector<int> position_of;     // by state: the state whose rate it is, or -1
   std::vector<bool> velocity;       // by state: forces may act on it
-  std::vector<bool> matters;        // by state: some rate depends on it (maps are not asked: always)
+  std::vector<bool> affects_rates;  // by state: some rate depends on it (maps are not asked: always)
   std::vector<int> output_of;       // by state: the output that reads it directly, or -1
   std::vector<bool> driven_signal;  // by signal: changes with the inputs
   bool all_states_measured = false;
@@ -100,85 +97,47 @@ V converted(const Source& source) {
   return result;
 }
 
-inline bool close(double a, double b) { return std::abs(a - b) <= 1e-9 * (1 + std::abs(a) + std::abs(b)); }
+/// Throws a DiagnoseError unless a vector type of the simulator has room for exactly what info() names.
+void check_size(int fixed_size, std::size_t named, const SimulatorInfo& info, const char* type);
 
-/// Asks the simulator at random points around its recordings. Costs some hundred evaluations.
+/// Answers of a simulator, whatever its type: its rates (or next values), and what it shows.
+struct SimulatorAnswers {
+  /// `signals`, where given, gets the values of all signals inside the equations.
+  std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::vector<double>* signals)>
+      rates;
+  std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u)> outputs;
+};
+
+/// Asks at random points around a recording. Costs some hundred evaluations.
+SimulatorStructure find_structure(const SimulatorAnswers& answers, const SimulatorInfo& info, const Recording& example);
+
+/// The same for a simulator as it is for that recording.
 template <Simulator S>
 SimulatorStructure find_structure(const S& simulator, const SimulatorInfo& info, const Recording& example,
                                   const Eigen::VectorXd& parameters) {
-  const auto n = info.states.size(), m = info.inputs.size(), k = info.outputs.size();
+  using State = typename S::State;
+  using Input = typename S::Input;
+  check_size(State::RowsAtCompileTime, info.states.size(), info, "State");
+  check_size(Input::RowsAtCompileTime, info.inputs.size(), info, "Input");
+  check_size(S::Output::RowsAtCompileTime, info.outputs.size(), info, "Output");
   S s = for_recording(simulator, example);
   prepare(s, parameters);
-  SimulatorStructure structure;
-  structure.driven_signal.assign(info.signals.size(), false);
-  structure.matters.assign(n, info.kind == SimulatorKind::map);
-  std::vector<std::vector<bool>> speed(n, std::vector<bool>(n, true)), reads(n, std::vector<bool>(k, true));
-  Rng rng(1);
-  std::vector<double> seen(info.signals.size());
-  const auto record = [&seen](int i, double value) {
-    seen[static_cast<std::size_t>(i)] = value;
-    return value;
+  SimulatorAnswers answers;
+  answers.rates = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::vector<double>* signals) {
+    const auto at = converted<State>(x);
+    const auto input = converted<Input>(u);
+    if (signals == nullptr) return converted<Eigen::VectorXd>(State(evaluate(s, at, input, parameters, NoTap{})));
+    const auto record = [signals](int i, double value) {
+      (*signals)[static_cast<std::size_t>(i)] = value;
+      return value;
+    };
+    return converted<Eigen::VectorXd>(State(evaluate(s, at, input, parameters, record)));
   };
-  constexpr std::array<double, 3> scales{1e-3, 0.1, 1};  // so that signals are met within their limits, too
-  for (int round = 0; round < 36; ++round) {
-    const double scale = scales[static_cast<std::size_t>(round) % scales.size()];
-    auto x = sized<typename S::State>(static_cast<Eigen::Index>(n));
-    auto u = sized<typename S::Input>(static_cast<Eigen::Index>(m));
-    for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = example.initial[i] + scale * (0.2 + rng.uniform());
-    if (example.rows() > 0 && m > 0) {
-      const auto row = static_cast<Eigen::Index>(rng.uniform() * static_cast<double>(example.rows()));
-      u = converted<typename S::Input>(example.inputs.col(row));
-    }
-    const auto rate = evaluate(s, x, u, parameters, record);
-    const std::vector<double> first = seen;
-    const auto y = s.observe(x, u, parameters);
-    for (std::size_t i = 0; i < n; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      for (std::size_t j = 0; j < n; ++j) {
-        if (i == j || !close(rate[row], x[static_cast<Eigen::Index>(j)])) speed[i][j] = false;
-      }
-      for (std::size_t j = 0; j < k; ++j) {
-        if (!close(y[static_cast<Eigen::Index>(j)], x[row])) reads[i][j] = false;
-      }
-    }
-    for (std::size_t i = 0; i < n && info.kind == SimulatorKind::ode; ++i) {
-      auto moved = x;
-      moved[static_cast<Eigen::Index>(i)] += scale * (0.1 + rng.uniform());
-      const auto changed = evaluate(s, moved, u, parameters, NoTap{});
-      for (std::size_t j = 0; j < n; ++j) {
-        const auto row = static_cast<Eigen::Index>(j);
-        if (!close(rate[row], changed[row])) structure.matters[i] = true;
-      }
-    }
-    auto other = u;
-    const double reach = (round % 2 == 0 ? 10 : -10) * scale;
-    for (double& value : other) value += reach * (0.1 + rng.uniform());
-    evaluate(s, x, other, parameters, record);
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      if (!close(first[i], seen[i])) structure.driven_signal[i] = true;
-    }
-  }
-  structure.position_of.assign(n, -1);
-  structure.velocity.assign(n, false);
-  structure.output_of.assign(n, -1);
-  structure.all_states_measured = true;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (info.kind == SimulatorKind::ode) {
-      for (std::size_t j = 0; j < n; ++j) {
-        if (speed[i][j]) structure.position_of[j] = static_cast<int>(i);
-      }
-    }
-    for (std::size_t j = 0; j < k; ++j) {
-      if (reads[i][j]) structure.output_of[i] = static_cast<int>(j);
-    }
-    structure.all_states_measured = structure.all_states_measured && structure.output_of[i] >= 0;
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    const StateInfo& state = info.states[i];
-    structure.velocity[i] =
-        info.kind == SimulatorKind::ode && (structure.position_of[i] >= 0 || !state.effort_unit.empty());
-  }
-  return structure;
+  answers.outputs = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& u) {
+    const typename S::Output y = s.observe(converted<State>(x), converted<Input>(u), parameters);
+    return converted<Eigen::VectorXd>(y);
+  };
+  return find_structure(answers, info, example);
 }
 
 }  // namespace surefoot::diagnosis

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -26,6 +27,100 @@ SUREFOOT_INLINE Sizes unit_sizes(const SimulatorInfo& info) {
   sizes.input_peak = sizes.input;
   sizes.signal_peak = sizes.signal;
   return sizes;
+}
+
+SUREFOOT_INLINE void check_size(int fixed_size, std::size_t named, const SimulatorInfo& info, const char* type) {
+  if (fixed_size == Eigen::Dynamic || fixed_size == static_cast<int>(named)) return;
+  throw DiagnoseError("simulator '" + info.name + "': " + type + " has " + std::to_string(fixed_size) +
+                      " components, but info() names " + std::to_string(named));
+}
+
+/// Whether two numbers are the same but for rounding.
+SUREFOOT_INLINE bool nearly_equal(double a, double b) {
+  return std::abs(a - b) <= 1e-9 * (1 + std::abs(a) + std::abs(b));
+}
+
+/// What no point has refuted yet.
+struct StructureSearch {
+  std::vector<std::vector<bool>> speed;  // [i][j]: the rate of state i is state j
+  std::vector<std::vector<bool>> reads;  // [i][k]: output k reads state i
+};
+
+SUREFOOT_INLINE void refute(StructureSearch& search, const Eigen::VectorXd& x, const Eigen::VectorXd& rate,
+                            const Eigen::VectorXd& y) {
+  for (std::size_t i = 0; i < search.speed.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    for (std::size_t j = 0; j < search.speed.size(); ++j) {
+      if (i == j || !nearly_equal(rate[row], x[static_cast<Eigen::Index>(j)])) search.speed[i][j] = false;
+    }
+    for (std::size_t k = 0; k < search.reads[i].size(); ++k) {
+      if (!nearly_equal(y[static_cast<Eigen::Index>(k)], x[row])) search.reads[i][k] = false;
+    }
+  }
+}
+
+/// Fills in what remains true.
+SUREFOOT_INLINE void conclude_structure(const StructureSearch& search, const SimulatorInfo& info,
+                                        SimulatorStructure& structure) {
+  const std::size_t n = info.states.size();
+  structure.position_of.assign(n, -1);
+  structure.velocity.assign(n, false);
+  structure.output_of.assign(n, -1);
+  structure.all_states_measured = true;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n && info.kind == SimulatorKind::ode; ++j) {
+      if (search.speed[i][j]) structure.position_of[j] = static_cast<int>(i);
+    }
+    for (std::size_t k = 0; k < search.reads[i].size(); ++k) {
+      if (search.reads[i][k]) structure.output_of[i] = static_cast<int>(k);
+    }
+    structure.all_states_measured = structure.all_states_measured && structure.output_of[i] >= 0;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    structure.velocity[i] =
+        info.kind == SimulatorKind::ode && (structure.position_of[i] >= 0 || !info.states[i].effort_unit.empty());
+  }
+}
+
+SUREFOOT_INLINE SimulatorStructure find_structure(const SimulatorAnswers& answers, const SimulatorInfo& info,
+                                                  const Recording& example) {
+  const auto n = info.states.size(), m = info.inputs.size(), k = info.outputs.size();
+  SimulatorStructure structure;
+  structure.driven_signal.assign(info.signals.size(), false);
+  structure.affects_rates.assign(n, info.kind == SimulatorKind::map);
+  StructureSearch search{std::vector(n, std::vector<bool>(n, true)), std::vector(n, std::vector<bool>(k, true))};
+  Rng rng(1);
+  std::vector<double> signals(info.signals.size());
+  constexpr int rounds = 36;
+  constexpr std::array<double, 3> scales{1e-3, 0.1, 1};  // so that signals are met within their limits, too
+  for (int round = 0; round < rounds; ++round) {
+    const double scale = scales[static_cast<std::size_t>(round) % scales.size()];
+    Eigen::VectorXd x(static_cast<Eigen::Index>(n)), u = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(m));
+    for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = example.initial[i] + scale * (0.2 + rng.uniform());
+    if (example.rows() > 0 && m > 0) {
+      const auto row = static_cast<Eigen::Index>(rng.uniform() * static_cast<double>(example.rows()));
+      for (Eigen::Index i = 0; i < u.size(); ++i) u[i] = example.inputs(i, row);
+    }
+    const Eigen::VectorXd rate = answers.rates(x, u, &signals);
+    const std::vector<double> first = signals;
+    refute(search, x, rate, answers.outputs(x, u));
+    for (std::size_t i = 0; i < n && info.kind == SimulatorKind::ode; ++i) {
+      Eigen::VectorXd moved = x;
+      moved[static_cast<Eigen::Index>(i)] += scale * (0.1 + rng.uniform());
+      const Eigen::VectorXd changed = answers.rates(moved, u, nullptr);
+      for (Eigen::Index j = 0; j < rate.size(); ++j) {
+        if (!nearly_equal(rate[j], changed[j])) structure.affects_rates[i] = true;
+      }
+    }
+    const double reach = (round % 2 == 0 ? 10 : -10) * scale;
+    for (double& value : u) value += reach * (0.1 + rng.uniform());
+    answers.rates(x, u, &signals);
+    for (std::size_t i = 0; i < signals.size(); ++i) {
+      if (!nearly_equal(first[i], signals[i])) structure.driven_signal[i] = true;
+    }
+  }
+  conclude_structure(search, info, structure);
+  return structure;
 }
 
 }  // namespace surefoot::diagnosis
