@@ -1,4 +1,4 @@
-// Which columns of a CSV hold commands and poses, and in what units.
+// Columns of a CSV that hold commands and poses, and their units.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Where sequences really ended against where they should have: a picture.
+// Picture of where sequences really ended against where they should have.
 #pragma once
 
 #include <filesystem>

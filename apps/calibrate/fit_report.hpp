@@ -1,4 +1,4 @@
-// What `fit` found, as text for the terminal.
+// Report of `fit` as text for the terminal.
 #pragma once
 
 #include <string>

@@ -1,12 +1,14 @@
 # cmake -D compiler=... -D include=dir;dir -P check_wrong_problems.cmake
-# A problem that lacks a member, or has a wrong one, must give one error of a few lines that names the member.
+# A problem or motion model that lacks a member, or has a wrong one, must give one error of a few lines that names the member.
 set(most_lines 10)  # apart from those that say how the header came to be included
 list(TRANSFORM include PREPEND -isystem)
 list(TRANSFORM include REPLACE "^-isystem(.*/include)$" "-I\\1" AT 0)
 
+set(source wrong_problem.cpp)
+
 function(compile result output)
   list(TRANSFORM ARGN PREPEND -D)
-  execute_process(COMMAND ${compiler} -std=c++20 -fsyntax-only ${include} ${ARGN} ${CMAKE_CURRENT_LIST_DIR}/wrong_problem.cpp
+  execute_process(COMMAND ${compiler} -std=c++20 -fsyntax-only ${include} ${ARGN} ${CMAKE_CURRENT_LIST_DIR}/${source}
                   RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE text)
   set(${result} ${status} PARENT_SCOPE)
   set(${output} "${text}" PARENT_SCOPE)
@@ -47,4 +49,11 @@ foreach(wrong FEATURES=2 WRONG_features)
 endforeach()
 foreach(member state_dim action_dim State Action state_box action_box initial_state call_operator reset)
   expect_error_about(${member} EVALUATE WRONG_${member})
+endforeach()
+
+# A motion model likewise.
+set(source wrong_model.cpp)
+expect_right()
+foreach(member default_constructor parameter_count parameter_info from_parameters parameters displacement)
+  expect_error_about(${member} WRONG_${member})
 endforeach()

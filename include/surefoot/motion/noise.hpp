@@ -1,4 +1,4 @@
-// The noise of a walk: how much each cycle's displacement differs from what the motion model says, by chance.
+// The noise of a walk: how much each cycle's displacement differs from what the motion model predicts, by chance.
 #pragma once
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // Linear correction that also depends on the command of the cycle before: displacement = A (1, dx, dy, dt)^T + B (dx',
 // dy', dt')^T. A walk whose cycles are measured between two phases still carries out part of the last command there; B
-// says how much of it.
+// tells how much of it.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,6 +1,6 @@
-// CMA-ES: minimises a function of a few to some hundred variables by its values alone, with bounds, noise and restarts.
-// Hansen: "The CMA Evolution Strategy: A Tutorial", arXiv:1604.00772; see cma_es_core.hpp, search_space.hpp (bounds),
-// restarts.hpp (IPOP, BIPOP), rank_noise.hpp (noise) and cma_es_stop.hpp (stop criteria).
+// CMA-ES, a search for the minimum of a function of a few to some hundred variables by its values alone, with bounds,
+// noise and restarts. Hansen: "The CMA Evolution Strategy: A Tutorial", arXiv:1604.00772; see cma_es_core.hpp,
+// search_space.hpp (bounds), restarts.hpp (IPOP, BIPOP), rank_noise.hpp (noise) and cma_es_stop.hpp (stop criteria).
 //
 //   const auto f = [](const Eigen::VectorXd& x) { return x.squaredNorm(); };
 //   const auto result = surefoot::cma_es(f, start, 0.5, {.target = 1e-9}, surefoot::Serial{}, /*seed*/ 1);

@@ -51,7 +51,7 @@ class CmaEsCore {
   void move_mean();
   void adapt_covariance();
   void adapt_sigma();
-  void remember();
+  void record_values();
   void factorise();
 
   CmaEsState state_;

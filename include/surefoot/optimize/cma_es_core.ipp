@@ -80,7 +80,7 @@ SUREFOOT_INLINE void CmaEsCore::tell(std::span<const double> values) {
   move_mean();
   adapt_covariance();
   adapt_sigma();
-  remember();
+  record_values();
   ++state_.generation;
   if (state_.generation % static_cast<std::uint64_t>(constants_.factor_gap) == 0) factorise();
   asked_ = false;
@@ -149,8 +149,8 @@ SUREFOOT_INLINE void CmaEsCore::adapt_sigma() {
   state_.sigma *= std::exp(std::min(1.0, c.c_sigma / c.damping * longer));
 }
 
-SUREFOOT_INLINE void CmaEsCore::remember() {
-  state_.spread = ranked_.back() - ranked_.front();
+SUREFOOT_INLINE void CmaEsCore::record_values() {
+  state_.value_range = ranked_.back() - ranked_.front();
   state_.best_values.push_back(ranked_.front());
   state_.median_values.push_back(ranked_[ranked_.size() / 2]);
   if (state_.best_values.size() > state_.history()) {

@@ -1,4 +1,4 @@
-// The options of CMA-ES.
+// Options of `cma_es()`.
 #pragma once
 
 #include <Eigen/Core>

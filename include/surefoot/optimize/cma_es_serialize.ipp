@@ -44,7 +44,7 @@ void transfer(Archive& archive, Search& search) {
   auto& state = search.state;
   fields(state.seed, state.descent, state.generation, state.population, state.mean, state.sigma, state.start_sigma);
   fields(state.covariance, state.factor, state.degenerate, state.path_sigma, state.path);
-  fields(state.spread, state.best_values, state.median_values);
+  fields(state.value_range, state.best_values, state.median_values);
   auto& plan = search.plan;
   fields(plan.population, plan.sigma_factor, plan.max_evaluations, plan.small);
   auto& schedule = search.schedule;

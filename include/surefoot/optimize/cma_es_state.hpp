@@ -1,4 +1,4 @@
-// Everything that one descent of CMA-ES remembers between two generations, as a plain struct.
+// State of one descent of CMA-ES between two generations, as a plain struct.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,7 +28,7 @@ struct CmaEsState {
   Eigen::VectorXd path_sigma;  // evolution path of the step size, in the coordinates of A^-1
   Eigen::VectorXd path;        // evolution path of the covariance
 
-  double spread = 0;                    // worst minus best value of the last generation
+  double value_range = 0;               // worst minus best value of the last generation
   std::deque<double> best_values = {};  // of the last generations, newest last, as far back as a stop criterion looks
   std::deque<double> median_values = {};
 

@@ -51,7 +51,7 @@ SUREFOOT_INLINE std::optional<StopReason> converged(const CmaEsState& state, con
   if (std::ssize(state.best_values) >= window) {
     const auto [least, most] = std::minmax_element(state.best_values.end() - window, state.best_values.end());
     if (*least == *most) return StopReason::equal_values;
-    if (*most - *least < tolerances.fun && state.spread < tolerances.fun) return StopReason::tol_fun;
+    if (*most - *least < tolerances.fun && state.value_range < tolerances.fun) return StopReason::tol_fun;
   }
   if (tolerances.stagnation && state.generation % 10 == 0 && state.best_values.size() >= state.shortest_history() &&
       detail::stagnates(state.best_values) && detail::stagnates(state.median_values)) {

@@ -1,5 +1,5 @@
-// Nonlinear least squares: fits a few parameters to many residuals, with bounds, robust losses and the covariance of
-// the estimate.
+// Nonlinear least squares: the fit of a few parameters to many residuals, with bounds, robust losses and the covariance
+// of the estimate.
 //
 // Levenberg-Marquardt on the normal equations, scaled to unit diagonal; damping by Nielsen ("Damping parameter in
 // Marquardt's method", IMM-REP-1999-05), which ends as Gauss-Newton. Robust losses by iterated weights. Parameters

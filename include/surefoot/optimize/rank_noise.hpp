@@ -1,4 +1,4 @@
-// How much noise confuses the order of the candidates, which is all that an evolution strategy learns from.
+// Disorder that noise brings into the ranks of the candidates, which are all that an evolution strategy learns from.
 // After the uncertainty handling of Hansen, Niederberger, Guzzella, Koumoutsakos: "A method for handling uncertainty in
 // evolutionary optimization with an application to feedback control of combustion", IEEE TEC 13 (2009). There some
 // candidates are evaluated twice and changes of rank counted; here every candidate's evaluations are split into two

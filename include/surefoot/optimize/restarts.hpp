@@ -1,4 +1,4 @@
-// What the next descent of CMA-ES looks like when one has converged and the minimum may be elsewhere.
+// Restarts of CMA-ES: the next descent when one has converged and the minimum may be elsewhere.
 // IPOP: Auger, Hansen: "A restart CMA evolution strategy with increasing population size", CEC 2005.
 // BIPOP: Hansen: "Benchmarking a BI-population CMA-ES on the BBOB-2009 function testbed", GECCO 2009.
 #pragma once
