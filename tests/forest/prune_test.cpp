@@ -72,8 +72,8 @@ TEST_CASE("the weakest link goes first") {
   const auto forest = staircase(samples);
   REQUIRE(forest.leaves() == 4);
   const std::vector<double> scale{1.0};
-  auto [tree, order] =
-      detail::TreePruner<ConstantLeaf, 1, 1>(detail::loosen(forest.raw(), 0), samples, scale, {}).work();
+  auto [tree, order] = detail::weakest_links(detail::leaf_kind<ConstantLeaf>(), detail::loosen(forest.raw(), 0),
+                                             detail::view_of(samples), scale, {});
   double costs = 0;
   std::size_t saved = 0;
   for (std::size_t i = 0; i < order.size(); ++i) {
