@@ -56,7 +56,7 @@ struct PolicySearchOptions {
   int max_restarts = 9;  // with large population
 
   /// Called after every generation. Values in it are costs, minus the mean return; an evaluation is min_runs / 2 runs.
-  std::function<void(const CmaEsSearch&)> observer = {};
+  std::function<void(const CmaEsSearch&)> on_progress = {};
 };
 
 /// Throws SolveError, naming the option, unless those of the search make sense.
