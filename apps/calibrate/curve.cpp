@@ -93,7 +93,7 @@ void run(const Options& options) {
       curves.push_back({kind, std::move(curve), more});
     }
   });
-  const double as_commanded = surefoot::score_of_commands(loaded.sequences).position;
+  const double as_commanded = surefoot::evaluate_commands(loaded.sequences).position;
   print(curves, as_commanded);
   write_curve_files(options.out, curves, as_commanded, work);
 }

@@ -18,7 +18,7 @@ using Sequences = std::span<const WalkSequence>;
 
 constexpr double hour = std::numbers::pi / 6;  // of a clock [rad]
 
-EvaluatedModel evaluated(const surefoot::ModelScore& score) {
+EvaluatedModel evaluated(const surefoot::ModelEvaluation& score) {
   return {.model = score.name,
           .parameters = score.parameters,
           .position = score.position,
@@ -34,7 +34,7 @@ std::vector<EvaluatedModel> compare(Sequences sequences, const PredictorOptions&
   std::vector<surefoot::AnyMotionModel> models;
   for (const ModelKind kind : all_models) models.push_back(default_model(kind));
   std::vector<EvaluatedModel> result;
-  for (const surefoot::ModelScore& score : surefoot::compare_models(std::span<const surefoot::AnyMotionModel>(models),
+  for (const surefoot::ModelEvaluation& score : surefoot::compare_models(std::span<const surefoot::AnyMotionModel>(models),
                                                                     sequences, compare, executor, settings.seed)) {
     result.push_back(evaluated(score));
   }
@@ -50,13 +50,13 @@ surefoot::AnyMotionModel published_model(const surefoot::AnyMotionModel& start, 
 /// Errors of all models on held-out sequences.
 std::vector<EvaluatedModel> evaluate_on_test(Sequences sequences, Sequences test, const PredictorOptions& options,
                                              const FitSettings& settings, const StoppableThreads& executor) {
-  std::vector<EvaluatedModel> models{evaluated(surefoot::score_of_commands(test))};
+  std::vector<EvaluatedModel> models{evaluated(surefoot::evaluate_commands(test))};
   for (const ModelKind kind : all_models) {
     const surefoot::AnyMotionModel start = default_model(kind);
     const surefoot::AnyMotionModel model = options.method == FitMethod::published
                                                ? published_model(start, sequences, options, settings, executor)
                                                : surefoot::calibrate(sequences, options.calibration, start).model;
-    models.push_back(evaluated(surefoot::score_on(model, test)));
+    models.push_back(evaluated(surefoot::evaluate_on(model, test)));
   }
   return models;
 }

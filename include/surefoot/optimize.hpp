@@ -6,3 +6,4 @@
 #include "surefoot/optimize/cma_es_core.hpp"
 #include "surefoot/optimize/cma_es_serialize.hpp"
 #include "surefoot/optimize/least_squares.hpp"
+#include "surefoot/optimize/search_space.hpp"

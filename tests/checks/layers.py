@@ -44,7 +44,8 @@ LAYERS = {
 # Parts of the face that lie in a room, and headers of the folder that are no part of the face.
 FACE_IN_ROOMS = ["surefoot/diagnose/effects/effect.hpp", "surefoot/diagnose/effects/catalogue.hpp",
                  "surefoot/diagnose/effects/named_effect.hpp"]
-NO_FACE = ["surefoot/core/compiled.hpp"]  # the switch between the two ways to build
+NO_FACE = ["surefoot/core/compiled.hpp",  # the switch between the two ways to build
+           "surefoot/optimize/linear_algebra.hpp", "surefoot/optimize/symmetric_eigen.hpp"]  # compiled once, for others
 # Part of the face, but not in the header of their area: what they need costs other users too much to compile.
 ON_THEIR_OWN = ["surefoot/solve/policy_search.hpp"]
 

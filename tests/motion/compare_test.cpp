@@ -45,13 +45,13 @@ TEST_CASE("models named by their types and models as values get the same scores"
 
 TEST_CASE("a model that ends where the robot ended has no error, and one sequence no standard error") {
   const auto walks = toys::walks(toys::paper_walk(), surefoot::MotionNoise(), 1, 7);
-  const surefoot::ModelScore score = surefoot::score_on(toys::paper_walk(), walks);
+  const surefoot::ModelEvaluation score = surefoot::evaluate_on(toys::paper_walk(), walks);
   CHECK(score.name == "full linear");
   CHECK(score.parameters == 12);
   CHECK(score.position < 1e-9);
   CHECK(std::isinf(score.position_error));
-  CHECK(surefoot::score_of_commands(walks).parameters == 0);
-  CHECK(surefoot::score_of_commands(walks).position > 0.01);
+  CHECK(surefoot::evaluate_commands(walks).parameters == 0);
+  CHECK(surefoot::evaluate_commands(walks).position > 0.01);
 }
 
 TEST_CASE("wrong options of a comparison are refused by name") {

@@ -1,4 +1,4 @@
-// concealed_all_at_once: a baseline for the concealed proof that knows every effect of the library but does not search.
+// concealed_all_at_once: a baseline of the blind benchmark that knows every effect of the library but does not search.
 // Calibrates the nominal parameters, linearises all candidate effects at once, and names those that survive an L1
 // penalty. Same command line and diagnosis.json as surefoot-diagnose.
 #include <algorithm>

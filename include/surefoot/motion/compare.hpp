@@ -32,7 +32,7 @@ struct CompareOptions {
 void check(const CompareOptions& options);
 
 /// Errors of one model: root mean squares over the sequences.
-struct ModelScore {
+struct ModelEvaluation {
   std::string name;
   int parameters = 0;         // 0: the commands as they are
   double position = 0;        // [m]
@@ -42,10 +42,10 @@ struct ModelScore {
 };
 
 /// A model on sequences that it was not fitted to.
-ModelScore score_on(const AnyMotionModel& model, std::span<const WalkSequence> sequences);
+ModelEvaluation evaluate_on(const AnyMotionModel& model, std::span<const WalkSequence> sequences);
 
 /// The prediction that the robot does what it is told, on these sequences.
-ModelScore score_of_commands(std::span<const WalkSequence> sequences);
+ModelEvaluation evaluate_commands(std::span<const WalkSequence> sequences);
 
 namespace detail {
 
@@ -98,7 +98,7 @@ class FoldedFits {
 };
 
 /// Scores of all models, in the order of their errors, the first being that of the commands as they are.
-std::vector<ModelScore> choose_model(std::span<const AnyMotionModel> models, const std::vector<HeldoutErrors>& errors,
+std::vector<ModelEvaluation> choose_model(std::span<const AnyMotionModel> models, const std::vector<HeldoutErrors>& errors,
                                      const CompareOptions& options);
 
 }  // namespace detail
@@ -107,7 +107,7 @@ std::vector<ModelScore> choose_model(std::span<const AnyMotionModel> models, con
 /// that is behind the best by no more than `tolerance` standard errors of the difference between the two, or by no more
 /// than the negligible loss. Throws MotionError if there are fewer than two sequences.
 template <Executor E>
-std::vector<ModelScore> compare_models(std::span<const AnyMotionModel> models, std::span<const WalkSequence> sequences,
+std::vector<ModelEvaluation> compare_models(std::span<const AnyMotionModel> models, std::span<const WalkSequence> sequences,
                                        const CompareOptions& options, const E& executor, std::uint64_t seed) {
   check(options);
   check(sequences);
@@ -122,7 +122,7 @@ std::vector<ModelScore> compare_models(std::span<const AnyMotionModel> models, s
 
 /// The same for models of these types, each from its default on.
 template <MotionModel... Models, Executor E>
-std::vector<ModelScore> compare_models(std::span<const WalkSequence> sequences, const CompareOptions& options,
+std::vector<ModelEvaluation> compare_models(std::span<const WalkSequence> sequences, const CompareOptions& options,
                                        const E& executor, std::uint64_t seed) {
   const std::vector<AnyMotionModel> models{Models()...};
   return compare_models(std::span<const AnyMotionModel>(models), sequences, options, executor, seed);

@@ -58,9 +58,9 @@ SUREFOOT_INLINE HeldoutErrors final_pose_errors(const AnyMotionModel& model, std
   return errors;
 }
 
-SUREFOOT_INLINE ModelScore score(std::string name, Eigen::Index parameters, const HeldoutErrors& errors) {
+SUREFOOT_INLINE ModelEvaluation score(std::string name, Eigen::Index parameters, const HeldoutErrors& errors) {
   constexpr double least = 1e-12;  // [m]: a model without any error is no less known
-  ModelScore result{.name = std::move(name), .parameters = static_cast<int>(parameters)};
+  ModelEvaluation result{.name = std::move(name), .parameters = static_cast<int>(parameters)};
   result.position = std::sqrt(errors.position.mean());
   result.position_error = standard_error(errors.position) / (2 * std::max(result.position, least));
   result.heading = std::sqrt(mean_of_finite(errors.heading));
@@ -98,10 +98,10 @@ SUREFOOT_INLINE HeldoutErrors FoldedFits::combine(const std::vector<HeldoutError
   return errors;
 }
 
-SUREFOOT_INLINE std::vector<ModelScore> choose_model(std::span<const AnyMotionModel> models,
+SUREFOOT_INLINE std::vector<ModelEvaluation> choose_model(std::span<const AnyMotionModel> models,
                                                      const std::vector<HeldoutErrors>& errors,
                                                      const CompareOptions& options) {
-  std::vector<ModelScore> scores{score(std::string(CommandsAsTheyAre::name), 0, errors[0])};
+  std::vector<ModelEvaluation> scores{score(std::string(CommandsAsTheyAre::name), 0, errors[0])};
   for (std::size_t i = 0; i < models.size(); ++i) {
     scores.push_back(score(models[i].name(), models[i].parameter_count(), errors[i + 1]));
   }
@@ -121,11 +121,11 @@ SUREFOOT_INLINE std::vector<ModelScore> choose_model(std::span<const AnyMotionMo
 
 }  // namespace detail
 
-SUREFOOT_INLINE ModelScore score_on(const AnyMotionModel& model, std::span<const WalkSequence> sequences) {
+SUREFOOT_INLINE ModelEvaluation evaluate_on(const AnyMotionModel& model, std::span<const WalkSequence> sequences) {
   return detail::score(model.name(), model.parameter_count(), detail::final_pose_errors(model, sequences));
 }
 
-SUREFOOT_INLINE ModelScore score_of_commands(std::span<const WalkSequence> sequences) {
+SUREFOOT_INLINE ModelEvaluation evaluate_commands(std::span<const WalkSequence> sequences) {
   return detail::score(std::string(detail::CommandsAsTheyAre::name), 0,
                        detail::final_pose_errors(detail::CommandsAsTheyAre{}, sequences));
 }

@@ -20,14 +20,14 @@ struct SelectionCriteria {
   int max_effects = 4;  // to combine; more of them can rarely be told apart
 
   // An effect is believed:
-  double min_gain = 0.03;      // smaller gains are within what a slightly wrong form of an effect takes away
-  double min_t = 2.5;          // one-sided 0.6 %
-  double significance = 0.02;  // after correction for the number of candidates (Bonferroni)
-  double large_gain = 0.1;     // is believed without that correction: it may come from few recordings
-  double large_gain_significance = 0.05;
-  double least_share = 0.03;   // of the error without effects, that an effect must take away
-  double decisive_gain = 0.5;  // or of the error that is left, however small that is
-  double tests_per_pair = 15;  // a pair pays for all pairs of six proposals, by candidate
+  double min_gain = 0.03;                 // smaller gains are within what a slightly wrong form of an effect takes away
+  double min_t = 2.5;                     // one-sided 0.6 %
+  double significance = 0.02;             // after correction for the number of candidates (Bonferroni)
+  double large_gain = 0.1;                // is believed without that correction: it may come from few recordings
+  double large_gain_significance = 0.05;  // of one test: a gain this large is rarely chance
+  double least_share = 0.03;              // of the error without effects, that an effect must take away
+  double decisive_gain = 0.5;             // or of the error that is left, however small that is
+  double tests_per_pair = 15;             // a pair pays for all pairs of six proposals, by candidate
 
   // Of several that are believed, the simplest that is not clearly worse than the best:
   double tie_gain = 0.01;         // the best gains no more than this: a tie
@@ -36,11 +36,11 @@ struct SelectionCriteria {
 
   // An effect among others is dropped again:
   double idle_gain = 0.015;  // half of min_gain: it was worth that much when it was chosen
-  double idle_t = 1.5;
+  double idle_t = 1.5;       // less sure than when it was chosen, for the others share its work
 
   // An effect is replaced by another one:
-  double replace_gain = 0.03;
-  double replace_t = 2;
+  double replace_gain = 0.03;    // as much as an effect must gain
+  double replace_t = 2;          // one-sided 2.3 %
   double replace_share = 0.015;  // of the error without effects
 
   // Parameters:
@@ -78,9 +78,9 @@ struct SearchEffort {
   std::size_t pair_reserve = 4;              // fits of pairs that are finished
   std::size_t pair_finalists = 2;
   std::size_t compared_shortlist = 8;  // for what may stand in an effect's place
-  std::size_t compared_finalists = 3;
-  int fold_iterations = 6;       // of the fit to each fold, which starts from the fit to all
-  double fold_tolerance = 1e-3;  // relative decrease of its loss at which it ends
+  std::size_t compared_finalists = 3;  // fits of these that are finished
+  int fold_iterations = 6;             // of the fit to each fold, which starts from the fit to all
+  double fold_tolerance = 1e-3;        // relative decrease of its loss at which it ends
 };
 
 /// A hypothesis with its cross-validated losses.

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -87,16 +88,17 @@ SUREFOOT_INLINE std::vector<ChannelMismatch> mismatch_by_output(const Estimation
                                                                 const FittedModels& models) {
   const BoundSimulator& bound = setup.bound;
   const auto& held_out = setup.split.held_out;
-  const FittedModel* all[3] = {&models.nominal, &models.calibrated, &models.chosen};
+  const std::array<const FittedModel*, 3> all = {&models.nominal, &models.calibrated, &models.chosen};
   std::vector<ChannelMismatch> result;
   for (std::size_t k = 0; k < bound.info.outputs.size(); ++k) {
     const auto output = static_cast<Eigen::Index>(k);
     ChannelMismatch channel;
     channel.output = bound.info.outputs[k].name;
     channel.unit = bound.info.outputs[k].unit;
-    double sums[3] = {}, count = 0;
+    std::array<double, 3> sums = {};
+    double count = 0;
     for (std::size_t i = 0; i < held_out.size(); ++i) {
-      for (int m = 0; m < 3; ++m) {
+      for (std::size_t m = 0; m < all.size(); ++m) {
         sums[m] += series_of(bound, held_out[i], all[m]->runs.whole_held_out[i], output).squaredNorm();
       }
       for (const Cell& cell : cells_of(bound.recordings[held_out[i]])) count += cell.output == output ? 1 : 0;
