@@ -20,14 +20,14 @@ struct SelectionCriteria {
   int max_effects = 4;  // to combine; more of them can rarely be told apart
 
   // An effect is believed:
-  double min_gain = 0.03;      // smaller gains are within what a slightly wrong form of an effect takes away
-  double min_t = 2.5;          // one-sided 0.6 %
-  double significance = 0.02;  // after correction for the number of candidates (Bonferroni)
-  double large_gain = 0.1;     // is believed without that correction: it may come from few recordings
-  double large_gain_significance = 0.05;
-  double least_share = 0.03;   // of the error without effects, that an effect must take away
-  double decisive_gain = 0.5;  // or of the error that is left, however small that is
-  double tests_per_pair = 15;  // a pair pays for all pairs of six proposals, by candidate
+  double min_gain = 0.03;                 // smaller gains are within what a slightly wrong form of an effect takes away
+  double min_t = 2.5;                     // one-sided 0.6 %
+  double significance = 0.02;             // after correction for the number of candidates (Bonferroni)
+  double large_gain = 0.1;                // is believed without that correction: it may come from few recordings
+  double large_gain_significance = 0.05;  // one-sided, of that test alone
+  double least_share = 0.03;              // of the error without effects, that an effect must take away
+  double decisive_gain = 0.5;             // or of the error that is left, however small that is
+  double tests_per_pair = 15;             // a pair pays for all pairs of six proposals, by candidate
 
   // Of several that are believed, the simplest that is not clearly worse than the best:
   double tie_gain = 0.01;         // the best gains no more than this: a tie
@@ -36,23 +36,24 @@ struct SelectionCriteria {
 
   // An effect among others is dropped again:
   double idle_gain = 0.015;  // half of min_gain: it was worth that much when it was chosen
-  double idle_t = 1.5;
+  double idle_t = 1.5;       // one-sided 7 %: as likely as not to be chance after a choice among many
 
   // An effect is replaced by another one:
-  double replace_gain = 0.03;
-  double replace_t = 2;
-  double replace_share = 0.015;  // of the error without effects
+  double replace_gain = 0.03;    // as much as an effect must gain
+  double replace_t = 2;          // one-sided 2 %: the first choice was the best at its time
+  double replace_share = 0.015;  // of the error without effects: of a small rest nobody sees the difference
 
   // Parameters:
   double determined_deviations = 2;  // standard errors that a parameter lies from zero: about 95 %
 
   // Residuals hold what noise does not:
-  double structure_significance = 0.02;
-  double structure_share = 0.03;  // of their mean square
+  double structure_significance = 0.02;  // as for effects; the verdict asks for more, see VerdictCriteria
+  double structure_share = 0.03;         // of their mean square: less is not worth a parameter
 
   // Proposals that get no fit:
-  double least_distinct = 0.01;               // share of a signature that the model's parameters cannot imitate
-  double unstructured_proposal_gain = 0.012;  // share of the squared residuals, if these look like noise
+  double least_distinct = 0.01;  // share of a signature beyond the model's parameters: below, they do it
+  double unstructured_proposal_gain =
+      0.012;  // share of the squared residuals, if these look like noise: more than chance
 
   // Inputs and signals that are multiples of one before:
   double collinear = 1 - 1e-9;  // cosine; what rounding leaves of 1
