@@ -36,7 +36,7 @@ struct SelectionCriteria {
 
   // An effect among others is dropped again:
   double idle_gain = 0.015;  // half of min_gain: it was worth that much when it was chosen
-  double idle_t = 1.5;       // one-sided 7 %: as likely as not to be chance after a choice among many
+  double idle_t = 1.5;       // one-sided 7 %: it may well be chance
 
   // An effect is replaced by another one:
   double replace_gain = 0.03;    // as much as an effect must gain
