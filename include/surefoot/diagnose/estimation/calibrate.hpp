@@ -27,7 +27,7 @@ std::vector<double> recording_scales(const BoundSimulator& bound, const FitProbl
                                      const std::vector<SimulatedRun>& trajectories);
 
 /// Global start: Latin-hypercube points over the bounds beside the nominal one; the best few are fitted, the best of
-/// those kept. Then twice more with each output and each recording weighed by what is left of it.
+/// those kept. Then twice more with each output and each recording weighted by what is left of it.
 Fit calibrate(const BoundSimulator& bound, const Hypothesis& nominal, FitProblem& problem, std::size_t points,
               std::uint64_t seed, const Parallel& parallel);
 

@@ -24,7 +24,7 @@ struct SelectionCriteria {
   double min_t = 2.5;                     // one-sided 0.6 %
   double significance = 0.02;             // after correction for the number of candidates (Bonferroni)
   double large_gain = 0.1;                // is believed without that correction: it may come from few recordings
-  double large_gain_significance = 0.05;  // of one test: a gain this large is rarely chance
+  double large_gain_significance = 0.05;  // one-sided, of that test alone
   double least_share = 0.03;              // of the error without effects, that an effect must take away
   double decisive_gain = 0.5;             // or of the error that is left, however small that is
   double tests_per_pair = 15;             // a pair pays for all pairs of six proposals, by candidate
@@ -36,23 +36,24 @@ struct SelectionCriteria {
 
   // An effect among others is dropped again:
   double idle_gain = 0.015;  // half of min_gain: it was worth that much when it was chosen
-  double idle_t = 1.5;       // less sure than when it was chosen, for the others share its work
+  double idle_t = 1.5;       // one-sided 7 %: it may well be chance
 
   // An effect is replaced by another one:
   double replace_gain = 0.03;    // as much as an effect must gain
-  double replace_t = 2;          // one-sided 2.3 %
-  double replace_share = 0.015;  // of the error without effects
+  double replace_t = 2;          // one-sided 2 %: the first choice was the best at its time
+  double replace_share = 0.015;  // of the error without effects: of a small rest nobody sees the difference
 
   // Parameters:
   double determined_deviations = 2;  // standard errors that a parameter lies from zero: about 95 %
 
   // Residuals hold what noise does not:
-  double structure_significance = 0.02;
-  double structure_share = 0.03;  // of their mean square
+  double structure_significance = 0.02;  // as for effects; the verdict asks for more, see VerdictCriteria
+  double structure_share = 0.03;         // of their mean square: less is not worth a parameter
 
   // Proposals that get no fit:
-  double least_distinct = 0.01;               // share of a signature that the model's parameters cannot imitate
-  double unstructured_proposal_gain = 0.012;  // share of the squared residuals, if these look like noise
+  double least_distinct = 0.01;  // share of a signature beyond the model's parameters: below, they do it
+  double unstructured_proposal_gain =
+      0.012;  // share of the squared residuals, if these look like noise: more than chance
 
   // Inputs and signals that are multiples of one before:
   double collinear = 1 - 1e-9;  // cosine; what rounding leaves of 1
@@ -78,9 +79,9 @@ struct SearchEffort {
   std::size_t pair_reserve = 4;              // fits of pairs that are finished
   std::size_t pair_finalists = 2;
   std::size_t compared_shortlist = 8;  // for what may stand in an effect's place
-  std::size_t compared_finalists = 3;  // fits of these that are finished
-  int fold_iterations = 6;             // of the fit to each fold, which starts from the fit to all
-  double fold_tolerance = 1e-3;        // relative decrease of its loss at which it ends
+  std::size_t compared_finalists = 3;
+  int fold_iterations = 6;       // of the fit to each fold, which starts from the fit to all
+  double fold_tolerance = 1e-3;  // relative decrease of its loss at which it ends
 };
 
 /// A hypothesis with its cross-validated losses.
