@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/diagnose/diagnosis.hpp"
 #include "surefoot/diagnose/verdict/fitted_model.hpp"
 
 namespace surefoot::diagnosis {
