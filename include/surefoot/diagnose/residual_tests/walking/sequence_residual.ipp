@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -16,7 +17,6 @@
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
 #include "surefoot/diagnose/residual_tests/walking/sequence_residual.hpp"
-#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -153,9 +153,9 @@ SUREFOOT_INLINE Eigen::VectorXd predict_held_out(const Eigen::MatrixXd& covarian
     y[j] = residuals[column];
     for (Eigen::Index i = 0; i < count; ++i) among(i, j) = covariance(known[static_cast<std::size_t>(i)], column);
   }
-  const surefoot::detail::SymmetricEigen eigen = surefoot::detail::eigen_of_symmetric(among);
-  const Eigen::ArrayXd values = eigen.values.array().max(0);
-  const Eigen::VectorXd turned = eigen.vectors.transpose() * y;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(among);
+  const Eigen::ArrayXd values = eigen.eigenvalues().array().max(0);
+  const Eigen::VectorXd turned = eigen.eigenvectors().transpose() * y;
   double least = std::numeric_limits<double>::infinity();
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(count);
   for (const double size : process_sizes) {
@@ -165,7 +165,7 @@ SUREFOOT_INLINE Eigen::VectorXd predict_held_out(const Eigen::MatrixXd& covarian
       if (cost >= least) continue;
       least = cost;
       const Eigen::VectorXd share = turned.array() / variance;
-      weights = size * (eigen.vectors * share);
+      weights = size * (eigen.eigenvectors() * share);
     }
   }
   Eigen::VectorXd predicted = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held_out.size()));
@@ -182,10 +182,10 @@ SUREFOOT_INLINE std::vector<double> permuted_evidence(const Eigen::MatrixXd& cov
                                                       const Eigen::VectorXd& residuals, std::size_t sequences) {
   const auto count = static_cast<Eigen::Index>(sequences), length = residuals.size() / count;
   if (length * count != residuals.size()) return {};
-  const surefoot::detail::SymmetricEigen eigen = surefoot::detail::eigen_of_symmetric(covariance);
-  const Eigen::ArrayXd values = eigen.values.array().max(0);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
+  const Eigen::ArrayXd values = eigen.eigenvalues().array().max(0);
   const auto evidence = [&](const Eigen::VectorXd& shuffled) {
-    const Eigen::VectorXd turned = eigen.vectors.transpose() * shuffled;
+    const Eigen::VectorXd turned = eigen.eigenvectors().transpose() * shuffled;
     return process_evidence(values, turned);
   };
   std::vector<double> result{evidence(residuals)};
