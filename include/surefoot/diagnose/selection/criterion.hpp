@@ -79,9 +79,9 @@ struct SearchEffort {
   std::size_t pair_reserve = 4;              // fits of pairs that are finished
   std::size_t pair_finalists = 2;
   std::size_t compared_shortlist = 8;  // for what may stand in an effect's place
-  std::size_t compared_finalists = 3;
-  int fold_iterations = 6;       // of the fit to each fold, which starts from the fit to all
-  double fold_tolerance = 1e-3;  // relative decrease of its loss at which it ends
+  std::size_t compared_finalists = 3;  // fits of these that are finished
+  int fold_iterations = 6;             // of the fit to each fold, which starts from the fit to all
+  double fold_tolerance = 1e-3;        // relative decrease of its loss at which it ends
 };
 
 /// A hypothesis with its cross-validated losses.

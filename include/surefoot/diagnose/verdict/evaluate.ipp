@@ -88,14 +88,14 @@ SUREFOOT_INLINE std::vector<ChannelMismatch> mismatch_by_output(const Estimation
                                                                 const FittedModels& models) {
   const BoundSimulator& bound = setup.bound;
   const auto& held_out = setup.split.held_out;
-  const std::array<const FittedModel*, 3> all = {&models.nominal, &models.calibrated, &models.chosen};
+  const std::array all = {&models.nominal, &models.calibrated, &models.chosen};
   std::vector<ChannelMismatch> result;
   for (std::size_t k = 0; k < bound.info.outputs.size(); ++k) {
     const auto output = static_cast<Eigen::Index>(k);
     ChannelMismatch channel;
     channel.output = bound.info.outputs[k].name;
     channel.unit = bound.info.outputs[k].unit;
-    std::array<double, 3> sums = {};
+    std::array<double, all.size()> sums = {};
     double count = 0;
     for (std::size_t i = 0; i < held_out.size(); ++i) {
       for (std::size_t m = 0; m < all.size(); ++m) {
