@@ -122,7 +122,7 @@ TEST_CASE("one file per sequence is fitted and gives a model file for surefoot-d
     write(folder.file("w" + std::to_string(i) + ".csv"), csv.str());
     files += " " + folder.file("w" + std::to_string(i) + ".csv");
   }
-  const Outcome fit = calibrate("fit --model previous-order --out " + folder.file("fit") + files);
+  const Outcome fit = calibrate("fit --model previous-command --out " + folder.file("fit") + files);
   REQUIRE_MESSAGE(fit.code == 0, fit.output);
   CHECK(read_motion_file(folder.file("fit/motion.json")).method == "likelihood");
   CHECK(check_model_file(folder.file("fit/motion.toml"), folder.file("w0.csv")) == 1);
@@ -157,10 +157,10 @@ TEST_CASE("wrong readings are named, and kept") {
   FitSettings settings;
   settings.kind = ModelKind::proportional;
   const FittedWalk fitted = fit_walk(walks, {}, settings, calibrate_test::two_threads());
-  REQUIRE(fitted.absurd.size() == 1);
-  CAPTURE(fitted.absurd[0]);
-  CHECK(contains(fitted.absurd[0], "sequence 7 ends "));
-  CHECK(contains(fitted.absurd[0], "a wrong reading? It was kept"));
+  REQUIRE(fitted.outliers.size() == 1);
+  CAPTURE(fitted.outliers[0]);
+  CHECK(contains(fitted.outliers[0], "sequence 7 ends "));
+  CHECK(contains(fitted.outliers[0], "a wrong reading? It was kept"));
   CHECK(fitted.file.sequences == 25);
 }
 

@@ -32,6 +32,6 @@ TEST_CASE("a struct of four members is a motion model, named by its parameters")
 
 TEST_CASE("a model that does not ask for the previous command is not told") {
   const surefoot::FullLinearCorrection full;
-  CHECK(cycle_displacement(full, {1, 2, 3}, {4, 5, 6}).vec() == Vec<3>{1, 2, 3});
+  CHECK(cycle_displacement(full, {1, 2, 3}, {4, 5, 6}).vec() == surefoot::Vec<3>{1, 2, 3});
   CHECK(surefoot::model_name<surefoot::FullLinearCorrection>() == "full linear");
 }

@@ -13,6 +13,7 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/optimize/cma_es.hpp"
+#include "surefoot/optimize/cma_es_core.hpp"
 #include "tests/optimize/test_functions.hpp"
 
 namespace surefoot {
