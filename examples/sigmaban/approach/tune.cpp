@@ -71,7 +71,7 @@ void run(const Problem& problem, const Options& options) {
   search.horizon = Problem::horizon;
   search.total_runs = static_cast<std::uint64_t>(options.budget / run_seconds);
   search.max_seconds = options.wall;
-  search.observer = Progress(search.total_runs, static_cast<std::uint64_t>(search.min_runs / 2));
+  search.on_progress = Progress(search.total_runs, static_cast<std::uint64_t>(search.min_runs / 2));
   const auto make_policy = [](const Winner2016Parameters::Vector& values) {
     return Winner2016(Winner2016Parameters::from_vec(values));
   };
