@@ -18,12 +18,16 @@ function(surefoot_precompile target)
   endif()
 endfunction()
 
-# surefoot_precompiled_headers(NAME LIBRARY HEADER...): a target with a precompiled header, for what links LIBRARY.
+# surefoot_precompiled_headers(NAME LIBRARY HEADER...): a target with a precompiled header, for what links LIBRARY. It is
+# compiled in the same way but links nothing, or else everything would wait for all libraries.
 function(surefoot_precompiled_headers name library)
   if(SUREFOOT_PRECOMPILE)
     file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/precompiled/${name}.cpp CONTENT "// CMake wants a source file beside the headers.\n")
     add_library(${name} OBJECT EXCLUDE_FROM_ALL ${PROJECT_BINARY_DIR}/precompiled/${name}.cpp)
-    target_link_libraries(${name} PRIVATE ${library})
+    target_compile_features(${name} PRIVATE cxx_std_20)
+    target_compile_options(${name} PRIVATE $<TARGET_PROPERTY:${library},INTERFACE_COMPILE_OPTIONS>)
+    target_compile_definitions(${name} PRIVATE $<TARGET_PROPERTY:${library},INTERFACE_COMPILE_DEFINITIONS>)
+    target_include_directories(${name} SYSTEM PRIVATE $<TARGET_PROPERTY:${library},INTERFACE_INCLUDE_DIRECTORIES>)
     target_precompile_headers(${name} PRIVATE ${ARGN})
   endif()
 endfunction()
