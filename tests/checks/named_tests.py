@@ -11,6 +11,13 @@ from layers import area_of, is_face, room_of
 
 STAGES = ["simulation", "estimation", "selection", "residual_tests", "verdict"]
 COVERED = {
+    "surefoot/diagnose/simulation/augmented_simulator.hpp": "diagnose/simulation/simulation_run_effects_test.cpp",
+    "surefoot/diagnose/simulation/integrate.hpp": "diagnose/simulation/simulation_run_test.cpp",  # its order and steps
+    "surefoot/diagnose/simulation/rates.hpp": "diagnose/simulation/simulation_run_effects_test.cpp",
+    "surefoot/diagnose/simulation/step_updates.hpp": "diagnose/simulation/simulation_run_effects_test.cpp",
+    "surefoot/motion/monitor.hpp": "motion/monitor/change_alarm_test.cpp",  # the names of three headers
+    "surefoot/motion/plan.hpp": "motion/plan/command_plan_test.cpp",  # the names of three headers
+    "surefoot/optimize/least_squares_loop.hpp": "optimize/least_squares_test.cpp",
     "surefoot/core/vec.hpp": "core/box_test.cpp",  # the names of two types
     "surefoot/optimize/cma_es_constants.hpp": "optimize/cma_es_core_test.cpp",
     "surefoot/optimize/cma_es_loop.hpp": "optimize/cma_es_test.cpp",
