@@ -22,7 +22,8 @@ struct Options {
 };
 
 /// Root mean square of what the gains leave unexplained in a cycle [m, m, rad].
-surefoot::Vec<3> spread(const std::vector<TwinSequence>& sequences, const Eigen::Matrix<double, 3, 4>& gains) {
+surefoot::Vec<3> residual_deviation(const std::vector<TwinSequence>& sequences,
+                                    const Eigen::Matrix<double, 3, 4>& gains) {
   surefoot::Vec<3> squares = surefoot::Vec<3>::Zero();
   double cycles = 0;
   for (const TwinSequence& sequence : sequences) {
@@ -41,7 +42,7 @@ void print(const std::vector<TwinSequence>& sequences, double cpu_seconds) {
   std::printf("without a fall: %zu of %zu sequences, %.1f %% (95 %%: %.1f to %.1f)\n", upright.yes, upright.trials,
               100 * upright.value(), 100 * upright.low(), 100 * upright.high());
   const auto gains = walk_gains(sequences);
-  const surefoot::Vec<3> rest = spread(sequences, gains);
+  const surefoot::Vec<3> rest = residual_deviation(sequences, gains);
   std::printf("displacement of a cycle = A (1, commands of the cycle):  [m, m, rad]\n");
   constexpr const char* names[] = {"forward", "left", "turn"};
   for (Eigen::Index i = 0; i < 3; ++i) {

@@ -83,7 +83,7 @@ Eigen::Matrix<double, 3, 4> walk_gains(std::span<const TwinSequence> sequences) 
       moved.row(row) = sequence.moved[i].vec();
     }
   }
-  return ordered.colPivHouseholderQr().solve(moved).transpose();
+  return commanded.colPivHouseholderQr().solve(moved).transpose();
 }
 
 }  // namespace sigmaban

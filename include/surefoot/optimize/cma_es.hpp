@@ -19,6 +19,7 @@
 #include "surefoot/core/box.hpp"
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/executor.hpp"
+#include "surefoot/optimize/cma_es_constants.hpp"
 #include "surefoot/optimize/cma_es_loop.hpp"
 #include "surefoot/optimize/cma_es_options.hpp"
 #include "surefoot/optimize/cma_es_search.hpp"
