@@ -100,7 +100,8 @@ class LeastSquaresFit {
     }
     const Eigen::VectorXd weighted = weights.cwiseProduct(residuals_);
     gradient_ = jacobian_at_x_.transpose() * weighted;
-    const Eigen::MatrixXd weighted_jacobian = jacobian_at_x_.transpose() * weights.asDiagonal();
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> weighted_jacobian =
+        jacobian_at_x_.transpose() * weights.asDiagonal();
     hessian_ = weighted_jacobian * jacobian_at_x_;
     weighted_norm_ = weighted.norm();
     active_bound_.assign(static_cast<std::size_t>(x_.size()), false);
