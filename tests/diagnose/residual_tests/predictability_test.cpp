@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "surefoot/core/executor.hpp"
 #include "tests/support/fitted_walk.hpp"
 
 namespace surefoot::diagnosis {
