@@ -61,19 +61,19 @@ TEST_CASE("it learns what depends on the motion, and takes it off recordings it 
   const Bench b = bench(block_recordings(0.05, 0.002));
   const std::vector<std::size_t> some(b.all.begin(), b.all.end() - 1);
   const std::vector<SimulatedRun> some_runs(b.runs.begin(), b.runs.end() - 1);
-  const ResidualModel model = train_residual_model(b.bound, some, some_runs, Serial{}, 1);
+  const ResidualModel model = train_residual_model(b.bound, some, some_runs, serially(), 1);
   CHECK(model.outputs == std::vector<std::string>{"x_m", "v_mps"});
   CHECK(model.features == feature_names(b.bound));
   CHECK(error(b.bound, 7, corrected(b.bound, 7, b.runs[7], model)) < 0.5 * error(b.bound, 7, b.runs[7]));
   CHECK(corrected(b.bound, 7, b.runs[7], model).states == b.runs[7].states);
-  const Comparison unseen = cross_validate_residual(b.bound, b.all, b.runs, b.folds, b.weighting, Serial{}, 1);
+  const Comparison unseen = cross_validate_residual(b.bound, b.all, b.runs, b.folds, b.weighting, serially(), 1);
   CHECK(unseen.gain > 0.1);
   CHECK(unseen.t > 2.5);
 }
 
 TEST_CASE("on noise alone it gains nothing") {
   const Bench b = bench(block_recordings(0, 0.01));
-  const Comparison unseen = cross_validate_residual(b.bound, b.all, b.runs, b.folds, b.weighting, Serial{}, 1);
+  const Comparison unseen = cross_validate_residual(b.bound, b.all, b.runs, b.folds, b.weighting, serially(), 1);
   CHECK(unseen.gain < 0.01);
 }
 
@@ -85,13 +85,13 @@ TEST_CASE("rows without a measurement teach nothing") {
     }
   }
   const Bench b = bench(recordings);
-  const ResidualModel model = train_residual_model(b.bound, b.all, b.runs, Serial{}, 1);
+  const ResidualModel model = train_residual_model(b.bound, b.all, b.runs, serially(), 1);
   CHECK(error(b.bound, 7, corrected(b.bound, 7, b.runs[7], model)) < 0.5 * error(b.bound, 7, b.runs[7]));
 }
 
 TEST_CASE("a model corrects a recording by itself; what it asks for must be there") {
   const Bench b = bench(block_recordings(0.05, 0.002));
-  const ResidualModel model = train_residual_model(b.bound, b.all, b.runs, Serial{}, 1);
+  const ResidualModel model = train_residual_model(b.bound, b.all, b.runs, serially(), 1);
   Recording alone = b.bound.recordings[3];
   const BoundSimulator bound = bind_simulator(SlidingBlock{}, {alone});  // "load" no longer differs between recordings
   const SimulatedRun run = simulate_augmented(SlidingBlock{}, {}, alone);
