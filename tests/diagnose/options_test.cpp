@@ -46,6 +46,7 @@ TEST_CASE("each option that cannot be is named") {
 TEST_CASE("effects of the user's own may be asked for") {
   Effect wind;
   wind.name = "wind";
+  wind.force = [](const EffectContext&, Values, Values) { return 1.0; };
   CHECK(complaint({.effects = {"wind"}, .more_effects = {wind}}).empty());
 }
 

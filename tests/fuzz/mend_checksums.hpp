@@ -33,9 +33,9 @@ inline void put(surefoot::Bytes& bytes, std::size_t at, std::uint64_t number) {
 inline void mend_forest(surefoot::Bytes& bytes, std::size_t start) {
   const auto from_start = std::span<const std::byte>(bytes).subspan(start);
   surefoot::ByteReader in(from_start, "forest");
-  std::size_t size = surefoot::detail::forest_header_bytes;
+  std::size_t size = 0;
   try {
-    size += surefoot::detail::read_header(in).body_bytes();
+    size = surefoot::detail::stored_bytes(in);
   } catch (const surefoot::CoreError&) {
     return;
   }
@@ -46,7 +46,7 @@ inline void mend_forest(surefoot::Bytes& bytes, std::size_t start) {
 
 /// With right checksums of every forest inside and of the whole file.
 inline surefoot::Bytes with_checksums(surefoot::Bytes bytes) {
-  const auto magic = std::as_bytes(std::span(surefoot::detail::forest_magic));
+  const auto magic = std::as_bytes(std::span(std::string_view("SUREFRST")));
   for (auto at = bytes.begin(); at != bytes.end(); ++at) {
     at = std::search(at, bytes.end(), magic.begin(), magic.end());
     if (at == bytes.end()) break;

@@ -66,6 +66,10 @@ Trees load_trees(std::span<const std::byte> bytes, const std::string& source, co
 Trees load_trees(const std::string& path, const ForestType& type);
 TreesView view_trees(std::span<const std::byte> bytes, const std::string& source, const ForestType& type);
 
+/// Bytes of the forest of any type that begins here, as its header has it, with the checksum at their end. Throws a
+/// CoreError if no forest begins here.
+std::uint64_t stored_bytes(ByteReader& in);
+
 }  // namespace detail
 
 /// Any Forest<Inputs, Outputs, Leaf>.

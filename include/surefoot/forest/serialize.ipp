@@ -203,4 +203,8 @@ SUREFOOT_INLINE TreesView view_trees(std::span<const std::byte> bytes, const std
   });
 }
 
+SUREFOOT_INLINE std::uint64_t stored_bytes(ByteReader& in) {
+  return forest_header_bytes + read_header(in).body_bytes();
+}
+
 }  // namespace surefoot::detail

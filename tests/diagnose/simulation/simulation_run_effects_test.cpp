@@ -91,6 +91,7 @@ TEST_CASE("effects with more hidden states than there is room for are refused") 
   const Effect forgetful{.name = "forgetful",
                          .place = Place::input,
                          .hidden_states = 9,
+                         .advance = [](const EffectContext&, Values, HiddenStates) {},
                          .signal = [](const EffectContext& m, Values, Values) { return m.value; }};
   const NamedEffect one{"forgetful", "valve", {}, {}, {}};
   CHECK_NOTHROW(simulate_augmented(LeakyTank{}, machine({}, {one, one}), tank_recording(1, 10), {forgetful}));

@@ -13,7 +13,7 @@ using namespace calibrate_program;
 
 std::vector<LoadOptions> every_way() {
   LoadOptions named;
-  named.columns.orders = {"a_cm", "b_m", "c_deg"};
+  named.columns.commands = {"a_cm", "b_m", "c_deg"};
   named.columns.pose = {"x_m", "y_m"};
   LoadOptions wheels;
   wheels.columns.wheels = {"v_left_m_s", "v_right_m_s"};
