@@ -8,7 +8,7 @@ set(source wrong_problem.cpp)
 
 function(compile result output)
   list(TRANSFORM ARGN PREPEND -D)
-  execute_process(COMMAND ${compiler} -std=c++20 -fsyntax-only ${include} ${ARGN} ${CMAKE_CURRENT_LIST_DIR}/${source}
+  execute_process(COMMAND ${compiler} -std=c++20 -fsyntax-only -DSUREFOOT_COMPILED ${include} ${ARGN} ${CMAKE_CURRENT_LIST_DIR}/${source}
                   RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE text)
   set(${result} ${status} PARENT_SCOPE)
   set(${output} "${text}" PARENT_SCOPE)

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/diagnose.hpp"
 
 double pull(double position, double strength, double place) {  // of the magnet [N], [m]

@@ -18,11 +18,11 @@ std::vector<LoadOptions> every_way() {
   LoadOptions wheels;
   wheels.columns.wheels = {"v_left_m_s", "v_right_m_s"};
   wheels.wheel_base = 0.2;
-  LoadOptions orders;
-  orders.poses_needed = false;
+  LoadOptions commands_only;
+  commands_only.poses_needed = false;
   LoadOptions final_only;
   final_only.final_only = true;
-  return {{}, named, wheels, orders, final_only};
+  return {{}, named, wheels, commands_only, final_only};
 }
 
 }  // namespace

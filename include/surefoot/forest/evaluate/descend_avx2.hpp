@@ -4,6 +4,7 @@
 // A program compiled with SUREFOOT_PORTABLE defined (in all of its files, or in none) does without: same predictions.
 #pragma once
 
+#include "surefoot/core/compiled.hpp"
 #include "surefoot/forest/trees.hpp"
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(SUREFOOT_PORTABLE)
@@ -12,8 +13,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-
-#include "surefoot/core/compiled.hpp"
 
 namespace surefoot::detail {
 
