@@ -20,9 +20,9 @@ function take(header,    file, line, depth, text, name, status) {
   file = include "/" header
   while ((status = (getline line < file)) > 0) {
     if (line ~ /^#pragma once/) continue
-    if (line ~ /^#ifndef SUREFOOT_COMPILED/) {  # the switch of a header: an include of its definitions, and #endif
+    if (line ~ /^#ifndef SUREFOOT_COMPILED/) {  # the switch of a header: an include of its definitions (or of a header that has them), and #endif
       getline line < file
-      if (line !~ /^#include ".*\.ipp"/) fail(header ": SUREFOOT_COMPILED is for including definitions, not for: " line)
+      if (line !~ /^#include ".*\.[hi]pp"/) fail(header ": SUREFOOT_COMPILED is for including definitions, not for: " line)
       split(line, name, "\"")
       later[++waiting] = name[2]
       getline line < file

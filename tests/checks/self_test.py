@@ -141,7 +141,7 @@ class Checks(unittest.TestCase):
         names("namespace detail {\nstruct Rig {};\n}")
         self.expect(words.check, {"include/surefoot/diagnose/verdict/a.hpp":
                                   "// A.\nnamespace surefoot::diagnosis {\nstruct Rig {};\n}\n"})
-        self.expect(words.check, {"apps/calibrate/p.cpp": 'add("--all-orders");\n'}, ("apps/calibrate/p.cpp:1", "--all-orders"))
+        self.expect(words.check, {"apps/calibrate/p.cpp": 'add("--facts");\n'}, ("apps/calibrate/p.cpp:1", "--facts"))
 
     def test_words_in_text(self):
         self.expect(words.check, {"apps/p.cpp": '\nauto s = "recordings kept aside";\n'}, ("apps/p.cpp:2", "kept aside"))
