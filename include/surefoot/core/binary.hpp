@@ -69,7 +69,7 @@ class ByteWriter {
   void u64(std::uint64_t value) { word(value); }
   void f32(float value) { word(value); }
   void f64(double value) { word(value); }
-  void raw(std::span<const std::byte> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
+  void raw(std::span<const std::byte> bytes);
 
   /// The items alone; the reader must know how many there are.
   template <Word T>

@@ -23,6 +23,10 @@
 
 namespace surefoot {
 
+SUREFOOT_INLINE void ByteWriter::raw(std::span<const std::byte> bytes) {
+  bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+}
+
 SUREFOOT_INLINE std::uint64_t checksum(std::span<const std::byte> bytes) {
   std::uint64_t hash = 0x9E3779B97F4A7C15U + bytes.size();
   auto absorb = [&hash](std::uint64_t word) {  // one-to-one in `hash` and in `word`
