@@ -1,7 +1,8 @@
 # Precompiled headers for our own programs: Eigen and what of the standard library nearly every file reads. They are a second
-# of the two to four that most files take. A compiler cache does better without them, and so does clang-tidy.
+# of the two to four that most files take. A compiler cache does better without them, and so does clang-tidy; and with -O3
+# GCC 12 raises false alarms about strings when the standard library comes out of one (its bugs 105329 and 105651).
 set(precompile ON)
-if(SUREFOOT_TIDY OR CMAKE_CXX_COMPILER_LAUNCHER)
+if(SUREFOOT_TIDY OR CMAKE_CXX_COMPILER_LAUNCHER OR CMAKE_BUILD_TYPE STREQUAL "Release")
   set(precompile OFF)
 endif()
 option(SUREFOOT_PRECOMPILE "Precompile headers of our own programs" ${precompile})
