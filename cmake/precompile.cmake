@@ -1,11 +1,7 @@
 # Precompiled headers for our own programs: Eigen and what of the standard library nearly every file reads. They are a second
-# of the two to four that most files take. A compiler cache does better without them, and so does clang-tidy; and with -O3
-# GCC 12 raises false alarms about strings when the standard library comes out of one (its bugs 105329 and 105651).
-set(precompile ON)
-if(SUREFOOT_TIDY OR CMAKE_CXX_COMPILER_LAUNCHER OR CMAKE_BUILD_TYPE STREQUAL "Release")
-  set(precompile OFF)
-endif()
-option(SUREFOOT_PRECOMPILE "Precompile headers of our own programs" ${precompile})
+# of the two to four that most files take. Off unless asked for: GCC 12 raises false alarms about strings when the standard
+# library comes out of one (its bugs 105329 and 105651); and a compiler cache does better without them.
+option(SUREFOOT_PRECOMPILE "Precompile headers of our own programs" OFF)
 
 # surefoot_precompile(TARGET [WITH HEADER_TARGET]): everything that links surefoot_own shares one precompiled header; WITH: the
 # one of another target.

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "marks.hpp"
+#include "signatures.hpp"
 
 namespace all_at_once {
 

@@ -21,8 +21,8 @@
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
-#include "surefoot/diagnose/verdict/describe.hpp"
 #include "surefoot/diagnose/text.hpp"
+#include "surefoot/diagnose/verdict/describe.hpp"
 #include "surefoot/diagnose/verdict/evaluate.hpp"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "marks.hpp"
+#include "signatures.hpp"
 
 #include <algorithm>
 #include <cmath>
