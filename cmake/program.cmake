@@ -1,7 +1,8 @@
 # One program per folder, from all its .cpp files. A program whose packages are missing is skipped with one line.
 # PROGRAM: its name if not that of the folder. OWN_LIBRARY: a library of everything but main.cpp, for tests and others.
+# TOGETHER: how many files of it are compiled at a time where SUREFOOT_UNITY is on.
 function(surefoot_program name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "PROGRAM;OWN_LIBRARY" "PACKAGES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "PROGRAM;OWN_LIBRARY;TOGETHER" "PACKAGES;LIBRARIES")
   file(GLOB sources CONFIGURE_DEPENDS ${name}/*.cpp)
   foreach(package ${arg_PACKAGES})
     find_package(${package} QUIET CONFIG GLOBAL)
@@ -16,6 +17,9 @@ function(surefoot_program name)
   if(arg_OWN_LIBRARY)
     list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
     add_library(${arg_OWN_LIBRARY} STATIC ${sources})
+    if(arg_TOGETHER)
+      surefoot_unity(${arg_OWN_LIBRARY} ${arg_TOGETHER})
+    endif()
     # Only what is built here needs these, so that such a library can be installed without them.
     list(TRANSFORM arg_LIBRARIES REPLACE "(.+)" "$<BUILD_INTERFACE:\\1>" OUTPUT_VARIABLE libraries)
     target_link_libraries(${arg_OWN_LIBRARY} PUBLIC $<BUILD_INTERFACE:surefoot_own> ${libraries})

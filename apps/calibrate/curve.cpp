@@ -19,7 +19,7 @@
 namespace calibrate_program {
 namespace {
 
-struct Options {
+struct CurveOptions {
   SequenceOptions read;
   std::vector<std::size_t> counts;
   std::size_t repetitions = 200, validation = 5;
@@ -70,7 +70,7 @@ void print(const std::vector<CountedCurve>& curves, double as_commanded) {
   std::printf("%-6s %26.3f  with the commands as they are\n\n%s\n", "any", as_commanded, which_model(curves).c_str());
 }
 
-void run(const Options& options) {
+void run(const CurveOptions& options) {
   check(options.read);
   const LoadedSequences loaded = load_sequences(options.read.files, options.read.load);
   warn_of_skipped(loaded);
@@ -101,7 +101,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_curve(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CurveOptions>();
   options->read.method = "published";  // the small models win with few sequences; a prior would hide that
   CLI::App* command =
       program.add_subcommand("curve", "Show how many sequences each model needs, and how many more are worth walking");

@@ -23,14 +23,14 @@ constexpr const char* formats = R"(Files that are read:
 x is forward, y to the left, angles counterclockwise; columns in _cm and _deg are converted.
 Writes motion.json, motion.toml (for surefoot-diagnose) and final_poses.svg and .png.)";
 
-struct Options {
+struct FitOptions {
   SequenceOptions read;
   std::string model = "auto";
   std::vector<std::filesystem::path> test;
   std::filesystem::path out;
 };
 
-void run(const Options& options) {
+void run(const FitOptions& options) {
   check(options.read);
   const LoadedSequences loaded = load_sequences(options.read.files, options.read.load);
   LoadedSequences test;
@@ -61,7 +61,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_fit(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<FitOptions>();
   CLI::App* command = program.add_subcommand("fit", "Calibrate a motion model and its noise from recordings");
   command->footer(formats);
   add_reading_options(*command, options->read);

@@ -29,7 +29,7 @@ struct Rows {
   throw MotionError(csv.file + ", line " + std::to_string(csv.lines[row]) + ": " + what);
 }
 
-std::string number_text(double value) {
+std::string rounded_text(double value) {
   std::string text = std::to_string(value);
   while (text.find('.') != std::string::npos && (text.back() == '0' || text.back() == '.')) {
     const bool point = text.back() == '.';
@@ -59,7 +59,7 @@ std::vector<Rows> stretches(const Csv& csv, bool many) {
     const double value = value_at(csv, number, "seq", row, "every row needs the number of its sequence");
     if (row == 0 || value != number[row - 1]) {
       if (!seen.insert(value).second) {
-        fail(csv, row, "sequence " + number_text(value) + " was already over; put the rows of a sequence together");
+        fail(csv, row, "sequence " + rounded_text(value) + " was already over; put the rows of a sequence together");
       }
       result.push_back({row, row});
     }
@@ -75,7 +75,7 @@ void check_cycles(const Csv& csv, const Rows& rows) {
     value_at(csv, cycle, "cycle", row, "every row needs the number of its cycle");
     if (row > rows.from && cycle[row] != cycle[row - 1] + 1) {
       fail(csv, row,
-           "cycle " + number_text(cycle[row]) + " follows cycle " + number_text(cycle[row - 1]) +
+           "cycle " + rounded_text(cycle[row]) + " follows cycle " + rounded_text(cycle[row - 1]) +
                ", but cycles count up by 1; sort the rows and complete the missing ones");
     }
   }
@@ -94,7 +94,7 @@ class CommandReader {
     const surefoot::Vec<3> read = options_.columns.wheels.empty() ? walk_command(row) : wheel_command(row);
     if (!(read.cwiseAbs().maxCoeff() <= largest)) {
       fail(csv_, row,
-           "a command of more than " + number_text(largest) + " m or rad; check the numbers and their units");
+           "a command of more than " + rounded_text(largest) + " m or rad; check the numbers and their units");
     }
     return read;
   }
@@ -113,7 +113,7 @@ class CommandReader {
     const double now = value(2, row), next = value(2, row + 1), left = value(0, row), right = value(1, row);
     if (!(next > now)) {
       fail(csv_, row + 1,
-           "column 't_s' does not rise, " + number_text(next) + " follows " + number_text(now) +
+           "column 't_s' does not rise, " + rounded_text(next) + " follows " + rounded_text(now) +
                "; sort the rows by time and remove repeated ones");
     }
     return (next - now) * surefoot::Vec<3>((left + right) / 2, 0, (right - left) / options_.wheel_base);
@@ -135,7 +135,7 @@ Eigen::Matrix3Xd read_poses(const Csv& csv, const Columns& columns, const Rows& 
       const double value = columns.pose[i]->factor * column[row];
       if (std::abs(value) > largest) {
         fail(csv, row,
-             "column " + in_quotes(columns.pose[i]->name) + " holds more than " + number_text(largest) +
+             "column " + in_quotes(columns.pose[i]->name) + " holds more than " + rounded_text(largest) +
                  " m or rad; check the numbers and their units");
       }
       poses(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(row - rows.from)) = value;
@@ -203,7 +203,7 @@ LoadedSequences sequences_of(const Csv& csv, const LoadOptions& options) {
     check_cycles(csv, rows);
     WalkSequence sequence = read_sequence(csv, rows, commands, layout);
     sequence.name = csv.file;
-    if (layout.many) sequence.name = number_text(numbers(csv, "seq", "")[rows.from]) + " of " + csv.file;
+    if (layout.many) sequence.name = rounded_text(numbers(csv, "seq", "")[rows.from]) + " of " + csv.file;
     if (!options.columns.wheels.empty()) {
       const std::vector<double>& time = numbers(csv, "t_s", "");
       layout.period = (time[rows.to - 1] - time[rows.from]) / static_cast<double>(rows.count() - 1);
@@ -224,9 +224,9 @@ LoadedSequences load_sequences(const std::vector<std::filesystem::path>& files, 
     LoadedSequences one = sequences_of(diagnose_program::read_csv(file), options);
     if (&file == &files.front()) all.layout = one.layout;
     if (one.layout.steps_per_cycle != all.layout.steps_per_cycle) {
-      throw MotionError(file.filename().string() + ": has " + number_text(one.layout.steps_per_cycle) +
+      throw MotionError(file.filename().string() + ": has " + rounded_text(one.layout.steps_per_cycle) +
                         " steps per cycle, but " + files.front().filename().string() + " has " +
-                        number_text(all.layout.steps_per_cycle) + "; calibrate them one by one");
+                        rounded_text(all.layout.steps_per_cycle) + "; calibrate them one by one");
     }
     std::ranges::move(one.sequences, std::back_inserter(all.sequences));
     std::ranges::move(one.skipped, std::back_inserter(all.skipped));

@@ -18,7 +18,7 @@
 namespace calibrate_program {
 namespace {
 
-struct Options {
+struct PlanOptions {
   int sequences = 25, cycles = 25;
   std::uint64_t seed = 1;
   double steps_per_cycle = 1;
@@ -27,7 +27,7 @@ struct Options {
   std::filesystem::path motion, out;
 };
 
-surefoot::CommandBounds bounds_of(const Options& options) {
+surefoot::CommandBounds bounds_of(const PlanOptions& options) {
   surefoot::CommandBounds bounds;
   const auto set = [](const std::vector<double>& given, surefoot::Vec<3>& bound) {
     for (std::size_t i = 0; i < given.size(); ++i) bound[static_cast<Eigen::Index>(i)] = given[i];
@@ -38,7 +38,7 @@ surefoot::CommandBounds bounds_of(const Options& options) {
   return bounds;
 }
 
-std::vector<Eigen::Matrix3Xd> plan_of(const Options& options, const MotionFile& robot) {
+std::vector<Eigen::Matrix3Xd> plan_of(const PlanOptions& options, const MotionFile& robot) {
   const surefoot::CommandBounds bounds = bounds_of(options);
   if (options.kind == "wandering") {
     return surefoot::plan_commands(bounds, options.sequences, options.cycles, options.seed);
@@ -51,7 +51,7 @@ std::vector<Eigen::Matrix3Xd> plan_of(const Options& options, const MotionFile& 
       tracker, {.bounds = bounds, .sequences = options.sequences, .cycles = options.cycles}, options.seed);
 }
 
-void run(const Options& options) {
+void run(const PlanOptions& options) {
   const MotionFile robot = robot_of(options.motion);
   const std::vector<Eigen::Matrix3Xd> commands = plan_of(options, robot);
   const surefoot::PreviousCommandCorrection model =
@@ -75,7 +75,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_plan(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PlanOptions>();
   CLI::App* command = program.add_subcommand("plan", "Plan the sequences to walk, and print a sheet for the results");
   command->add_option("--sequences", options->sequences, "how many")
       ->check(CLI::Range(1, 10'000))

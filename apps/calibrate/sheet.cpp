@@ -121,11 +121,11 @@ MergedSheet merge_sheet(const Csv& commands, const Csv& sheet) {
 
 namespace {
 
-struct Options {
+struct SheetOptions {
   std::filesystem::path commands, sheet, out;
 };
 
-void run(const Options& options) {
+void run(const SheetOptions& options) {
   const MergedSheet merged =
       merge_sheet(diagnose_program::read_csv(options.commands), diagnose_program::read_csv(options.sheet));
   if (merged.skipped > 0) {
@@ -139,7 +139,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_sheet(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SheetOptions>();
   CLI::App* command = program.add_subcommand("sheet", "Turn a sheet that was filled in into recordings");
   command->add_option("--commands,--orders", options->commands, "commands.csv of the plan")->required();
   command

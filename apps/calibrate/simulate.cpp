@@ -17,7 +17,7 @@
 namespace calibrate_program {
 namespace {
 
-struct Options {
+struct SimulateOptions {
   int sequences = 25, cycles = 25;
   std::uint64_t seed = 1;
   double position_accuracy = 0.005, heading_accuracy = 0.02;  // [m], [rad]
@@ -26,7 +26,7 @@ struct Options {
   std::filesystem::path motion, out;
 };
 
-void run(const Options& options) {
+void run(const SimulateOptions& options) {
   const MotionFile robot = robot_of(options.motion);
   const surefoot::PoseAccuracy accuracy{.position = options.position_accuracy,
                                         .heading = options.heading_accuracy,
@@ -45,7 +45,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_simulate(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SimulateOptions>();
   CLI::App* command = program.add_subcommand(
       "simulate", "Write recordings of a simulated robot: that of the paper, or a calibrated one");
   command->add_option("--sequences", options->sequences, "how many")

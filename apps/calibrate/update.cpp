@@ -15,7 +15,7 @@
 namespace calibrate_program {
 namespace {
 
-struct Options {
+struct UpdateOptions {
   SequenceOptions read;
   std::filesystem::path motion, out;
   double forgetting = 0.98;
@@ -42,7 +42,7 @@ void keep(const surefoot::MotionTracker& tracker, std::size_t sequences, std::si
 }
 
 double threshold_of(const surefoot::MotionTracker& tracker, const LoadedSequences& loaded, const MotionFile& file,
-                    const Options& options, const StoppableThreads& executor) {
+                    const UpdateOptions& options, const StoppableThreads& executor) {
   if (options.threshold > 0) return options.threshold;
   say("finding what evidence an alarm must ask for, so that 1 of 100 runs of 100 sequences raises a false one");
   surefoot::ThresholdOptions work;
@@ -66,7 +66,7 @@ void update_by_all(const LoadedSequences& loaded, surefoot::ChangeAlarm& alarm) 
   }
 }
 
-void run(const Options& options) {
+void run(const UpdateOptions& options) {
   check(options.read);
   MotionFile file = read_motion_file(options.motion);
   LoadOptions load = options.read.load;
@@ -88,7 +88,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_update(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<UpdateOptions>();
   CLI::App* command =
       program.add_subcommand("update", "Bring a model up to date with new sequences; alarm if the robot has changed");
   command->footer("Reads the same files as `fit`, in their order. Writes motion.json.");

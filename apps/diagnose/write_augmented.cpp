@@ -10,7 +10,7 @@ namespace diagnose_program {
 namespace {
 
 // A TOML basic string.
-std::string text(const std::string& value) {
+std::string toml_string(const std::string& value) {
   std::string result = "\"";
   for (const char c : value) {
     constexpr const char* digits = "0123456789ABCDEF";
@@ -32,20 +32,20 @@ std::string key(const std::string& name) {
   const bool bare = !name.empty() && std::ranges::all_of(name, [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   });
-  return bare ? name : text(name);
+  return bare ? name : toml_string(name);
 }
 
 // A TOML float always has a point or an exponent.
-std::string number(double value) {
+std::string toml_number(double value) {
   const std::string result = number_text(value);
   return result.find_first_of(".e") == std::string::npos ? result + ".0" : result;
 }
 
 void write_head(std::ostream& out, const ModelFile& model) {
-  out << "schema = \"surefoot.model/1\"\nname = " << text(model.name) << '\n';
+  out << "schema = \"surefoot.model/1\"\nname = " << toml_string(model.name) << '\n';
   out << "kind = \"" << (model.kind == surefoot::SimulatorKind::ode ? "ode" : "map") << "\"\n";
-  if (!model.time.empty()) out << "time = " << text(model.time) << '\n';
-  if (!model.sequence.empty()) out << "sequence = " << text(model.sequence) << '\n';
+  if (!model.time.empty()) out << "time = " << toml_string(model.time) << '\n';
+  if (!model.sequence.empty()) out << "sequence = " << toml_string(model.sequence) << '\n';
   if (model.skip_rows > 0) out << "skip_rows = " << model.skip_rows << '\n';
   if (model.measured_after_step) out << "measured = \"after step\"\n";
 }
@@ -56,17 +56,18 @@ void write_states(std::ostream& out, const ModelFile& model) {
     const std::string start =
         state.initial == ModelState::Initial::column ? "column:" + state.start.text : state.start.text;
     out << key(state.name) << (model.kind == surefoot::SimulatorKind::ode ? " = { rate = " : " = { next = ")
-        << text(state.change.text) << ", initial = " << text(start) << ", unit = " << text(state.unit);
+        << toml_string(state.change.text) << ", initial = " << toml_string(start)
+        << ", unit = " << toml_string(state.unit);
     if (state.effort) {
-      out << ", effort = " << text(state.effort->text) << ", effort_unit = " << text(state.effort_unit);
+      out << ", effort = " << toml_string(state.effort->text) << ", effort_unit = " << toml_string(state.effort_unit);
     }
     out << " }\n";
   }
 }
 
 void write_parameter(std::ostream& out, const surefoot::ParameterInfo& parameter) {
-  out << "{ value = " << number(parameter.value) << ", min = " << number(parameter.low)
-      << ", max = " << number(parameter.high) << ", unit = " << text(parameter.unit)
+  out << "{ value = " << toml_number(parameter.value) << ", min = " << toml_number(parameter.low)
+      << ", max = " << toml_number(parameter.high) << ", unit = " << toml_string(parameter.unit)
       << (parameter.fixed ? ", fixed = true }" : " }");
 }
 
@@ -79,16 +80,17 @@ surefoot::ParameterInfo effect_parameter(const surefoot::FittedValue& fit) {
 
 void write_effects(std::ostream& out, const ModelFile& model) {
   for (const ModelEffect& effect : model.effects) {
-    out << "\n[[effects]]\nname = " << text(effect.name) << "\nattached_to = " << text(effect.attached_to) << '\n';
-    if (!effect.with.empty()) out << "with = " << text(effect.with) << '\n';
-    if (!effect.form.empty()) out << "form = " << text(effect.form) << '\n';
+    out << "\n[[effects]]\nname = " << toml_string(effect.name) << "\nattached_to = " << toml_string(effect.attached_to)
+        << '\n';
+    if (!effect.with.empty()) out << "with = " << toml_string(effect.with) << '\n';
+    if (!effect.form.empty()) out << "form = " << toml_string(effect.form) << '\n';
     out << "[effects.parameters]\n";
     for (const surefoot::ParameterInfo& parameter : effect.parameters) {
       out << key(parameter.name) << " = ";
       if (parameter.low < parameter.high) {
         write_parameter(out, parameter);
       } else {
-        out << number(parameter.value);
+        out << toml_number(parameter.value);
       }
       out << '\n';
     }
@@ -102,22 +104,23 @@ std::string model_text(const ModelFile& model) {
   write_head(out, model);
   if (!model.inputs.empty()) out << "\n[inputs]\n";
   for (const ModelInput& input : model.inputs) {
-    out << key(input.name) << " = { column = " << text(input.column) << (input.linear ? ", hold = \"linear\"" : "")
-        << ", unit = " << text(input.unit) << " }\n";
+    out << key(input.name) << " = { column = " << toml_string(input.column)
+        << (input.linear ? ", hold = \"linear\"" : "") << ", unit = " << toml_string(input.unit) << " }\n";
   }
   if (!model.lets.empty()) out << "\n[let]\n";
-  for (const ModelLet& let : model.lets) out << key(let.name) << " = " << text(let.value.text) << '\n';
+  for (const ModelLet& let : model.lets) out << key(let.name) << " = " << toml_string(let.value.text) << '\n';
   write_states(out, model);
   out << "\n[outputs]\n";
   for (const ModelOutput& output : model.outputs) {
-    out << key(output.name) << " = { value = " << text(output.value.text) << ", unit = " << text(output.unit);
-    if (std::isfinite(output.noise)) out << ", noise = " << number(output.noise);
+    out << key(output.name) << " = { value = " << toml_string(output.value.text)
+        << ", unit = " << toml_string(output.unit);
+    if (std::isfinite(output.noise)) out << ", noise = " << toml_number(output.noise);
     out << " }\n";
   }
   if (!model.constants.empty()) out << "\n[constants]\n";
   for (const ModelConstant& constant : model.constants) {
     out << key(constant.name) << " = "
-        << (constant.meta.empty() ? number(constant.value) : text("meta:" + constant.meta)) << '\n';
+        << (constant.meta.empty() ? toml_number(constant.value) : toml_string("meta:" + constant.meta)) << '\n';
   }
   if (!model.parameters.empty()) out << "\n[parameters]\n";
   for (const surefoot::ParameterInfo& parameter : model.parameters) {
@@ -127,11 +130,11 @@ std::string model_text(const ModelFile& model) {
   }
   if (model.planar) {
     const ModelPlanar& planar = *model.planar;
-    out << "\n[planar]\nx = " << text(planar.x) << "\ny = " << text(planar.y) << "\nheading = " << text(planar.heading)
-        << '\n';
-    if (!planar.forward.empty()) out << "forward = " << text(planar.forward) << '\n';
-    if (!planar.lateral.empty()) out << "lateral = " << text(planar.lateral) << '\n';
-    if (!planar.turn.empty()) out << "turn = " << text(planar.turn) << '\n';
+    out << "\n[planar]\nx = " << toml_string(planar.x) << "\ny = " << toml_string(planar.y)
+        << "\nheading = " << toml_string(planar.heading) << '\n';
+    if (!planar.forward.empty()) out << "forward = " << toml_string(planar.forward) << '\n';
+    if (!planar.lateral.empty()) out << "lateral = " << toml_string(planar.lateral) << '\n';
+    if (!planar.turn.empty()) out << "turn = " << toml_string(planar.turn) << '\n';
   }
   write_effects(out, model);
   return out.str();

@@ -12,7 +12,7 @@ namespace diagnose_program {
 namespace {
 
 // A string literal. Other bytes than printable ASCII go as octal numbers.
-std::string text(const std::string& value) {
+std::string string_literal(const std::string& value) {
   std::string result = "\"";
   for (const char c : value) {
     const auto code = static_cast<unsigned char>(c);
@@ -27,34 +27,38 @@ std::string text(const std::string& value) {
 }
 
 std::string one_line(std::string value) {
-  std::ranges::replace_if(value, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == '\\'; }, '?');
+  std::ranges::replace_if(
+      value, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == '\\'; }, '?');
   return value;
 }
 
 void write_info(std::ostream& out, const ModelFile& model, const EquationPlan& plan) {
   out << "  surefoot::SimulatorInfo info() const {\n    surefoot::SimulatorInfo info;\n    info.name = "
-      << text(model.name)
+      << string_literal(model.name)
       << ";\n    info.kind = surefoot::SimulatorKind::" << (model.kind == surefoot::SimulatorKind::ode ? "ode" : "map")
       << ";\n    info.states = {";
   for (const auto& state : model.states) {
-    out << "{" << text(state.name) << ", " << text(state.unit) << ", " << text(state.effort_unit) << "}, ";
+    out << "{" << string_literal(state.name) << ", " << string_literal(state.unit) << ", "
+        << string_literal(state.effort_unit) << "}, ";
   }
   out << "};\n    info.inputs = {";
   for (const auto& input : model.inputs) {
-    out << "{" << text(input.name) << ", " << text(input.unit) << ", " << (input.linear ? "true" : "false") << "}, ";
+    out << "{" << string_literal(input.name) << ", " << string_literal(input.unit) << ", "
+        << (input.linear ? "true" : "false") << "}, ";
   }
   out << "};\n    info.outputs = {";
   for (const auto& output : model.outputs) {
-    out << "{" << text(output.name) << ", " << text(output.unit) << ", " << cpp_number(output.noise) << "}, ";
+    out << "{" << string_literal(output.name) << ", " << string_literal(output.unit) << ", " << cpp_number(output.noise)
+        << "}, ";
   }
   out << "};\n    info.parameters = {";
   for (const auto& parameter : model.parameters) {
-    out << "{" << text(parameter.name) << ", " << text(parameter.unit) << ", " << cpp_number(parameter.value) << ", "
-        << cpp_number(parameter.low) << ", " << cpp_number(parameter.high) << ", "
-        << (parameter.fixed ? "true" : "false") << "}, ";
+    out << "{" << string_literal(parameter.name) << ", " << string_literal(parameter.unit) << ", "
+        << cpp_number(parameter.value) << ", " << cpp_number(parameter.low) << ", " << cpp_number(parameter.high)
+        << ", " << (parameter.fixed ? "true" : "false") << "}, ";
   }
   out << "};\n    info.signals = {";
-  for (const std::string& signal : plan.signals) out << text(signal) << ", ";
+  for (const std::string& signal : plan.signals) out << string_literal(signal) << ", ";
   out << "};\n";
   if (model.planar) {
     const auto index = [&](const std::string& name) {
@@ -75,7 +79,7 @@ void write_constants(std::ostream& out, const ModelFile& model) {
          "*this;\n";
   for (const auto& constant : model.constants) {
     if (constant.meta.empty()) continue;
-    out << "    model.q_" << constant.name << " = recording.constants.at(" << text(constant.meta) << ");\n";
+    out << "    model.q_" << constant.name << " = recording.constants.at(" << string_literal(constant.meta) << ");\n";
   }
   out << "    return model;\n  }\n\n";
 }
@@ -153,8 +157,8 @@ void write_found(std::ostream& out, const ModelFile& model, const surefoot::Diag
   for (const auto& parameter : model.parameters) out << cpp_number(parameter.value) << ", ";
   out << "};\n";
   for (const ModelEffect& effect : model.effects) {
-    out << "  found.effects.push_back({" << text(effect.name) << ", " << text(effect.attached_to) << ", "
-        << text(effect.form) << ", " << text(effect.with) << ", {";
+    out << "  found.effects.push_back({" << string_literal(effect.name) << ", " << string_literal(effect.attached_to)
+        << ", " << string_literal(effect.form) << ", " << string_literal(effect.with) << ", {";
     for (const auto& parameter : effect.parameters) out << cpp_number(parameter.value) << ", ";
     out << "}});\n";
   }
@@ -173,7 +177,8 @@ std::string model_header(const ModelFile& model, const surefoot::Diagnosis& diag
       << ": its equations and what a diagnosis found, written by surefoot-diagnose for the library surefoot.\n"
          "//\n//   surefoot::simulate_augmented(augmented::Model{}, augmented::found(), recording)\n"
          "#pragma once\n\n#include <Eigen/Core>\n#include <cmath>\n#include <limits>\n\n"
-         "#include \"surefoot/core/vec.hpp\"\n#include \"surefoot/diagnose/simulate_augmented.hpp\"\n\nnamespace augmented {\n\n"
+         "#include \"surefoot/core/vec.hpp\"\n#include \"surefoot/diagnose/simulate_augmented.hpp\"\n\nnamespace "
+         "augmented {\n\n"
          "inline double smaller(double a, double b) { return a < b || a != a ? a : b; }\n"
          "inline double larger(double a, double b) { return a > b || a != a ? a : b; }\n"
          "inline double sign(double a) { return a > 0 ? 1 : a < 0 ? -1 : a; }\n\nstruct Model {\n";

@@ -9,16 +9,18 @@ namespace {
 using Json = nlohmann::ordered_json;
 using surefoot::Diagnosis;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json interval(const surefoot::FittedValue& fit) { return Json::array({number(fit.low), number(fit.high)}); }
+Json interval(const surefoot::FittedValue& fit) {
+  return Json::array({finite_or_null(fit.low), finite_or_null(fit.high)});
+}
 
 Json parameters_json(const std::vector<surefoot::CalibratedParameter>& parameters) {
   Json list = Json::array();
   for (const auto& parameter : parameters) {
     list.push_back({{"name", parameter.fit.name},
-                    {"nominal", number(parameter.nominal)},
-                    {"calibrated", number(parameter.fit.value)},
+                    {"nominal", finite_or_null(parameter.nominal)},
+                    {"calibrated", finite_or_null(parameter.fit.value)},
                     {"ci95", interval(parameter.fit)},
                     {"unit", parameter.fit.unit},
                     {"at_bound", parameter.at_bound},
@@ -32,23 +34,23 @@ Json mismatch_json(const Diagnosis& diagnosis) {
   for (const auto& channel : diagnosis.channels) {
     channels.push_back({{"output", channel.output},
                         {"unit", channel.unit},
-                        {"rmse_nominal", number(channel.rmse_nominal)},
-                        {"rmse_calibrated", number(channel.rmse_calibrated)},
-                        {"rmse_after", number(channel.rmse_after)},
-                        {"noise", number(channel.noise)},
-                        {"p_value", number(channel.p_value)}});
+                        {"rmse_nominal", finite_or_null(channel.rmse_nominal)},
+                        {"rmse_calibrated", finite_or_null(channel.rmse_calibrated)},
+                        {"rmse_after", finite_or_null(channel.rmse_after)},
+                        {"noise", finite_or_null(channel.noise)},
+                        {"p_value", finite_or_null(channel.p_value)}});
   }
   for (const auto& region : diagnosis.regions) {
     regions.push_back({{"rule", region.rule},
-                       {"share_of_excess", number(region.share_of_excess)},
-                       {"share_of_samples", number(region.share_of_samples)},
-                       {"p_value", number(region.p_value)}});
+                       {"share_of_excess", finite_or_null(region.share_of_excess)},
+                       {"share_of_samples", finite_or_null(region.share_of_samples)},
+                       {"p_value", finite_or_null(region.p_value)}});
   }
   for (const auto& one : diagnosis.intervals) {
     intervals.push_back({{"recording", one.recording},
-                         {"from", number(one.from)},
-                         {"to", number(one.to)},
-                         {"share_of_excess", number(one.share_of_excess)}});
+                         {"from", finite_or_null(one.from)},
+                         {"to", finite_or_null(one.to)},
+                         {"share_of_excess", finite_or_null(one.share_of_excess)}});
   }
   return {{"channels", channels}, {"regions", regions}, {"intervals", intervals}};
 }
@@ -56,7 +58,8 @@ Json mismatch_json(const Diagnosis& diagnosis) {
 Json fitted_json(const std::vector<surefoot::FittedValue>& values) {
   Json list = Json::array();
   for (const auto& fit : values) {
-    list.push_back({{"name", fit.name}, {"value", number(fit.value)}, {"ci95", interval(fit)}, {"unit", fit.unit}});
+    list.push_back(
+        {{"name", fit.name}, {"value", finite_or_null(fit.value)}, {"ci95", interval(fit)}, {"unit", fit.unit}});
   }
   return list;
 }
@@ -68,10 +71,10 @@ Json effects_json(const std::vector<surefoot::FoundEffect>& effects) {
     if (!effect.form.empty()) one["form"] = effect.form;
     if (!effect.other.empty()) one["with"] = effect.other;
     one["parameters"] = fitted_json(effect.parameters);
-    one["evidence"] = {{"heldout_gain", number(effect.evidence.gain)},
-                       {"gain_stderr", number(effect.evidence.gain_stderr)},
-                       {"p_value", number(effect.evidence.p_value)},
-                       {"confidence", number(effect.evidence.confidence)}};
+    one["evidence"] = {{"heldout_gain", finite_or_null(effect.evidence.gain)},
+                       {"gain_stderr", finite_or_null(effect.evidence.gain_stderr)},
+                       {"p_value", finite_or_null(effect.evidence.p_value)},
+                       {"confidence", finite_or_null(effect.evidence.confidence)}};
     list.push_back(one);
   }
   return list;
@@ -85,7 +88,7 @@ Json alternatives_json(const Diagnosis& diagnosis) {
       effects.push_back({{"name", name}, {"attached_to", attached_to}});
     }
     list.push_back({{"effects", effects},
-                    {"heldout_rmse", number(alternative.cross_validated_rmse)},
+                    {"heldout_rmse", finite_or_null(alternative.cross_validated_rmse)},
                     {"indistinguishable", alternative.indistinguishable}});
   }
   return list;
@@ -94,17 +97,19 @@ Json alternatives_json(const Diagnosis& diagnosis) {
 Json fit_json(const Diagnosis& diagnosis) {
   Json recordings = Json::array();
   for (const auto& one : diagnosis.per_recording) {
-    recordings.push_back({{"recording", one.recording}, {"before", number(one.before)}, {"after", number(one.after)}});
+    recordings.push_back(
+        {{"recording", one.recording}, {"before", finite_or_null(one.before)}, {"after", finite_or_null(one.after)}});
   }
-  return {
-      {"train", {{"rmse_before", number(diagnosis.training_before)}, {"rmse_after", number(diagnosis.training_after)}}},
-      {"heldout",
-       {{"rmse_before", number(diagnosis.held_out_before)},
-        {"rmse_after", number(diagnosis.held_out_after)},
-        {"rmse_forest", number(diagnosis.held_out_forest)},
-        {"noise_floor", number(diagnosis.noise_floor)},
-        {"ratio_ci95", Json::array({number(diagnosis.gain_low), number(diagnosis.gain_high)})},
-        {"per_recording", recordings}}}};
+  return {{"train",
+           {{"rmse_before", finite_or_null(diagnosis.training_before)},
+            {"rmse_after", finite_or_null(diagnosis.training_after)}}},
+          {"heldout",
+           {{"rmse_before", finite_or_null(diagnosis.held_out_before)},
+            {"rmse_after", finite_or_null(diagnosis.held_out_after)},
+            {"rmse_forest", finite_or_null(diagnosis.held_out_forest)},
+            {"noise_floor", finite_or_null(diagnosis.noise_floor)},
+            {"ratio_ci95", Json::array({finite_or_null(diagnosis.gain_low), finite_or_null(diagnosis.gain_high)})},
+            {"per_recording", recordings}}}};
 }
 
 Json limits_json(const Diagnosis& diagnosis) {
@@ -113,7 +118,7 @@ Json limits_json(const Diagnosis& diagnosis) {
     list.push_back({{"name", limit.name},
                     {"attached_to", limit.attached_to},
                     {"parameter", limit.smallest.name},
-                    {"smallest", number(limit.smallest.value)},
+                    {"smallest", finite_or_null(limit.smallest.value)},
                     {"unit", limit.smallest.unit}});
   }
   return list;
@@ -122,21 +127,22 @@ Json limits_json(const Diagnosis& diagnosis) {
 Json noise_json(const Diagnosis& diagnosis) {
   Json list = Json::array();
   for (const auto& noise : diagnosis.noise_findings) {
-    list.push_back({{"name", noise.name},
-                    {"output", noise.output},
-                    {"parameters", fitted_json(noise.parameters)},
-                    {"evidence", {{"likelihood_gain", number(noise.gain)}, {"p_value", number(noise.p_value)}}},
-                    {"sentence", noise.sentence}});
+    list.push_back(
+        {{"name", noise.name},
+         {"output", noise.output},
+         {"parameters", fitted_json(noise.parameters)},
+         {"evidence", {{"likelihood_gain", finite_or_null(noise.gain)}, {"p_value", finite_or_null(noise.p_value)}}},
+         {"sentence", noise.sentence}});
   }
   return list;
 }
 
 Json forest_json(const surefoot::ForestResidual& forest) {
   Json json = {{"kept", forest.kept},
-               {"heldout_rmse", number(forest.held_out_after)},
-               {"heldout_rmse_without", number(forest.held_out_before)}};
-  if (forest.tried) json["gain"] = number(forest.gain);
-  if (forest.tried) json["gain_stderr"] = number(forest.gain_stderr);
+               {"heldout_rmse", finite_or_null(forest.held_out_after)},
+               {"heldout_rmse_without", finite_or_null(forest.held_out_before)}};
+  if (forest.tried) json["gain"] = finite_or_null(forest.gain);
+  if (forest.tried) json["gain_stderr"] = finite_or_null(forest.gain_stderr);
   if (forest.kept) json["file"] = residual_file;
   return json;
 }
@@ -185,7 +191,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
       {"fit", fit_json(diagnosis)},
       {"forest_residual", forest_json(diagnosis.forest_residual)},
       {"remarks", remarks_json(diagnosis)},
-      {"seconds", number(diagnosis.seconds)},
+      {"seconds", finite_or_null(diagnosis.seconds)},
       {"seed", diagnosis.seed}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";  // names of files may be no UTF-8
 }

@@ -22,7 +22,7 @@ LoadOptions wheels() {
   return options;
 }
 
-void check_refused(const std::string& csv, const std::string& words, const LoadOptions& options = {}) {
+void check_walks_refused(const std::string& csv, const std::string& words, const LoadOptions& options = {}) {
   CAPTURE(csv);
   CAPTURE(words);
   try {
@@ -129,42 +129,45 @@ TEST_CASE("speeds of wheels make commands, each held until the next row") {
 
 TEST_CASE("what cannot be read is refused in one sentence that names the place") {
   const std::string head = "seq,cycle,dx_m,dy_m,turn_rad,x_m,y_m,theta_rad\n";
-  check_refused("", "the file is empty");
-  check_refused(head, "only 0 row(s)");
-  check_refused("dx_m,dy_m,turn_rad,x_m,y_m\n1,0,0,1,1\n", "at least 2");
-  check_refused("1,2,3\n4,5,6\n", "line 1: there is no header row");
-  check_refused(head + "1,0,0,0\n", "line 2: the row has 4 cells");
-  check_refused(head + "1,0,nan,0,0,1,1,0\n", "line 2: column 'dx_m' is empty; every cycle needs its command");
-  check_refused(head + "1,0,one,0,0,1,1,0\n", "line 2: column 'dx_m' holds \"one\"");
-  check_refused(head + "1,0,1e9,0,0,1,1,0\n", "line 2: a command of more than");
-  check_refused(head + "1,0,0,0,0,1e9,1,0\n", "line 2: column 'x_m' holds more than");
-  check_refused(head + "1,1,0,0,0,1,1,0\n1,1,0,0,0,1,1,0\n", "line 3: cycle 1 follows cycle 1");
-  check_refused(head + "1,1,0,0,0,1,1,0\n1,3,0,0,0,1,1,0\n", "line 3: cycle 3 follows cycle 1");
-  check_refused(head + "1,,0,0,0,1,1,0\n", "line 2: column 'cycle' is empty");
-  check_refused(head + ",0,0,0,0,1,1,0\n", "line 2: column 'seq' is empty");
-  check_refused(head + "1,0,0,0,0,1,1,0\n2,0,0,0,0,1,1,0\n1,1,0,0,0,1,1,0\n", "line 4: sequence 1 was already over");
-  check_refused("seq,dx,dy_m,turn_rad,x_m,y_m\n1,0,0,0,1,1\n",
-                "column 'dx' (the command forward) does not end in a unit");
-  check_refused("seq,dx_m,dy_m,turn_rad,x,y_m\n1,0,0,0,1,1\n",
-                "column 'x' (the position forward) does not end in a unit");
-  check_refused("seq,speed_m,dy_m,turn_rad,x_m,y_m\n1,0,0,0,1,1\n", "no column was recognised as the command forward");
-  check_refused("seq,dx_m,dy_m,turn_rad,x_m\n1,0,0,0,1\n", "no column was recognised as the position to the left");
-  check_refused("dx_m,dy_m,turn_rad,x_m,y_m,theta_rad\n1,0,0,1,1,\n1,0,0,1,1,0\n",
-                "line 2: the first row holds part of a pose");
-  check_refused(with(many, "cycle: 2", "cycle: two"), "'steps_per_cycle: two' must give a number");
-  check_refused(with(many, "cycle: 2", "cycle: -1"), "must give a number");
+  check_walks_refused("", "the file is empty");
+  check_walks_refused(head, "only 0 row(s)");
+  check_walks_refused("dx_m,dy_m,turn_rad,x_m,y_m\n1,0,0,1,1\n", "at least 2");
+  check_walks_refused("1,2,3\n4,5,6\n", "line 1: there is no header row");
+  check_walks_refused(head + "1,0,0,0\n", "line 2: the row has 4 cells");
+  check_walks_refused(head + "1,0,nan,0,0,1,1,0\n", "line 2: column 'dx_m' is empty; every cycle needs its command");
+  check_walks_refused(head + "1,0,one,0,0,1,1,0\n", "line 2: column 'dx_m' holds \"one\"");
+  check_walks_refused(head + "1,0,1e9,0,0,1,1,0\n", "line 2: a command of more than");
+  check_walks_refused(head + "1,0,0,0,0,1e9,1,0\n", "line 2: column 'x_m' holds more than");
+  check_walks_refused(head + "1,1,0,0,0,1,1,0\n1,1,0,0,0,1,1,0\n", "line 3: cycle 1 follows cycle 1");
+  check_walks_refused(head + "1,1,0,0,0,1,1,0\n1,3,0,0,0,1,1,0\n", "line 3: cycle 3 follows cycle 1");
+  check_walks_refused(head + "1,,0,0,0,1,1,0\n", "line 2: column 'cycle' is empty");
+  check_walks_refused(head + ",0,0,0,0,1,1,0\n", "line 2: column 'seq' is empty");
+  check_walks_refused(head + "1,0,0,0,0,1,1,0\n2,0,0,0,0,1,1,0\n1,1,0,0,0,1,1,0\n",
+                      "line 4: sequence 1 was already over");
+  check_walks_refused("seq,dx,dy_m,turn_rad,x_m,y_m\n1,0,0,0,1,1\n",
+                      "column 'dx' (the command forward) does not end in a unit");
+  check_walks_refused("seq,dx_m,dy_m,turn_rad,x,y_m\n1,0,0,0,1,1\n",
+                      "column 'x' (the position forward) does not end in a unit");
+  check_walks_refused("seq,speed_m,dy_m,turn_rad,x_m,y_m\n1,0,0,0,1,1\n",
+                      "no column was recognised as the command forward");
+  check_walks_refused("seq,dx_m,dy_m,turn_rad,x_m\n1,0,0,0,1\n",
+                      "no column was recognised as the position to the left");
+  check_walks_refused("dx_m,dy_m,turn_rad,x_m,y_m,theta_rad\n1,0,0,1,1,\n1,0,0,1,1,0\n",
+                      "line 2: the first row holds part of a pose");
+  check_walks_refused(with(many, "cycle: 2", "cycle: two"), "'steps_per_cycle: two' must give a number");
+  check_walks_refused(with(many, "cycle: 2", "cycle: -1"), "must give a number");
   LoadOptions named;
   named.columns.commands = {"ordr_dx_m", "order_dy_m", "order_dtheta_rad"};
-  check_refused(many, "did you mean 'order_dx_m'?", named);
+  check_walks_refused(many, "did you mean 'order_dx_m'?", named);
 }
 
 TEST_CASE("wheels without time, without speeds or with time that stands still are refused") {
-  check_refused("v_left_m_s,v_right_m_s,x_m,y_m\n0,0,0,0\n0,0,1,1\n", "column 't_s' is missing", wheels());
-  check_refused("t_s,v_right_m_s,x_m,y_m\n0,0,0,0\n1,0,1,1\n", "column 'v_left_m_s' is missing", wheels());
-  check_refused("t_s,v_left_m_s,v_right_m_s,x_m,y_m\n0,0,0,,\n0,0,0,1,1\n", "line 3: column 't_s' does not rise",
-                wheels());
+  check_walks_refused("v_left_m_s,v_right_m_s,x_m,y_m\n0,0,0,0\n0,0,1,1\n", "column 't_s' is missing", wheels());
+  check_walks_refused("t_s,v_right_m_s,x_m,y_m\n0,0,0,0\n1,0,1,1\n", "column 'v_left_m_s' is missing", wheels());
+  check_walks_refused("t_s,v_left_m_s,v_right_m_s,x_m,y_m\n0,0,0,,\n0,0,0,1,1\n", "line 3: column 't_s' does not rise",
+                      wheels());
   LoadOptions other = wheels();
   other.columns.wheels = {"left", "right"};
-  check_refused("t_s,left,right,x_m,y_m\n0,0,0,,\n1,0,0,1,1\n", "column 'left' (the speed of a wheel) must end in",
-                other);
+  check_walks_refused("t_s,left,right,x_m,y_m\n0,0,0,,\n1,0,0,1,1\n",
+                      "column 'left' (the speed of a wheel) must end in", other);
 }

@@ -9,7 +9,7 @@ using namespace calibrate_program;
 
 namespace {
 
-void check_refused(const std::string& from, const std::string& to, const std::string& words) {
+void check_motion_file_refused(const std::string& from, const std::string& to, const std::string& words) {
   std::string text = motion_file_text(calibrate_test::rich_file());
   const auto at = text.find(from);
   REQUIRE(at != std::string::npos);
@@ -67,16 +67,16 @@ TEST_CASE("every model is written and read, and moves as before") {
 }
 
 TEST_CASE("a motion file that is wrong is refused in one sentence that names the field") {
-  check_refused("{", "", "this is not JSON");
-  check_refused("motion/1", "motion/2", "\"schema\": only");
-  check_refused("\"full\"", "\"cubic\"", "\"model\": \"proportional\"");
-  check_refused("\"full\"", "\"simple\"", "a list of the 6 coefficients");
-  check_refused("dx per dx", "dx per dy", "\"parameters[1]\": the coefficient \"dx per dx\"");
-  check_refused("1.3,", "1e3,", "\"parameters[1].value\": a number from 0");
-  check_refused("1.3,", "null,", "\"parameters[1].value\"");
-  check_refused("\"uniform\"", "\"round\"", "\"noise.shape\"");
-  check_refused("\"scale\"", "\"sale\"", "\"noise.scale\": is missing");
-  check_refused("\"sequences\": 25", "\"sequences\": -1", "\"sequences\": a whole number");
-  check_refused("0.0001", "-0.0001", "\"covariance\": is not symmetric and positive definite");
-  check_refused("\"steps_per_cycle\": 2.0", "\"steps_per_cycle\": 0", "\"steps_per_cycle\": a number from");
+  check_motion_file_refused("{", "", "this is not JSON");
+  check_motion_file_refused("motion/1", "motion/2", "\"schema\": only");
+  check_motion_file_refused("\"full\"", "\"cubic\"", "\"model\": \"proportional\"");
+  check_motion_file_refused("\"full\"", "\"simple\"", "a list of the 6 coefficients");
+  check_motion_file_refused("dx per dx", "dx per dy", "\"parameters[1]\": the coefficient \"dx per dx\"");
+  check_motion_file_refused("1.3,", "1e3,", "\"parameters[1].value\": a number from 0");
+  check_motion_file_refused("1.3,", "null,", "\"parameters[1].value\"");
+  check_motion_file_refused("\"uniform\"", "\"round\"", "\"noise.shape\"");
+  check_motion_file_refused("\"scale\"", "\"sale\"", "\"noise.scale\": is missing");
+  check_motion_file_refused("\"sequences\": 25", "\"sequences\": -1", "\"sequences\": a whole number");
+  check_motion_file_refused("0.0001", "-0.0001", "\"covariance\": is not symmetric and positive definite");
+  check_motion_file_refused("\"steps_per_cycle\": 2.0", "\"steps_per_cycle\": 0", "\"steps_per_cycle\": a number from");
 }

@@ -13,6 +13,7 @@
 
 using approach_program::Outcome;
 using approach_program::ScratchFolder;
+using approach_program::write_text;
 using calibrate_test::calibrate;
 using namespace calibrate_program;
 
@@ -23,8 +24,6 @@ std::string text_of(const std::string& path) {
   text << std::ifstream(path).rdbuf();
   return text.str();
 }
-
-void write(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
 
 bool contains(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
 
@@ -75,7 +74,7 @@ TEST_CASE("plan, fill in, sheet, fit, update: from nothing to a model that is ke
     surefoot::Rng rng(1, i);
     walks[i] = simulate_walk(robot.model, robot.noise, {}, surefoot::planned_sequence(walks[i].commands, false), rng);
   }
-  write(folder.file("sheet.csv"), filled_in(walks));
+  write_text(folder.file("sheet.csv"), filled_in(walks));
   const Outcome sheet = calibrate("sheet --commands " + folder.file("plan/commands.csv") + " --sheet " +
                                   folder.file("sheet.csv") + " --out " + folder.file("walks.csv"));
   REQUIRE_MESSAGE(sheet.code == 0, sheet.output);
@@ -119,7 +118,7 @@ TEST_CASE("one file per sequence is fitted and gives a model file for surefoot-d
       const auto pose = row == 0 ? start : start * surefoot::Pose2::from_vec(walks[i].poses.col(row - 1));
       csv << ',' << pose.x << ',' << pose.y << ',' << pose.angle << '\n';
     }
-    write(folder.file("w" + std::to_string(i) + ".csv"), csv.str());
+    write_text(folder.file("w" + std::to_string(i) + ".csv"), csv.str());
     files += " " + folder.file("w" + std::to_string(i) + ".csv");
   }
   const Outcome fit = calibrate("fit --model previous-command --out " + folder.file("fit") + files);
@@ -177,9 +176,9 @@ TEST_CASE("a learning curve is written and says what to do") {
 
 TEST_CASE("wrong options and files end with 2 and one sentence") {
   const ScratchFolder folder;
-  write(folder.file("one.csv"), "seq,dx_m,dy_m,turn_rad,x_m,y_m\n1,0,0,0,1,1\n");
-  write(folder.file("none.csv"), "seq,dx_m,dy_m,turn_rad,x_m,y_m\n1,0,0,0,,\n");
-  write(folder.file("two.csv"), "# steps_per_cycle: 2\nseq,dx_m,dy_m,turn_rad,x_m,y_m\n1,0,0,0,1,1\n");
+  write_text(folder.file("one.csv"), "seq,dx_m,dy_m,turn_rad,x_m,y_m\n1,0,0,0,1,1\n");
+  write_text(folder.file("none.csv"), "seq,dx_m,dy_m,turn_rad,x_m,y_m\n1,0,0,0,,\n");
+  write_text(folder.file("two.csv"), "# steps_per_cycle: 2\nseq,dx_m,dy_m,turn_rad,x_m,y_m\n1,0,0,0,1,1\n");
   const std::string out = " --out " + folder.file("out") + " ";
   const auto refused = [&](const std::string& arguments, const std::string& words) {
     const Outcome outcome = calibrate(arguments);

@@ -14,6 +14,7 @@
 
 using approach_program::Outcome;
 using approach_program::ScratchFolder;
+using approach_program::write_text;
 using nlohmann::json;
 
 namespace {
@@ -22,10 +23,8 @@ std::string program() { return SUREFOOT_BIN_DIR "/surefoot-diagnose"; }
 bool program_exists() { return std::filesystem::exists(program()); }
 Outcome run(const std::string& arguments) { return approach_program::run_command(program() + " " + arguments); }
 
-void write(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
-
 /// One line that holds `words`, exit code 2, and nothing in the folder of the results.
-void check_refused(const ScratchFolder& folder, const std::string& arguments, const std::string& words) {
+void check_call_refused(const ScratchFolder& folder, const std::string& arguments, const std::string& words) {
   CAPTURE(arguments);
   const Outcome result = run(arguments);
   CAPTURE(result.output);
@@ -66,9 +65,9 @@ std::string files(const ScratchFolder& folder) {
 }
 
 void write_case(const ScratchFolder& folder) {
-  write(folder.file("servo.toml"), diagnose_test::servo_model);
+  write_text(folder.file("servo.toml"), diagnose_test::servo_model);
   for (int i = 1; i <= 5; ++i) {
-    write(folder.file("rec_" + std::to_string(i) + ".csv"), recording(static_cast<std::uint64_t>(i), 0.3));
+    write_text(folder.file("rec_" + std::to_string(i) + ".csv"), recording(static_cast<std::uint64_t>(i), 0.3));
   }
 }
 
@@ -79,30 +78,31 @@ TEST_SUITE("surefoot-diagnose" * doctest::skip(!program_exists())) {
     const ScratchFolder folder;
     write_case(folder);
     const std::string out = " --out " + folder.file("out"), model = " --model " + folder.file("servo.toml");
-    check_refused(folder, "", "required");
-    check_refused(folder, out + files(folder), "--model is required");
-    check_refused(folder, model + files(folder), "--out is required");
-    check_refused(folder, model + out, "recordings is required");
-    check_refused(folder, model + out + " --test-share 2" + files(folder), "--test-share");
-    check_refused(folder, model + out + " --max-effects many" + files(folder), "--max-effects");
-    check_refused(folder, model + out + " --budget -1" + files(folder), "--budget");
-    check_refused(folder, model + out + " --speed 3" + files(folder), "--speed");
-    check_refused(folder, model + out + " --test nothing.csv" + files(folder), "nothing.csv");
-    check_refused(folder, model + out + files(folder) + files(folder), "named twice");
+    check_call_refused(folder, "", "required");
+    check_call_refused(folder, out + files(folder), "--model is required");
+    check_call_refused(folder, model + files(folder), "--out is required");
+    check_call_refused(folder, model + out, "recordings is required");
+    check_call_refused(folder, model + out + " --test-share 2" + files(folder), "--test-share");
+    check_call_refused(folder, model + out + " --max-effects many" + files(folder), "--max-effects");
+    check_call_refused(folder, model + out + " --budget -1" + files(folder), "--budget");
+    check_call_refused(folder, model + out + " --speed 3" + files(folder), "--speed");
+    check_call_refused(folder, model + out + " --test nothing.csv" + files(folder), "nothing.csv");
+    check_call_refused(folder, model + out + files(folder) + files(folder), "named twice");
   }
 
   TEST_CASE("files that cannot be used are refused in one sentence, and nothing is written") {
     const ScratchFolder folder;
     write_case(folder);
     const std::string out = " --out " + folder.file("out"), model = " --model " + folder.file("servo.toml");
-    check_refused(folder, " --model " + folder.file("none.toml") + out + files(folder), "none.toml");
-    check_refused(folder, " --model " + folder.path().string() + out + files(folder), "is a folder");
-    check_refused(folder, model + out + " " + folder.file("none.csv"), "none.csv");
-    write(folder.file("empty.csv"), "");
-    check_refused(folder, model + out + " " + folder.file("empty.csv"), "empty.csv: the file is empty");
-    write(folder.file("one.csv"), "# mass_kg: 1\n# length_m: 1\n# kp: 1\n# vin_V: 1\nt_s,goal_rad,theta_rad\n0,0,0\n");
-    check_refused(folder, model + out + " " + folder.file("one.csv"), "one.csv: only 1 row(s)");
-    check_refused(folder, model + " --out " + folder.file("servo.toml") + "/inside" + files(folder), "--out");
+    check_call_refused(folder, " --model " + folder.file("none.toml") + out + files(folder), "none.toml");
+    check_call_refused(folder, " --model " + folder.path().string() + out + files(folder), "is a folder");
+    check_call_refused(folder, model + out + " " + folder.file("none.csv"), "none.csv");
+    write_text(folder.file("empty.csv"), "");
+    check_call_refused(folder, model + out + " " + folder.file("empty.csv"), "empty.csv: the file is empty");
+    write_text(folder.file("one.csv"),
+               "# mass_kg: 1\n# length_m: 1\n# kp: 1\n# vin_V: 1\nt_s,goal_rad,theta_rad\n0,0,0\n");
+    check_call_refused(folder, model + out + " " + folder.file("one.csv"), "one.csv: only 1 row(s)");
+    check_call_refused(folder, model + " --out " + folder.file("servo.toml") + "/inside" + files(folder), "--out");
   }
 
   TEST_CASE("help goes to the standard output, with an example, and succeeds") {

@@ -12,7 +12,7 @@ using diagnose_program::parse_csv;
 
 namespace {
 
-void check_refused(const std::string& text, const std::string& words) {
+void check_csv_refused(const std::string& text, const std::string& words) {
   CAPTURE(text);
   try {
     parse_csv(text, "rec.csv");
@@ -62,13 +62,13 @@ TEST_CASE("a missing column is named, with those that are there and what it is f
 }
 
 TEST_CASE("wrong CSV files are refused in one sentence") {
-  check_refused("", "the file is empty");
-  check_refused("# mass: 1\n\n", "the file is empty");
-  check_refused("t_s,a_V\n0,1\n1\n", "line 3: the row has 1 cells, but the header has 2");
-  check_refused("t_s,a_V\n0,1,2\n", "line 2: the row has 3 cells, but the header has 2");
-  check_refused("t_s,,a_V\n0,1,2\n", "line 1: column 2 has no name");
-  check_refused("t_s,t_s\n0,1\n", "line 1: column 't_s' stands twice");
-  check_refused("0,1\n1,2\n", "line 1: there is no header row");
+  check_csv_refused("", "the file is empty");
+  check_csv_refused("# mass: 1\n\n", "the file is empty");
+  check_csv_refused("t_s,a_V\n0,1\n1\n", "line 3: the row has 1 cells, but the header has 2");
+  check_csv_refused("t_s,a_V\n0,1,2\n", "line 2: the row has 3 cells, but the header has 2");
+  check_csv_refused("t_s,,a_V\n0,1,2\n", "line 1: column 2 has no name");
+  check_csv_refused("t_s,t_s\n0,1\n", "line 1: column 't_s' stands twice");
+  check_csv_refused("0,1\n1,2\n", "line 1: there is no header row");
 }
 
 TEST_CASE("numbers that are not finite are no numbers") {

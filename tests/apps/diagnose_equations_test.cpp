@@ -20,7 +20,7 @@ using diagnose_test::walk_model;
 
 namespace {
 
-surefoot::Recording bench() {
+surefoot::Recording servo_bench() {
   surefoot::Recording recording;
   recording.name = "rec.csv";
   recording.constants = {{"mass_kg", 0.5}, {"length_m", 0.1}, {"kp", 5}, {"vin_V", 7.4}};
@@ -40,7 +40,7 @@ Channels vector(std::initializer_list<double> values) {
 }  // namespace
 
 TEST_CASE("a pendulum from a file moves like one in C++") {
-  OdeModel model = OdeModel(parse_model_file(servo_model, "servo.toml")).for_recording(bench());
+  OdeModel model = OdeModel(parse_model_file(servo_model, "servo.toml")).for_recording(servo_bench());
   surefoot::Rng rng(1);
   for (int round = 0; round < 1000; ++round) {
     const Eigen::VectorXd p =
@@ -60,7 +60,7 @@ TEST_CASE("a pendulum from a file moves like one in C++") {
 }
 
 TEST_CASE("a tap sees and changes the lets that depend on states or inputs and that rates need") {
-  OdeModel model = OdeModel(parse_model_file(servo_model, "servo.toml")).for_recording(bench());
+  OdeModel model = OdeModel(parse_model_file(servo_model, "servo.toml")).for_recording(servo_bench());
   CHECK(model.info().signals == std::vector<std::string>{"duty", "tau"});
   const Eigen::VectorXd p = Eigen::Vector3d(1.6, 3.6, 0.012);
   model.prepare(p);
@@ -77,7 +77,7 @@ TEST_CASE("a tap sees and changes the lets that depend on states or inputs and t
 }
 
 TEST_CASE("copies of a model do not disturb each other") {
-  const OdeModel first = OdeModel(parse_model_file(servo_model, "servo.toml")).for_recording(bench());
+  const OdeModel first = OdeModel(parse_model_file(servo_model, "servo.toml")).for_recording(servo_bench());
   OdeModel second = first;
   const Eigen::VectorXd p = Eigen::Vector3d(1.6, 3.6, 0.012), q = Eigen::Vector3d(0.5, 3.6, 0.05);
   OdeModel third = first;
@@ -95,7 +95,7 @@ TEST_CASE("copies of a model do not disturb each other") {
 
 TEST_CASE("a recording without a constant of the model is refused") {
   const OdeModel model(parse_model_file(servo_model, "servo.toml"));
-  surefoot::Recording recording = bench();
+  surefoot::Recording recording = servo_bench();
   recording.constants.erase("kp");
   CHECK_THROWS_WITH_AS(model.for_recording(recording),
                        "rec.csv: the model wants the constant 'kp'; add a first line '# kp: number'",

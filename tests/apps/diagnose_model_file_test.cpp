@@ -17,7 +17,7 @@ using diagnose_test::with;
 
 namespace {
 
-void check_refused(const std::string& text, const std::string& words) {
+void check_model_refused(const std::string& text, const std::string& words) {
   CAPTURE(words);
   REQUIRE(!text.empty());
   try {
@@ -107,8 +107,8 @@ TEST_CASE("effects of a model file are found in the library") {
 }
 
 TEST_CASE("text that is no TOML is refused with its line") {
-  check_refused(with(servo_model, "[let]", "[let"), "line 9");
-  check_refused(" ", "the key 'schema' is missing");
+  check_model_refused(with(servo_model, "[let]", "[let"), "line 9");
+  check_model_refused(" ", "the key 'schema' is missing");
 }
 
 TEST_CASE("text that is no UTF-8 is refused with its line") {
@@ -117,105 +117,112 @@ TEST_CASE("text that is no UTF-8 is refused with its line") {
 }
 
 TEST_CASE("an unknown key is refused, and the nearest known one proposed") {
-  check_refused("speling = 1\n" + servo_model, "line 1: unknown key 'speling'");
-  check_refused(with(servo_model, "noise = 0.001", "nose = 0.001"), "unknown key 'nose'; did you mean 'noise'?");
-  check_refused(with(servo_model, "[parameters]", "[paramters]"),
-                "unknown key 'paramters'; did you mean 'parameters'?");
+  check_model_refused("speling = 1\n" + servo_model, "line 1: unknown key 'speling'");
+  check_model_refused(with(servo_model, "noise = 0.001", "nose = 0.001"), "unknown key 'nose'; did you mean 'noise'?");
+  check_model_refused(with(servo_model, "[parameters]", "[paramters]"),
+                      "unknown key 'paramters'; did you mean 'parameters'?");
 }
 
 TEST_CASE("missing keys and tables are named with what they are for") {
-  check_refused(with(servo_model, "name   = \"servo pendulum\"\n", ""), "the key 'name' is missing");
-  check_refused(with(servo_model, "time   = \"t_s\"\n", ""), "the key 'time' is missing");
-  check_refused("schema = \"surefoot.model/1\"\nname = \"x\"\nkind = \"map\"\n", "the table [states] is missing");
-  check_refused(with(servo_model, "rate = \"omega\", ", ""), "line 15, [states] theta: the key 'rate' is missing");
-  check_refused(with(servo_model, ", initial = \"0\"", ""), "[states] omega: the key 'initial' is missing");
+  check_model_refused(with(servo_model, "name   = \"servo pendulum\"\n", ""), "the key 'name' is missing");
+  check_model_refused(with(servo_model, "time   = \"t_s\"\n", ""), "the key 'time' is missing");
+  check_model_refused("schema = \"surefoot.model/1\"\nname = \"x\"\nkind = \"map\"\n", "the table [states] is missing");
+  check_model_refused(with(servo_model, "rate = \"omega\", ", ""),
+                      "line 15, [states] theta: the key 'rate' is missing");
+  check_model_refused(with(servo_model, ", initial = \"0\"", ""), "[states] omega: the key 'initial' is missing");
 }
 
 TEST_CASE("a missing unit is refused") {
-  check_refused(with(servo_model, ", unit = \"ohm\"", ""), "[parameters] R: the key 'unit' is missing");
-  check_refused(with(servo_model, "\"goal_rad\"", "\"goal\""),
-                "line 7, [inputs] goal: the column 'goal' does not end in its unit");
-  check_refused(with(servo_model, "theta_rad = {", "theta = {"),
-                "[outputs] theta: the column 'theta' does not end in its unit");
-  check_refused(with(servo_model, "unit = \"rad\", noise", "unit = \"deg\", noise"), "the column's name ends in rad");
+  check_model_refused(with(servo_model, ", unit = \"ohm\"", ""), "[parameters] R: the key 'unit' is missing");
+  check_model_refused(with(servo_model, "\"goal_rad\"", "\"goal\""),
+                      "line 7, [inputs] goal: the column 'goal' does not end in its unit");
+  check_model_refused(with(servo_model, "theta_rad = {", "theta = {"),
+                      "[outputs] theta: the column 'theta' does not end in its unit");
+  check_model_refused(with(servo_model, "unit = \"rad\", noise", "unit = \"deg\", noise"),
+                      "the column's name ends in rad");
 }
 
 TEST_CASE("schema and kind must be known") {
-  check_refused(with(servo_model, "surefoot.model/1", "surefoot.model/2"),
-                "line 1, schema: only \"surefoot.model/1\" is known");
-  check_refused(with(servo_model, "\"ode\"", "\"dae\""), "line 3, kind: 'dae' is no kind");
-  check_refused(with(servo_model, "\"t_s\"", "\"t_ms\""), "line 4, time: the column 't_ms' must be in seconds");
+  check_model_refused(with(servo_model, "surefoot.model/1", "surefoot.model/2"),
+                      "line 1, schema: only \"surefoot.model/1\" is known");
+  check_model_refused(with(servo_model, "\"ode\"", "\"dae\""), "line 3, kind: 'dae' is no kind");
+  check_model_refused(with(servo_model, "\"t_s\"", "\"t_ms\""), "line 4, time: the column 't_ms' must be in seconds");
 }
 
 TEST_CASE("a parameter outside its bounds is refused") {
-  check_refused(with(servo_model, "value = 1.6", "value = 6.1"),
-                "line 29, [parameters] kt: the value 6.1 lies outside its bounds, 0.3 to 5");
-  check_refused(with(servo_model, "min = 0.3, max = 5.0", "min = 5.0, max = 0.3"), "min is above max");
-  check_refused(with(servo_model, "value = 1.6", "value = \"1.6\""),
-                "[parameters] kt value: a finite number is expected");
-  check_refused(with(servo_model, "value = 1.6", "value = inf"), "[parameters] kt value: a finite number is expected");
+  check_model_refused(with(servo_model, "value = 1.6", "value = 6.1"),
+                      "line 29, [parameters] kt: the value 6.1 lies outside its bounds, 0.3 to 5");
+  check_model_refused(with(servo_model, "min = 0.3, max = 5.0", "min = 5.0, max = 0.3"), "min is above max");
+  check_model_refused(with(servo_model, "value = 1.6", "value = \"1.6\""),
+                      "[parameters] kt value: a finite number is expected");
+  check_model_refused(with(servo_model, "value = 1.6", "value = inf"),
+                      "[parameters] kt value: a finite number is expected");
 }
 
 TEST_CASE("a name can be used once, and not that of a function") {
-  check_refused(with(servo_model, "R = {", "tau = {"), "the name 'tau' is used twice, in [parameters] and in [let]");
-  check_refused(with(servo_model, "g = 9.81", "sin = 9.81"), "[constants] sin: the name 'sin' is that of a function");
-  check_refused(with(servo_model, "g = 9.81", "pi = 3"), "the name 'pi' is that of a function");
-  check_refused(with(servo_model, "g = 9.81", "\"g-force\" = 9.81"),
-                "the name 'g-force' cannot be used in expressions");
+  check_model_refused(with(servo_model, "R = {", "tau = {"),
+                      "the name 'tau' is used twice, in [parameters] and in [let]");
+  check_model_refused(with(servo_model, "g = 9.81", "sin = 9.81"),
+                      "[constants] sin: the name 'sin' is that of a function");
+  check_model_refused(with(servo_model, "g = 9.81", "pi = 3"), "the name 'pi' is that of a function");
+  check_model_refused(with(servo_model, "g = 9.81", "\"g-force\" = 9.81"),
+                      "the name 'g-force' cannot be used in expressions");
 }
 
 TEST_CASE("a let may use neither itself nor what stands further down") {
-  check_refused(with(servo_model, "\"kt/R*(vin*duty", "\"kt/R*(tau*duty"),
-                "line 11, [let] tau: the expression uses 'tau' itself");
-  check_refused(with(servo_model, "min(max(kp*(goal", "min(max(tau*(goal"),
-                "line 10, [let] duty: the expression uses 'tau', which stands further down");
+  check_model_refused(with(servo_model, "\"kt/R*(vin*duty", "\"kt/R*(tau*duty"),
+                      "line 11, [let] tau: the expression uses 'tau' itself");
+  check_model_refused(with(servo_model, "min(max(kp*(goal", "min(max(tau*(goal"),
+                      "line 10, [let] duty: the expression uses 'tau', which stands further down");
 }
 
 TEST_CASE("an unknown name in an expression is refused, and a near one proposed") {
-  check_refused(with(servo_model, "\"(tau - mass", "\"(tao - mass"),
-                "line 16, [states] omega rate: the expression uses the unknown name 'tao'; did you mean 'tau'?");
-  check_refused(with(servo_model, "value = \"theta\"", "value = \"angle\""),
-                "[outputs] theta_rad value: the expression uses the unknown name 'angle'");
-  check_refused(with(servo_model, "initial = \"0\"", "initial = \"theta\""),
-                "[states] omega initial: the expression uses the unknown name 'theta'");
-  check_refused(with(servo_model, "effort = \"inertia\"", "effort = \"inertial\""),
-                "[states] omega effort: the expression uses the unknown name 'inertial'; did you mean 'inertia'?");
+  check_model_refused(with(servo_model, "\"(tau - mass", "\"(tao - mass"),
+                      "line 16, [states] omega rate: the expression uses the unknown name 'tao'; did you mean 'tau'?");
+  check_model_refused(with(servo_model, "value = \"theta\"", "value = \"angle\""),
+                      "[outputs] theta_rad value: the expression uses the unknown name 'angle'");
+  check_model_refused(with(servo_model, "initial = \"0\"", "initial = \"theta\""),
+                      "[states] omega initial: the expression uses the unknown name 'theta'");
+  check_model_refused(
+      with(servo_model, "effort = \"inertia\"", "effort = \"inertial\""),
+      "[states] omega effort: the expression uses the unknown name 'inertial'; did you mean 'inertia'?");
 }
 
 TEST_CASE("an expression that cannot be read is refused with the place in it") {
-  check_refused(with(servo_model, "sin(theta)", "sin(theta"),
-                "at character 40 of the expression a ')' is expected, found its end");
-  check_refused(with(servo_model, "sin(theta)", "sine(theta)"), "there is no function 'sine'; did you mean 'sin'?");
-  check_refused(with(servo_model, "sin(theta)", "sin(theta, 1)"), "the function 'sin' takes 1");
-  check_refused(with(servo_model, "\"omega\"", "\"omega omega\""),
-                "at character 7 of the expression an operator or the end is expected");
-  check_refused(with(servo_model, "\"omega\"", "\"\""), "the expression is empty");
-  check_refused(with(servo_model, "\"omega\"", "\"" + std::string(5000, '(') + "\""), "nested");
-  check_refused(with(servo_model, "\"omega\"", "\"" + std::string(5000, '-') + "1\""), "nested");
+  check_model_refused(with(servo_model, "sin(theta)", "sin(theta"),
+                      "at character 40 of the expression a ')' is expected, found its end");
+  check_model_refused(with(servo_model, "sin(theta)", "sine(theta)"),
+                      "there is no function 'sine'; did you mean 'sin'?");
+  check_model_refused(with(servo_model, "sin(theta)", "sin(theta, 1)"), "the function 'sin' takes 1");
+  check_model_refused(with(servo_model, "\"omega\"", "\"omega omega\""),
+                      "at character 7 of the expression an operator or the end is expected");
+  check_model_refused(with(servo_model, "\"omega\"", "\"\""), "the expression is empty");
+  check_model_refused(with(servo_model, "\"omega\"", "\"" + std::string(5000, '(') + "\""), "nested");
+  check_model_refused(with(servo_model, "\"omega\"", "\"" + std::string(5000, '-') + "1\""), "nested");
 }
 
 TEST_CASE("an effort needs its unit") {
-  check_refused(with(servo_model, ", effort_unit = \"N m\"", ""),
-                "'effort' and 'effort_unit' belong together; 'effort_unit' is missing");
-  check_refused(with(servo_model, "effort = \"inertia\", ", ""), "'effort' is missing");
+  check_model_refused(with(servo_model, ", effort_unit = \"N m\"", ""),
+                      "'effort' and 'effort_unit' belong together; 'effort_unit' is missing");
+  check_model_refused(with(servo_model, "effort = \"inertia\", ", ""), "'effort' is missing");
 }
 
 TEST_CASE("planar keys must be states and lets") {
-  check_refused(with(walk_model, "heading = \"th\"", "heading = \"yaw\""), "[planar] heading: 'yaw' is no state");
-  check_refused(with(walk_model, "y = \"y\"", "y = \"x\""), "three different states");
-  check_refused(with(walk_model, "forward = \"dx\"", "forward = \"ahead\""),
-                "[planar] forward: 'ahead' stands neither in [let]");
-  check_refused(servo_model + "[planar]\nx = \"theta\"\ny = \"omega\"\nheading = \"theta\"\n",
-                "planar motion is for kind = \"map\" only");
+  check_model_refused(with(walk_model, "heading = \"th\"", "heading = \"yaw\""), "[planar] heading: 'yaw' is no state");
+  check_model_refused(with(walk_model, "y = \"y\"", "y = \"x\""), "three different states");
+  check_model_refused(with(walk_model, "forward = \"dx\"", "forward = \"ahead\""),
+                      "[planar] forward: 'ahead' stands neither in [let]");
+  check_model_refused(servo_model + "[planar]\nx = \"theta\"\ny = \"omega\"\nheading = \"theta\"\n",
+                      "planar motion is for kind = \"map\" only");
 }
 
 TEST_CASE("rates belong to an ode, next values to a map") {
-  check_refused(with(walk_model, "next = \"th + turn\"", "rate = \"turn\""), "'rate' belongs to kind = \"ode\"");
-  check_refused(with(servo_model, "rate = \"omega\"", "next = \"omega\""), "'next' belongs to kind = \"map\"");
+  check_model_refused(with(walk_model, "next = \"th + turn\"", "rate = \"turn\""), "'rate' belongs to kind = \"ode\"");
+  check_model_refused(with(servo_model, "rate = \"omega\"", "next = \"omega\""), "'next' belongs to kind = \"map\"");
 }
 
 TEST_CASE("more than sixteen states are refused") {
   std::string states = "[states]\n";
   for (int i = 0; i < 17; ++i) states += "s" + std::to_string(i) + " = { rate = \"1\", initial = 0, unit = \"m\" }\n";
-  check_refused(with(servo_model, "[states]\n", states), "at most 16");
+  check_model_refused(with(servo_model, "[states]\n", states), "at most 16");
 }

@@ -23,7 +23,7 @@ LoadedRecordings load(const std::string& csv, const std::string& model = servo_m
   return recordings_of(parse_csv(csv, "rec.csv"), layout_of(parse_model_file(model, "servo.toml")));
 }
 
-void check_refused(const std::string& csv, const std::string& words, const std::string& model = servo_model) {
+void check_recording_refused(const std::string& csv, const std::string& words, const std::string& model = servo_model) {
   CAPTURE(words);
   REQUIRE(!csv.empty());
   REQUIRE(!model.empty());
@@ -90,29 +90,32 @@ TEST_CASE("rows at the beginning can be skipped") {
   const auto loaded = load(servo_csv, with(servo_model, "time ", "skip_rows = 3\ntime "));
   CHECK(loaded.recordings[0].rows() == 4);
   CHECK(loaded.recordings[0].initial[0] == 0.05);
-  check_refused(servo_csv, "only 7 row(s) of numbers, but at least 8 are needed (skip_rows = 6)",
-                with(servo_model, "time ", "skip_rows = 6\ntime "));
+  check_recording_refused(servo_csv, "only 7 row(s) of numbers, but at least 8 are needed (skip_rows = 6)",
+                          with(servo_model, "time ", "skip_rows = 6\ntime "));
 }
 
 TEST_CASE("wrong recordings are refused in one sentence") {
-  check_refused(
+  check_recording_refused(
       with(servo_csv, "goal_rad", "goal_deg"),
       "column 'goal_rad' is missing, which the model reads as an input; the file has t_s, goal_deg, theta_rad");
-  check_refused(with(servo_csv, "theta_rad", "theta"), "column 'theta_rad' is missing");
-  check_refused(with(servo_csv, "0.010,0.2", "0.001,0.2"), "line 9: column 't_s' does not rise, 0.001 follows 0.005");
-  check_refused(with(servo_csv, "0.010,0.2", "0.005,0.2"), "does not rise");
-  check_refused(with(servo_csv, "0.010,0.2", ",0.2"), "line 9: column 't_s' is empty");
-  check_refused(with(servo_csv, "0.010,0.2", "0.010,"), "line 9: column 'goal_rad' is empty; an input must be known");
-  check_refused(with(servo_csv, "0.010,0.2", "0.010,fast"), "line 9: column 'goal_rad' holds \"fast\"");
-  check_refused(with(servo_csv, "# kp: 5\n", ""),
-                "the model wants the constant 'kp', but no first line '# kp: number' is there");
-  check_refused(with(servo_csv, "# kp: 5", "# kp: high"), "its first line says 'high', which is no number");
-  check_refused(servo_csv.substr(0, servo_csv.find("0.005,0.1")), "only 1 row(s) of numbers");
-  check_refused(servo_csv.substr(0, servo_csv.find("0.000,0.0")), "only 0 row(s) of numbers");
-  check_refused("# mass_kg: 0.5\n# length_m: 0.1\n# kp: 5\n# vin_V: 7.4\nt_s,goal_rad,theta_rad\n0,0,\n1,0,nan\n2,0,\n",
-                "column 'theta_rad' holds no number at all");
-  check_refused(servo_csv, "column 'start_rad' is missing, with which the state starts",
-                with(servo_model, "column:theta_rad", "column:start_rad"));
+  check_recording_refused(with(servo_csv, "theta_rad", "theta"), "column 'theta_rad' is missing");
+  check_recording_refused(with(servo_csv, "0.010,0.2", "0.001,0.2"),
+                          "line 9: column 't_s' does not rise, 0.001 follows 0.005");
+  check_recording_refused(with(servo_csv, "0.010,0.2", "0.005,0.2"), "does not rise");
+  check_recording_refused(with(servo_csv, "0.010,0.2", ",0.2"), "line 9: column 't_s' is empty");
+  check_recording_refused(with(servo_csv, "0.010,0.2", "0.010,"),
+                          "line 9: column 'goal_rad' is empty; an input must be known");
+  check_recording_refused(with(servo_csv, "0.010,0.2", "0.010,fast"), "line 9: column 'goal_rad' holds \"fast\"");
+  check_recording_refused(with(servo_csv, "# kp: 5\n", ""),
+                          "the model wants the constant 'kp', but no first line '# kp: number' is there");
+  check_recording_refused(with(servo_csv, "# kp: 5", "# kp: high"), "its first line says 'high', which is no number");
+  check_recording_refused(servo_csv.substr(0, servo_csv.find("0.005,0.1")), "only 1 row(s) of numbers");
+  check_recording_refused(servo_csv.substr(0, servo_csv.find("0.000,0.0")), "only 0 row(s) of numbers");
+  check_recording_refused(
+      "# mass_kg: 0.5\n# length_m: 0.1\n# kp: 5\n# vin_V: 7.4\nt_s,goal_rad,theta_rad\n0,0,\n1,0,nan\n2,0,\n",
+      "column 'theta_rad' holds no number at all");
+  check_recording_refused(servo_csv, "column 'start_rad' is missing, with which the state starts",
+                          with(servo_model, "column:theta_rad", "column:start_rad"));
 }
 
 TEST_CASE("a column without a unit is remarked on, unless the model says that it has none") {

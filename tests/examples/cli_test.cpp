@@ -15,10 +15,9 @@
 using approach_program::program_exists;
 using approach_program::run;
 using approach_program::ScratchFolder;
+using approach_program::write_text;
 
 namespace {
-
-void write(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
 
 /// Bad options and files: one line on stderr that holds `words`, nothing on stdout, exit code 2.
 void check_refused(const std::string& arguments, const std::string& words) {
@@ -64,9 +63,9 @@ TEST_SUITE("sigmaban_approach" * doctest::skip(!program_exists())) {
     const std::string file = folder.file("policy");
     check_refused("evaluate --problem ha --policy " + file, file);
     check_refused("evaluate --problem ha --policy " + folder.path().string(), folder.path().string());
-    write(file, "neither JSON nor a forest");
+    write_text(file, "neither JSON nor a forest");
     check_refused("evaluate --problem ha --policy " + file, file);
-    write(file, "");
+    write_text(file, "");
     check_refused("evaluate --problem ha --policy " + file, file);
     check_refused("train --problem ha --budget 1 --out " + file + "/inside/a/file", file);
     check_refused("export --policy tuned --out " + folder.file("x.c"), "tuned");
@@ -75,24 +74,24 @@ TEST_SUITE("sigmaban_approach" * doctest::skip(!program_exists())) {
   TEST_CASE("a parameter file must hold every parameter once, as a finite number") {
     const ScratchFolder folder;
     const std::string file = folder.file("parameters.json");
-    write(file, "{");
+    write_text(file, "{");
     check_refused("evaluate --problem ha --policy " + file, "not a JSON object");
-    write(file, R"({"policy": "winner2016"})");
+    write_text(file, R"({"policy": "winner2016"})");
     check_refused("evaluate --problem ha --policy " + file, "\"parameters\"");
-    write(file, parameters_json("step_p", ""));
+    write_text(file, parameters_json("step_p", ""));
     check_refused("evaluate --problem ha --policy " + file, "step_p");
-    write(file, parameters_json("step_p", "\"fast\""));
+    write_text(file, parameters_json("step_p", "\"fast\""));
     check_refused("evaluate --problem ha --policy " + file, "step_p");
-    write(file, parameters_json("step_p", "1e999"));
+    write_text(file, parameters_json("step_p", "1e999"));
     check_refused("evaluate --problem ha --policy " + file, file);
-    write(file, parameters_json("step_p", "1, \"hop_p\": 1"));
+    write_text(file, parameters_json("step_p", "1, \"hop_p\": 1"));
     check_refused("evaluate --problem ha --policy " + file, "remove");
   }
 
   TEST_CASE("a parameter file with the tuned parameters is the tuned policy") {
     const ScratchFolder folder;
     const std::string file = folder.file("parameters.json");
-    write(file, parameters_json());
+    write_text(file, parameters_json());
     const auto cost = [](const std::string& policy) {
       const auto result = run("evaluate --problem anha --trials 500 --seed 3 --policy " + policy);
       REQUIRE(result.code == 0);

@@ -12,7 +12,7 @@ using sigmaban::MovingBall;
 
 namespace {
 
-MovingBall without_noise() {
+MovingBall ball_without_noise() {
   MovingBall problem;
   problem.noise = 0;
   problem.robot.noise.half_width.setZero();
@@ -21,12 +21,12 @@ MovingBall without_noise() {
 
 /// A robot at rest whose walk does not drift.
 MovingBall standing_robot() {
-  MovingBall problem = without_noise();
+  MovingBall problem = ball_without_noise();
   problem.robot.walk = surefoot::FullLinearCorrection();
   return problem;
 }
 
-MovingBall::State state(double d, double b, double ball_x, double ball_y) {
+MovingBall::State ball_state(double d, double b, double ball_x, double ball_y) {
   MovingBall::State s;
   s << d, b, 0, 0, 0, 0, ball_x, ball_y;
   return s;
@@ -35,7 +35,7 @@ MovingBall::State state(double d, double b, double ball_x, double ball_y) {
 }  // namespace
 
 TEST_CASE("with a ball at rest the problem is the plain approach") {
-  const MovingBall moving = without_noise();
+  const MovingBall moving = ball_without_noise();
   for (std::uint64_t i = 0; i < 100; ++i) {
     surefoot::Rng rng(1, i);
     MovingBall::State start = MovingBall::State::Zero();
@@ -53,18 +53,18 @@ TEST_CASE("with a ball at rest the problem is the plain approach") {
 TEST_CASE("friction stops the ball where a uniformly braked ball stops") {
   const MovingBall problem = standing_robot();
   surefoot::Rng rng(1);
-  MovingBall::State s = state(0.5, 0, 0.045, 0);  // stops in the middle of the fifth cycle
+  MovingBall::State s = ball_state(0.5, 0, 0.045, 0);  // stops in the middle of the fifth cycle
   for (int cycle = 0; cycle < 5; ++cycle) s = problem.step(s, {0, 0, 0}, rng).next;
   CHECK(s.tail<2>().isZero());
   CHECK(s[0] == doctest::Approx(0.5 + 0.045 * 0.045 / (2 * problem.friction)));
-  const surefoot::Vec<MovingBall::feature_dim> features = problem.features(state(0.5, 0, 0.045, 0));
+  const surefoot::Vec<MovingBall::feature_dim> features = problem.features(ball_state(0.5, 0, 0.045, 0));
   CHECK(features[MovingBall::feature_dim - 2] == doctest::Approx(s[0]));
 }
 
 TEST_CASE("the velocity of the ball turns with the robot") {
   const MovingBall problem = standing_robot();
   surefoot::Rng rng(1);
-  MovingBall::State s = state(0.5, 0, 0.05, 0);
+  MovingBall::State s = ball_state(0.5, 0, 0.05, 0);
   s[5] = 0.1;
   const auto next = problem.step(s, {0, 0, 0}, rng).next;
   CHECK(next[6] == doctest::Approx(0.04 * std::cos(0.2)));
@@ -75,9 +75,9 @@ TEST_CASE("the noise never makes the ball faster than any ball at the start, nor
   const MovingBall problem;
   surefoot::Rng rng(1);
   for (int i = 0; i < 1000; ++i) {
-    const auto next = problem.step(state(0.5, 0, 0.08, 0), {0, 0, 0}, rng).next;
+    const auto next = problem.step(ball_state(0.5, 0, 0.08, 0), {0, 0, 0}, rng).next;
     REQUIRE(next.tail<2>().norm() <= 0.08 + 1e-12);
-    REQUIRE(problem.step(state(0.5, 0, 0, 0), {0, 0, 0}, rng).next.tail<2>().isZero());
+    REQUIRE(problem.step(ball_state(0.5, 0, 0, 0), {0, 0, 0}, rng).next.tail<2>().isZero());
   }
 }
 

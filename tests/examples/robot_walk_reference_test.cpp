@@ -90,11 +90,11 @@ std::filesystem::path reference_file() {
   return root / "ikwalk" / "joint_targets.csv";
 }
 
-const std::string program = SUREFOOT_BIN_DIR "/walk_engine_check";
+const std::string engine_check = SUREFOOT_BIN_DIR "/walk_engine_check";
 
 approach_program::Outcome check(const approach_program::ScratchFolder& folder, const std::string& text) {
   std::ofstream(folder.file("rows.csv")) << text;
-  return approach_program::run_command(program + " " + folder.file("rows.csv"));
+  return approach_program::run_command(engine_check + " " + folder.file("rows.csv"));
 }
 
 }  // namespace
@@ -158,7 +158,7 @@ TEST_CASE("a file that is no reference is refused with its line and column") {
 }
 
 TEST_CASE("the program says 0 for agreement, 1 for a difference and 2 for bad input") {
-  if (!std::filesystem::exists(program)) {
+  if (!std::filesystem::exists(engine_check)) {
     MESSAGE("skipped: walk_engine_check is not built");
     return;
   }
@@ -177,6 +177,6 @@ TEST_CASE("the program says 0 for agreement, 1 for a difference and 2 for bad in
   CHECK(reach.output.find("reachability differs in 1 rows, first in line 3") != std::string::npos);
 
   CHECK(check(folder, "what?\n").code == 2);
-  CHECK(approach_program::run_command(program).code == 2);
-  CHECK(approach_program::run_command(program + " " + folder.file("missing.csv")).code == 2);
+  CHECK(approach_program::run_command(engine_check).code == 2);
+  CHECK(approach_program::run_command(engine_check + " " + folder.file("missing.csv")).code == 2);
 }

@@ -20,7 +20,7 @@ Forest<1, 1, ConstantLeaf> staircase(const F& samples) {
 }
 
 // Four steps of one input: two nearly equal, one apart, one far apart.
-Dataset<1, 1> steps() {
+Dataset<1, 1> pruned_steps() {
   Dataset<1, 1> samples{Eigen::Matrix<float, 1, 8>{1, 1, 2, 2, 3, 3, 4, 4},
                         Eigen::Matrix<double, 1, 8>{0, 0, 0.5, 0.5, 10, 10, 13, 13},
                         {}};
@@ -68,7 +68,7 @@ TEST_CASE("the best trees are better than the first") {
 }
 
 TEST_CASE("the weakest link goes first") {
-  const auto samples = steps();
+  const auto samples = pruned_steps();
   const auto forest = staircase(samples);
   REQUIRE(forest.leaves() == 4);
   const std::vector<double> scale{1.0};

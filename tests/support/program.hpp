@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 namespace approach_program {
@@ -35,6 +36,9 @@ inline Outcome run_command(const std::string& command) {
 }
 
 inline Outcome run(const std::string& arguments) { return run_command(program() + " " + arguments); }
+
+/// Writes a file of this text.
+inline void write_text(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
 
 /// A new folder that goes away with everything in it.
 class ScratchFolder {

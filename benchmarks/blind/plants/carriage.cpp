@@ -43,7 +43,7 @@ std::string carriage_toml(const System& system, const Variant& variant, bool wit
   return toml + parameters_toml(shown);
 }
 
-void record(Random& random, System& system, const Variant& variant) {
+void record_carriage(Random& random, System& system, const Variant& variant) {
   const double stiffness = system.parameters[0].actual, mass = system.parameters[2].actual;
   const double natural_period = 2 * std::numbers::pi * std::sqrt(mass / stiffness);  // [s]
   const double amplitude = random.uniform(0.08, 0.25);                               // [m]
@@ -126,7 +126,7 @@ System carriage(Random& random) {
   system.outputs = {"x_m"};
   system.noise = {random.log_uniform(2e-4, 1.2e-3)};
   system.simulate = carriage_simulation();
-  record(random, system, variant);
+  record_carriage(random, system, variant);
   system.model_toml = [system, variant](bool with_noise) { return carriage_toml(system, variant, with_noise); };
 
   Typical typical;

@@ -60,7 +60,7 @@ omega = { rate = "(tau - mass*g*length*sin(theta))/inertia", initial = "0", unit
   return toml + parameters_toml(system);
 }
 
-void record(Random& random, System& system) {
+void record_servo(Random& random, System& system) {
   const double supply = random.uniform(7, 13), scale = random.uniform(0.7, 1.4);
   const std::vector<Shape> shapes{Shape::steps, Shape::multisine, Shape::ramps, Shape::chirp};
   const bool jitter = random.chance(0.7);
@@ -141,7 +141,7 @@ System servo(Random& random) {
   }
   const bool speed = system.outputs.size() > 1;
   system.simulate = servo_simulation(speed);
-  record(random, system);
+  record_servo(random, system);
   system.model_toml = [system](bool with_noise) { return servo_toml(system, with_noise); };
 
   Typical typical;

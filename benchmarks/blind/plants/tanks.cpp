@@ -126,7 +126,7 @@ Levels resting(const System& system, double volts) {
   return {upper * upper, lower * lower};
 }
 
-void record(Random& random, System& system) {
+void record_tanks(Random& random, System& system) {
   const bool jitter = random.chance(0.7);
   const std::vector<Shape> shapes{Shape::steps, Shape::multisine, Shape::steps};
   for (std::size_t i = 0; i < 7; ++i) {
@@ -280,7 +280,7 @@ System tanks(Random& random) {
   system.outputs.push_back("lower_cm");
   system.noise.assign(system.outputs.size(), random.log_uniform(0.03, 0.15));
   system.simulate = tanks_simulation(both);
-  record(random, system);
+  record_tanks(random, system);
   system.model_toml = [system](bool with_noise) { return tanks_toml(system, with_noise); };
   const Sizes sizes = measure(system, both);
   const System nominal = system;

@@ -161,7 +161,7 @@ void draw_parameters(Random& random, System& system, std::size_t count) {
   }
 }
 
-void record(Random& random, System& system) {
+void record_walk(Random& random, System& system) {
   const std::size_t sequences = system.final_only ? 60 : 16;
   for (std::size_t i = 0; i < sequences; ++i) {
     Recording recording;
@@ -206,7 +206,7 @@ System walk(Random& random, bool final_only) {
   const double level = random.uniform(0.5, 1.3);
   system.process_noise = {0.002 * level, 0.002 * level, 0.012 * level};
   system.simulate = walk_simulation(system.process_noise);
-  record(random, system);
+  record_walk(random, system);
   system.model_toml = [system](bool with_noise) { return walk_toml(system, with_noise); };
   const System nominal = system;
   system.draw_named = [nominal](Random& draws) { return draw_walk_fault(draws, nominal); };

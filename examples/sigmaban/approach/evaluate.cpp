@@ -15,7 +15,7 @@
 namespace sigmaban {
 namespace {
 
-struct Options {
+struct EvaluateOptions {
   std::string problem, policy, motion, robot;
   int trials = 10'000;
   std::uint64_t seed = evaluation_seed;
@@ -24,7 +24,7 @@ struct Options {
 };
 
 template <class Problem>
-void run(const Problem& problem, const Options& options) {
+void run(const Problem& problem, const EvaluateOptions& options) {
   check_motion(options.policy, options.motion);
   const auto policy = load_any_policy(problem, options.policy);
   Problem played = problem;
@@ -50,7 +50,7 @@ void run(const Problem& problem, const Options& options) {
 }  // namespace
 
 void add_evaluate(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EvaluateOptions>();
   CLI::App* command = program.add_subcommand("evaluate", "Measure the mean cost of a policy");
   add_problem_option(*command, options->problem);
   add_motion_option(*command, options->motion);

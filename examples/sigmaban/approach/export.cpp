@@ -21,7 +21,7 @@ namespace {
 using example::prepare_output;
 using example::write_text;
 
-struct Options {
+struct ExportOptions {
   std::filesystem::path policy, out;
   std::string motion;
   std::size_t max_kb = 2000;  // [1000 bytes]
@@ -130,7 +130,7 @@ double kilobytes(const std::string& text) { return static_cast<double>(text.size
 
 /// The largest imitation whose C file fits.
 template <class Problem>
-surefoot::ForestPolicy<Problem> shrink(const surefoot::ForestPolicy<Problem>& policy, const Options& options,
+surefoot::ForestPolicy<Problem> shrink(const surefoot::ForestPolicy<Problem>& policy, const ExportOptions& options,
                                        const surefoot::Threads& threads) {
   const DistillOptions distill{.runs = options.runs, .horizon = Problem::horizon};
   const auto data = demonstrations(policy, distill, threads, options.seed);
@@ -144,7 +144,7 @@ surefoot::ForestPolicy<Problem> shrink(const surefoot::ForestPolicy<Problem>& po
 }
 
 template <class Problem>
-void run(const surefoot::ForestPolicy<Problem>& policy, const Options& options) {
+void run(const surefoot::ForestPolicy<Problem>& policy, const ExportOptions& options) {
   prepare_output(options.out);
   std::string code = c_file(policy);
   if (options.max_kb > 0 && kilobytes(code) > static_cast<double>(options.max_kb)) {
@@ -172,7 +172,7 @@ void run(const surefoot::ForestPolicy<Problem>& policy, const Options& options) 
 }  // namespace
 
 void add_export(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportOptions>();
   CLI::App* command = program.add_subcommand("export", "Write a policy as one C99 file without dependencies but libm");
   command->add_option("--policy", options->policy, "policy file of train")->required();
   command->add_option("--out", options->out, "C file")->required();

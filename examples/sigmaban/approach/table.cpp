@@ -20,7 +20,7 @@ namespace {
 using example::read_text;
 using example::write_text;
 
-struct Options {
+struct TableOptions {
   Results results{"results"};
   std::filesystem::path out;  // empty: table.json among the results
   int trials = 10'000;
@@ -43,7 +43,7 @@ std::optional<double> cpu_seconds(const std::filesystem::path& record) {
   return json["cpu_seconds"].get<double>();
 }
 
-std::vector<Row> rows(const Options& options, const std::string& name) {
+std::vector<Row> rows(const TableOptions& options, const std::string& name) {
   const Approach problem = problem_named(name);
   const Published& known = published(name);
   const Results& results = options.results;
@@ -79,7 +79,7 @@ void print(const std::vector<Row>& table) {
   }
 }
 
-nlohmann::ordered_json to_json(const std::vector<Row>& table, const Options& options) {
+nlohmann::ordered_json to_json(const std::vector<Row>& table, const TableOptions& options) {
   nlohmann::ordered_json json{{"trials", options.trials}, {"seed", options.seed}, {"rows", nlohmann::json::array()}};
   for (const Row& row : table) {
     nlohmann::ordered_json line{{"problem", row.problem}, {"policy", row.policy}};
@@ -95,7 +95,7 @@ nlohmann::ordered_json to_json(const std::vector<Row>& table, const Options& opt
   return json;
 }
 
-void run(const Options& options) {
+void run(const TableOptions& options) {
   std::vector<Row> table = rows(options, "ha");
   for (Row& row : rows(options, "anha")) table.push_back(std::move(row));
   print(table);
@@ -108,7 +108,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_table(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TableOptions>();
   CLI::App* command = program.add_subcommand("table", "Print the paper's table 3 beside ours, and write it as JSON");
   command->add_option("--results", options->results.folder, "folder with the policies")->capture_default_str();
   command->add_option("--out", options->out, "JSON file; by default table.json among the results");

@@ -22,7 +22,7 @@ namespace {
 
 using example::draw;
 
-struct Options {
+struct TrajectoriesOptions {
   Results results{"results"};
   std::uint64_t seed = 1;
 };
@@ -80,7 +80,7 @@ std::string commands(const std::string& problem, const std::vector<std::pair<std
   return out.str();
 }
 
-void run(const Options& options) {
+void run(const TrajectoriesOptions& options) {
   for (const std::string name : {"ha", "anha"}) {
     const Approach problem = problem_named(name);
     const auto tuned = options.results.tuned(name);
@@ -101,7 +101,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_trajectories(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TrajectoriesOptions>();
   CLI::App* command = program.add_subcommand("trajectories", "Draw the approaches and the learning curves (gnuplot)");
   command->add_option("--results", options->results.folder, "folder with the policies, and for the pictures")
       ->capture_default_str();

@@ -26,7 +26,7 @@ using example::Interrupt;
 using example::prepare_output;
 using example::write_text;
 
-struct Options {
+struct TuneOptions {
   std::string problem, motion;
   double budget = 50;                                     // [s] of one nominal core
   double wall = std::numeric_limits<double>::infinity();  // [s]
@@ -64,7 +64,7 @@ class Progress {
 };
 
 template <class Problem>
-void run(const Problem& problem, const Options& options) {
+void run(const Problem& problem, const TuneOptions& options) {
   prepare_output(options.out);
   const Interrupt interrupt;
   surefoot::PolicySearchOptions search;
@@ -94,7 +94,7 @@ void run(const Problem& problem, const Options& options) {
 }  // namespace
 
 void add_tune(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TuneOptions>();
   CLI::App* command = program.add_subcommand("tune", "Tune Winner2016 by CMA-ES; Ctrl-C ends early and keeps the best");
   add_problem_option(*command, options->problem);
   add_motion_option(*command, options->motion);

@@ -16,7 +16,7 @@
 namespace sigmaban {
 namespace {
 
-struct Options {
+struct GainsOptions {
   TwinOptions twin;
   int sequences = 200, cycles = 25;
 };
@@ -56,7 +56,7 @@ void print(const std::vector<TwinSequence>& sequences, double cpu_seconds) {
               simulated / cpu_seconds);
 }
 
-void run(const Options& options) {
+void run(const GainsOptions& options) {
   const WalkingTwinOptions twin = walking_twin_options(options.twin);
   const auto commands =
       surefoot::plan_commands(surefoot::CommandBounds(), options.sequences, options.cycles, options.twin.seed);
@@ -71,7 +71,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_gains(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<GainsOptions>();
   CLI::App* command = program.add_subcommand("gains", "Measure falls, gains of the walk, and speed of the simulation");
   add_sequence_options(*command, options->sequences, options->cycles);
   add_twin_options(*command, options->twin);

@@ -21,7 +21,7 @@
 namespace sigmaban {
 namespace {
 
-struct Options {
+struct PictureOptions {
   TwinOptions twin;
   std::string problem = "ha", motion, policy = "expert";
   std::filesystem::path out;
@@ -82,7 +82,7 @@ std::string panel(const std::string& title, int index) {
 }
 
 template <class Problem>
-void run_problem(const Problem& problem, const Options& options) {
+void run_problem(const Problem& problem, const PictureOptions& options) {
   const auto any_policy = load_policy_option(problem, options.policy, options.motion);
   const WalkingTwinOptions twin = walking_twin_options(options.twin);
   example::prepare_output(options.out.string() + ".svg");
@@ -118,7 +118,7 @@ void run_problem(const Problem& problem, const Options& options) {
 }  // namespace
 
 void add_picture(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PictureOptions>();
   CLI::App* command = program.add_subcommand("picture", "Draw six ball approaches from above (gnuplot)");
   add_problem_option(*command, options->problem);
   add_motion_option(*command, options->motion);

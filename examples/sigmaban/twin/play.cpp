@@ -26,7 +26,7 @@ namespace {
 
 using calibrate_program::StoppableThreads;
 
-struct Options {
+struct PlayOptions {
   TwinOptions twin;
   std::string problem, motion;
   std::vector<std::string> policies;
@@ -43,8 +43,9 @@ struct Score {
 };
 
 template <class Problem>
-std::vector<PlayedApproach> play_all(const Problem& problem, const AnyPolicyOf<Problem>& policy, const Options& options,
-                                     const std::string& name, const StoppableThreads& threads) {
+std::vector<PlayedApproach> play_all(const Problem& problem, const AnyPolicyOf<Problem>& policy,
+                                     const PlayOptions& options, const std::string& name,
+                                     const StoppableThreads& threads) {
   const WalkingTwinOptions twin = walking_twin_options(options.twin);
   const auto count = static_cast<std::size_t>(options.episodes);
   std::vector<std::optional<PlayedApproach>> played(count);
@@ -99,7 +100,7 @@ void print(const Score& s) {
   std::fflush(stdout);
 }
 
-nlohmann::ordered_json to_json(const Options& options, const std::vector<Score>& scores) {
+nlohmann::ordered_json to_json(const PlayOptions& options, const std::vector<Score>& scores) {
   nlohmann::ordered_json json{{"problem", options.problem},        {"motion", options.motion},
                               {"switches", options.twin.switches}, {"noise_rad", options.twin.noise},
                               {"seed", options.twin.seed},         {"policies", nlohmann::json::array()}};
@@ -118,7 +119,7 @@ nlohmann::ordered_json to_json(const Options& options, const std::vector<Score>&
 }
 
 template <class Problem>
-void run_problem(const Problem& problem, const Options& options) {
+void run_problem(const Problem& problem, const PlayOptions& options) {
   if (!options.out.empty()) example::prepare_output(options.out);
   std::vector<AnyPolicyOf<Problem>> policies;
   for (const std::string& name : options.policies)
@@ -144,7 +145,7 @@ void run_problem(const Problem& problem, const Options& options) {
 }  // namespace
 
 void add_play(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PlayOptions>();
   CLI::App* command = program.add_subcommand("play", "Play whole ball approaches and tell what they cost");
   command->footer(
       "All policies meet the same starts, those of `sigmaban_approach evaluate` with the same seed. A fall ends a run\n"

@@ -17,14 +17,14 @@
 namespace sigmaban {
 namespace {
 
-struct Options {
+struct RecordOptions {
   TwinOptions twin;
   int sequences = 25, cycles = 25;
   std::filesystem::path commands, out;
 };
 
 /// Per cycle, one matrix per sequence.
-std::vector<Eigen::Matrix3Xd> commands_of(const Options& options) {
+std::vector<Eigen::Matrix3Xd> commands_of(const RecordOptions& options) {
   if (options.commands.empty()) {
     return surefoot::plan_commands(surefoot::CommandBounds(), options.sequences, options.cycles, options.twin.seed);
   }
@@ -38,7 +38,7 @@ std::vector<Eigen::Matrix3Xd> commands_of(const Options& options) {
   return commands;
 }
 
-void run(const Options& options) {
+void run(const RecordOptions& options) {
   const WalkingTwinOptions twin = walking_twin_options(options.twin);
   const std::vector<Eigen::Matrix3Xd> commands = commands_of(options);
   example::prepare_output(options.out);
@@ -56,7 +56,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_record(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RecordOptions>();
   CLI::App* command =
       program.add_subcommand("record", "Write what is recorded of the twin: commands, displacement and pose per cycle");
   command->footer(

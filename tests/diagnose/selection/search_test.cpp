@@ -18,14 +18,14 @@ namespace surefoot::diagnosis {
 namespace {
 
 // Six tanks that these effects act on, with noise of 1 cm, and the search in them.
-struct Bench {
+struct TankBench {
   BoundSimulator bound;
   SearchProblem problem;
   std::vector<AttachedEffect> candidates;
   Parallel parallel = serially();
   Search search{bound, problem, candidates, parallel};
 
-  explicit Bench(const std::vector<NamedEffect>& truth) {
+  explicit TankBench(const std::vector<NamedEffect>& truth) {
     std::vector<Recording> recordings;
     Rng rng(1);
     for (int r = 0; r < 6; ++r) {
@@ -44,8 +44,8 @@ struct Bench {
     candidates = attachments(bound, {effects::constant_rate(), effects::sensor_drift(), effects::sensor_bias()},
                              std::vector<bool>(2, true));
   }
-  Bench(const Bench&) = delete;
-  Bench& operator=(const Bench&) = delete;
+  TankBench(const TankBench&) = delete;
+  TankBench& operator=(const TankBench&) = delete;
 
   /// A fit with these effects, as it is evaluated.
   EvaluatedHypothesis with(const std::vector<std::string>& names) const {
@@ -71,21 +71,21 @@ std::string names_in(const EvaluatedHypothesis& evaluated) {
 const NamedEffect rate{"constant_rate", "level", {}, {}, {0.2}}, drift{"sensor_drift", "level_m", {}, {}, {0.05}};
 
 TEST_CASE("an effect that another one made idle is dropped") {
-  const Bench bench({rate});
+  const TankBench bench({rate});
   EvaluatedHypothesis chosen = bench.with({"sensor_drift", "constant_rate"});
   drop_idle_effects(bench.search, chosen);
   CHECK(names_in(chosen) == "constant_rate");
 }
 
 TEST_CASE("two effects that both do something stay") {
-  const Bench bench({rate, drift});
+  const TankBench bench({rate, drift});
   EvaluatedHypothesis chosen = bench.with({"sensor_drift", "constant_rate"});
   drop_idle_effects(bench.search, chosen);
   CHECK(names_in(chosen) == "constant_rate, sensor_drift");
 }
 
 TEST_CASE("a pair takes the place of one effect that leaves something open") {
-  const Bench bench({rate, drift});
+  const TankBench bench({rate, drift});
   Selection selection;
   selection.nominal = bench.with({});
   selection.chosen = bench.with({"sensor_bias"});
@@ -94,7 +94,7 @@ TEST_CASE("a pair takes the place of one effect that leaves something open") {
 }
 
 TEST_CASE("an effect that stands where another one does better is replaced, until none does") {
-  const Bench bench({rate, drift});
+  const TankBench bench({rate, drift});
   Selection selection;
   selection.nominal = bench.with({});
   selection.chosen = bench.with({"constant_rate", "sensor_bias"});
@@ -107,8 +107,8 @@ TEST_CASE("an effect that stands where another one does better is replaced, unti
 }
 
 TEST_CASE("the search ends with the effects that act, and with none where none acts") {
-  const Bench both({rate, drift}), none({});
-  const auto found = [](const Bench& bench) {
+  const TankBench both({rate, drift}), none({});
+  const auto found = [](const TankBench& bench) {
     const Fit calibrated = fit(bench.bound, nominal_hypothesis(bench.bound), bench.problem.fit, bench.parallel);
     return select_effects(bench.bound, calibrated, bench.problem, bench.candidates, bench.parallel);
   };
@@ -120,7 +120,7 @@ TEST_CASE("the search ends with the effects that act, and with none where none a
 }
 
 TEST_CASE("a search that is stopped at once chooses nothing") {
-  Bench bench({rate});
+  TankBench bench({rate});
   bench.problem.stopped = [] { return true; };
   const Fit calibrated = fit(bench.bound, nominal_hypothesis(bench.bound), bench.problem.fit, bench.parallel);
   CHECK(names_in(select_effects(bench.bound, calibrated, bench.problem, bench.candidates, bench.parallel).chosen)
@@ -128,7 +128,7 @@ TEST_CASE("a search that is stopped at once chooses nothing") {
 }
 
 TEST_CASE("of residuals that look like noise only strong proposals are worth a fit") {
-  const Bench bench({});
+  const TankBench bench({});
   const Hypothesis nominal = nominal_hypothesis(bench.bound);
   const auto some = shortlisted(bench.bound, nominal, bench.problem, bench.candidates, 10, true, bench.parallel);
   CHECK_FALSE(some.empty());

@@ -10,7 +10,7 @@
 namespace surefoot::diagnosis {
 namespace {
 
-const AlternativeCriteria criteria;
+const AlternativeCriteria alternative_criteria;
 
 // Attached to the first state, with losses that differ from block to block by a tenth.
 EvaluatedHypothesis with_effect(const std::string& name, double loss, int turn = 0) {
@@ -38,15 +38,15 @@ Selection selection_of(const EvaluatedHypothesis& chosen, std::vector<EvaluatedH
 }
 
 TEST_CASE("what the choice is far ahead of, or surely ahead of, can be told from it") {
-  CHECK_FALSE(indistinguishable({.gain = 0.11, .t = 1}, 0.8, 0.5, criteria));
-  CHECK_FALSE(indistinguishable({.gain = 0.05, .t = 3}, 0.8, 0.5, criteria));
-  CHECK(indistinguishable({.gain = 0.05, .t = 1}, 0.8, 0.5, criteria));
-  CHECK(indistinguishable({.gain = 0.009, .t = 30}, 0.8, 0.5, criteria));
+  CHECK_FALSE(indistinguishable({.gain = 0.11, .t = 1}, 0.8, 0.5, alternative_criteria));
+  CHECK_FALSE(indistinguishable({.gain = 0.05, .t = 3}, 0.8, 0.5, alternative_criteria));
+  CHECK(indistinguishable({.gain = 0.05, .t = 1}, 0.8, 0.5, alternative_criteria));
+  CHECK(indistinguishable({.gain = 0.009, .t = 30}, 0.8, 0.5, alternative_criteria));
 }
 
 TEST_CASE("what has nearly all of the gain is a tie, however surely the choice is ahead") {
-  CHECK(indistinguishable({.gain = 0.2, .t = 20}, 0.9, 0.88, criteria));
-  CHECK_FALSE(indistinguishable({.gain = 0.2, .t = 20}, 0.9, 0.87, criteria));
+  CHECK(indistinguishable({.gain = 0.2, .t = 20}, 0.9, 0.88, alternative_criteria));
+  CHECK_FALSE(indistinguishable({.gain = 0.2, .t = 20}, 0.9, 0.87, alternative_criteria));
 }
 
 TEST_CASE("alternatives are listed from the best on, without other forms of the choice") {

@@ -8,8 +8,6 @@
 namespace surefoot::diagnosis {
 namespace {
 
-const std::vector<NamedEffect> rate{{"constant_rate", "level", {}, {}, {0.2}}};
-
 VerdictEvidence evidence_of(const std::vector<NamedEffect>& truth, const std::vector<NamedEffect>& named) {
   const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(truth, 0.01));
   const FittedModel plain = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
@@ -18,7 +16,8 @@ VerdictEvidence evidence_of(const std::vector<NamedEffect>& truth, const std::ve
 }
 
 TEST_CASE("what is named leaves no structure, and what is not named leaves all of it") {
-  const VerdictEvidence named = evidence_of(rate, rate), missed = evidence_of(rate, {});
+  const VerdictEvidence named = evidence_of(toys::extra_inflow(), toys::extra_inflow()),
+                        missed = evidence_of(toys::extra_inflow(), {});
   CHECK(named.effects_found);
   CHECK(named.structure_energy < 0.05);
   CHECK(named.held_out_share < 0.05);

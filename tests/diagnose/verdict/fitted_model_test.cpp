@@ -8,12 +8,10 @@
 namespace surefoot::diagnosis {
 namespace {
 
-const std::vector<NamedEffect> rate{{"constant_rate", "level", {}, {}, {0.2}}};
-
 TEST_CASE("a model is simulated over training and held-out recordings, and its mismatch is that of the training") {
-  const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(rate, 0.01));
+  const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(toys::extra_inflow(), 0.01));
   const FittedModel wrong = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
-  const FittedModel right = fitted_model(setup, toys::with_effects(setup, rate), serially());
+  const FittedModel right = fitted_model(setup, toys::with_effects(setup, toys::extra_inflow()), serially());
   CHECK(right.runs.training.size() == 4);
   CHECK(right.runs.held_out.size() == 2);
   CHECK(right.runs.whole_held_out[1].outputs == right.runs.held_out[1].outputs);
@@ -24,7 +22,7 @@ TEST_CASE("a model is simulated over training and held-out recordings, and its m
 }
 
 TEST_CASE("where rows are predicted one by one the whole recordings are simulated beside them") {
-  EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(rate, 0.01));
+  EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(toys::extra_inflow(), 0.01));
   setup.bound.integration.restart = 1;
   const FittedModel model = simulate_model(setup, nominal_hypothesis(setup.bound), serially());
   const Eigen::MatrixXd& measured = setup.bound.recordings[4].outputs;

@@ -8,13 +8,12 @@
 namespace surefoot::diagnosis {
 namespace {
 
-const HeldOutCriteria criteria;
-const std::vector<NamedEffect> rate{{"constant_rate", "level", {}, {}, {0.2}}};
+const HeldOutCriteria held_out_criteria;
 
 TEST_CASE("effects are confirmed if they lower the error, and do not raise that of whole recordings") {
-  CHECK(confirmed({1, 1}, {0.97, 1.01}, criteria));
-  CHECK_FALSE(confirmed({1, 1}, {0.99, 0.5}, criteria));
-  CHECK_FALSE(confirmed({1, 1}, {0.5, 1.03}, criteria));
+  CHECK(confirmed({1, 1}, {0.97, 1.01}, held_out_criteria));
+  CHECK_FALSE(confirmed({1, 1}, {0.99, 0.5}, held_out_criteria));
+  CHECK_FALSE(confirmed({1, 1}, {0.5, 1.03}, held_out_criteria));
 }
 
 Selection selection_of(const EstimationSetup& setup, const std::vector<NamedEffect>& effects) {
@@ -25,9 +24,10 @@ Selection selection_of(const EstimationSetup& setup, const std::vector<NamedEffe
 }
 
 TEST_CASE("a choice that held-out recordings confirm is kept") {
-  const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(rate, 0.01));
+  const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(toys::extra_inflow(), 0.01));
   const FittedModel calibrated = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
-  const CheckedChoice choice = check_on_held_out(setup, calibrated, selection_of(setup, rate), criteria, serially());
+  const CheckedChoice choice =
+      check_on_held_out(setup, calibrated, selection_of(setup, toys::extra_inflow()), held_out_criteria, serially());
   CHECK_FALSE(choice.rejected);
   CHECK(choice.chosen.hypothesis.effects.size() == 1);
   CHECK(held_out_errors(setup, choice.chosen).weighted < 0.3 * held_out_errors(setup, calibrated).weighted);
@@ -36,7 +36,8 @@ TEST_CASE("a choice that held-out recordings confirm is kept") {
 TEST_CASE("a choice that they do not confirm is rejected, and becomes the alternative to none") {
   const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks({}, 0.01));
   const FittedModel calibrated = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
-  const CheckedChoice choice = check_on_held_out(setup, calibrated, selection_of(setup, rate), criteria, serially());
+  const CheckedChoice choice =
+      check_on_held_out(setup, calibrated, selection_of(setup, toys::extra_inflow()), held_out_criteria, serially());
   CHECK(choice.rejected);
   CHECK(choice.chosen.hypothesis.effects.empty());
   CHECK(choice.selection.chosen.hypothesis.effects.empty());
@@ -47,16 +48,16 @@ TEST_CASE("a choice that they do not confirm is rejected, and becomes the altern
 TEST_CASE("where nothing was chosen nothing is rejected") {
   const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks({}, 0.01));
   const FittedModel calibrated = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
-  CHECK_FALSE(check_on_held_out(setup, calibrated, selection_of(setup, {}), criteria, serially()).rejected);
+  CHECK_FALSE(check_on_held_out(setup, calibrated, selection_of(setup, {}), held_out_criteria, serially()).rejected);
 }
 
 TEST_CASE("what effects leave beyond noise is a share of what there was, and counts in units of the noise") {
-  EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(rate, 0.01));
+  EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(toys::extra_inflow(), 0.01));
   setup.bound.info.outputs[0].noise = 0.01;
   const FittedModel calibrated = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
   const auto excess = [&](double value) {
     const auto half = toys::with_effects(setup, {{"constant_rate", "level", {}, {}, {value}}});
-    return held_out_excess(setup, calibrated, fitted_model(setup, half, serially()), criteria);
+    return held_out_excess(setup, calibrated, fitted_model(setup, half, serially()), held_out_criteria);
   };
   CHECK(excess(0.2).share < 0.01);
   CHECK(excess(0.2).ratio == doctest::Approx(1).epsilon(0.1));

@@ -11,7 +11,6 @@
 namespace surefoot::diagnosis {
 namespace {
 
-const std::vector<NamedEffect> rate{{"constant_rate", "level", {}, {}, {0.2}}};
 const BindSimulator bind_tank = [](std::vector<Recording> recordings) {
   return bind_simulator(toys::LeakyTank{}, std::move(recordings));
 };
@@ -90,7 +89,8 @@ TEST_CASE("the pipeline names what is missing, and tells how far it is") {
   options.starts = 4;
   std::vector<double> shares;
   options.on_progress = [&](std::string_view, double share, std::string_view) { shares.push_back(share); };
-  const Diagnosis diagnosis = diagnose(toys::LeakyTank{}, toys::noisy_tanks(rate, 0.01), options, Serial{}, 1);
+  const Diagnosis diagnosis =
+      diagnose(toys::LeakyTank{}, toys::noisy_tanks(toys::extra_inflow(), 0.01), options, Serial{}, 1);
   CHECK(diagnosis.verdict == Verdict::missing_physics);
   REQUIRE(diagnosis.effects.size() == 1);
   CHECK(diagnosis.effects[0].name == "constant_rate");
@@ -106,7 +106,8 @@ TEST_CASE("effects that are part of the model already are calibrated with it, an
   options.effects = {"constant_rate", "sensor_drift"};
   options.known = {{"constant_rate", "level", {}, {}, {0.1}}};
   options.starts = 4;
-  const Diagnosis diagnosis = diagnose(toys::LeakyTank{}, toys::noisy_tanks(rate, 0.01), options, Serial{}, 1);
+  const Diagnosis diagnosis =
+      diagnose(toys::LeakyTank{}, toys::noisy_tanks(toys::extra_inflow(), 0.01), options, Serial{}, 1);
   CHECK(diagnosis.effects.empty());
   CHECK_FALSE(diagnosis.limits.empty());
   REQUIRE(diagnosis.known_effects.size() == 1);

@@ -13,6 +13,9 @@
 
 namespace toys {
 
+/// A constant inflow [m/s] that the model leaves out.
+inline std::vector<surefoot::NamedEffect> extra_inflow() { return {{"constant_rate", "level", {}, {}, {0.2}}}; }
+
 /// Recordings of 120 rows of a tank with these effects, and noise [m].
 inline std::vector<surefoot::Recording> noisy_tanks(const std::vector<surefoot::NamedEffect>& effects, double noise,
                                                     int count = 6) {
