@@ -16,7 +16,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/optimize/cma_es_state.hpp"
 #include "surefoot/optimize/cma_es_stop.hpp"
-#include "surefoot/optimize/linear_algebra.hpp"
+#include "surefoot/optimize/symmetric_eigen.hpp"
 
 namespace surefoot::detail {
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -12,6 +11,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/optimize/least_squares.hpp"
 #include "surefoot/optimize/robust_loss.hpp"
+#include "surefoot/optimize/symmetric_eigen.hpp"
 
 namespace surefoot::detail {
 
@@ -21,16 +21,16 @@ SUREFOOT_INLINE Eigen::MatrixXd invert_normal_matrix(const Eigen::MatrixXd& a, E
                                                      std::vector<bool>& open) {
   constexpr double least_eigenvalue = 1e-12;  // per parameter; columns of `a` have length 1
   constexpr double takes_part = 1e-4;         // component of an eigenvector
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a.transpose() * a);
+  const SymmetricEigen eigen = eigen_of_symmetric(a.transpose() * a);
   const Eigen::Index count = a.cols();
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(count, count);
   open.assign(static_cast<std::size_t>(count), false);
   rank = 0;
   for (Eigen::Index k = 0; k < count; ++k) {
-    const Eigen::VectorXd axis = solver.eigenvectors().col(k);
-    if (solver.eigenvalues()[k] > least_eigenvalue * static_cast<double>(count)) {
+    const Eigen::VectorXd axis = eigen.vectors.col(k);
+    if (eigen.values[k] > least_eigenvalue * static_cast<double>(count)) {
       ++rank;
-      inverse += axis * axis.transpose() / solver.eigenvalues()[k];
+      inverse += axis * axis.transpose() / eigen.values[k];
     } else {
       for (Eigen::Index i = 0; i < count; ++i) {
         if (std::abs(axis[i]) > takes_part) open[static_cast<std::size_t>(i)] = true;
