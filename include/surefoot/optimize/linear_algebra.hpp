@@ -15,6 +15,21 @@ namespace surefoot::detail {
 double dot(const double* a, const double* b, Eigen::Index count);
 double dot_by_two(const double* a, const double* b, Eigen::Index count);
 
+double norm(const Eigen::VectorXd& a);
+double column_norm(const Eigen::MatrixXd& a, Eigen::Index column);
+
+/// a b, with as many rows as columns, and a x.
+Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+Eigen::VectorXd product(const Eigen::MatrixXd& a, const Eigen::VectorXd& x);
+
+/// a^T, a^T b, with as many rows as columns, and a^T x.
+Eigen::MatrixXd transposed(const Eigen::MatrixXd& a);
+Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+Eigen::VectorXd transposed_product(const Eigen::MatrixXd& a, const Eigen::VectorXd& x);
+
+/// diagonal a diagonal, for a diagonal matrix.
+Eigen::MatrixXd scaled(const Eigen::VectorXd& diagonal, const Eigen::MatrixXd& a);
+
 /// Solutions of a x = b for symmetric `a` (L D L^T with pivots): one per column of b.
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 Eigen::MatrixXd invert_symmetric(const Eigen::MatrixXd& a);

@@ -45,6 +45,87 @@ SUREFOOT_INLINE double dot_by_two(const double* a, const double* b, Eigen::Index
   return count % 2 == 0 ? s0 + s1 : s0 + s1 + a[count - 1] * b[count - 1];
 }
 
+SUREFOOT_INLINE double norm(const Eigen::VectorXd& a) { return std::sqrt(dot(a.data(), a.data(), a.size())); }
+
+SUREFOOT_INLINE double column_norm(const Eigen::MatrixXd& a, Eigen::Index column) {
+  const double* const first = a.data() + column * a.rows();
+  return std::sqrt(dot(first, first, a.rows()));
+}
+
+/// Whether Eigen takes the sums of a product one by one, not by blocks.
+SUREFOOT_INLINE bool is_small_product(Eigen::Index rows, Eigen::Index depth) {
+  constexpr Eigen::Index blocked_from = 20;  // rows, columns and depth together
+  return rows == 1 || 2 * rows + depth < blocked_from;
+}
+
+/// Adds a b to `result`: the kernel behind Eigen's product, without a type per expression.
+SUREFOOT_INLINE void add_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, Eigen::MatrixXd& result) {
+  using namespace Eigen::internal;
+  constexpr int by_columns = Eigen::ColMajor, any = Eigen::Dynamic;
+  gemm_blocking_space<by_columns, double, double, any, any, any> blocking(a.rows(), b.cols(), a.cols(), 1, true);
+  general_matrix_matrix_product<Eigen::Index, double, by_columns, false, double, by_columns, false, by_columns, 1>::run(
+      a.rows(), b.cols(), a.cols(), a.data(), a.rows(), b.data(), b.rows(), result.data(), 1, result.rows(), 1.0,
+      blocking, nullptr);
+}
+
+SUREFOOT_INLINE Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(a.rows(), b.cols());
+  if (!is_small_product(a.rows(), a.cols())) {
+    add_product(a, b, result);
+    return result;
+  }
+  for (Eigen::Index j = 0; j < b.cols(); ++j) {
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+      for (Eigen::Index k = 0; k < a.cols(); ++k) result(i, j) += a(i, k) * b(k, j);
+    }
+  }
+  return result;
+}
+
+SUREFOOT_INLINE Eigen::VectorXd product(const Eigen::MatrixXd& a, const Eigen::VectorXd& x) {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(a.rows());
+  for (Eigen::Index j = 0; j < a.cols(); ++j) {
+    for (Eigen::Index i = 0; i < a.rows(); ++i) result[i] += a(i, j) * x[j];
+  }
+  return result;
+}
+
+SUREFOOT_INLINE Eigen::MatrixXd transposed(const Eigen::MatrixXd& a) {
+  Eigen::MatrixXd result(a.cols(), a.rows());
+  for (Eigen::Index j = 0; j < a.cols(); ++j) {
+    for (Eigen::Index i = 0; i < a.rows(); ++i) result(j, i) = a(i, j);
+  }
+  return result;
+}
+
+SUREFOOT_INLINE Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  if (!is_small_product(a.cols(), a.rows())) return product(transposed(a), b);
+  Eigen::MatrixXd result(a.cols(), b.cols());
+  for (Eigen::Index j = 0; j < b.cols(); ++j) {
+    for (Eigen::Index i = 0; i < a.cols(); ++i) {
+      result(i, j) = dot(a.data() + i * a.rows(), b.data() + j * b.rows(), a.rows());
+    }
+  }
+  return result;
+}
+
+SUREFOOT_INLINE Eigen::VectorXd transposed_product(const Eigen::MatrixXd& a, const Eigen::VectorXd& x) {
+  Eigen::VectorXd result(a.cols());
+  for (Eigen::Index i = 0; i < a.cols(); ++i) {
+    const double* const column = a.data() + i * a.rows();
+    result[i] = a.cols() == 1 ? dot(column, x.data(), a.rows()) : dot_by_two(column, x.data(), a.rows());
+  }
+  return result;
+}
+
+SUREFOOT_INLINE Eigen::MatrixXd scaled(const Eigen::VectorXd& diagonal, const Eigen::MatrixXd& a) {
+  Eigen::MatrixXd result(a.rows(), a.cols());
+  for (Eigen::Index j = 0; j < a.cols(); ++j) {
+    for (Eigen::Index i = 0; i < a.rows(); ++i) result(i, j) = diagonal[i] * a(i, j) * diagonal[j];
+  }
+  return result;
+}
+
 // One vector: panels of 8 unknowns. Within one L column by column, below it sums over the panel.
 SUREFOOT_INLINE void solve_lower(const Eigen::MatrixXd& lower, Eigen::VectorXd& x, DiagonalOf diagonal) {
   constexpr Eigen::Index panel = 8;
