@@ -19,4 +19,12 @@ bool all_finite(const VectorOrMatrix& values) {
   return true;
 }
 
+/// The square roots of the diagonal of a square matrix.
+template <int N>
+Vec<N> roots_of_diagonal(const Eigen::Matrix<double, N, N>& a) {
+  Vec<N> roots(a.rows());
+  for (Eigen::Index i = 0; i < a.rows(); ++i) roots[i] = std::sqrt(a(i, i));
+  return roots;
+}
+
 }  // namespace surefoot

@@ -15,12 +15,16 @@ namespace surefoot::detail {
 double dot(const double* a, const double* b, Eigen::Index count);
 double dot_by_two(const double* a, const double* b, Eigen::Index count);
 
+Eigen::VectorXd times(double factor, Eigen::VectorXd a);
 double norm(const Eigen::VectorXd& a);
 double column_norm(const Eigen::MatrixXd& a, Eigen::Index column);
 
 /// a b, with as many rows as columns, and a x.
 Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 Eigen::VectorXd product(const Eigen::MatrixXd& a, const Eigen::VectorXd& x);
+
+/// a + lower x, of the lower triangle of a matrix.
+Eigen::VectorXd add_lower_product(Eigen::VectorXd a, const Eigen::MatrixXd& lower, const Eigen::VectorXd& x);
 
 /// a^T, a^T b, with as many rows as columns, and a^T x.
 Eigen::MatrixXd transposed(const Eigen::MatrixXd& a);

@@ -45,6 +45,11 @@ SUREFOOT_INLINE double dot_by_two(const double* a, const double* b, Eigen::Index
   return count % 2 == 0 ? s0 + s1 : s0 + s1 + a[count - 1] * b[count - 1];
 }
 
+SUREFOOT_INLINE Eigen::VectorXd times(double factor, Eigen::VectorXd a) {
+  for (double& value : a) value *= factor;
+  return a;
+}
+
 SUREFOOT_INLINE double norm(const Eigen::VectorXd& a) { return std::sqrt(dot(a.data(), a.data(), a.size())); }
 
 SUREFOOT_INLINE double column_norm(const Eigen::MatrixXd& a, Eigen::Index column) {
@@ -88,6 +93,24 @@ SUREFOOT_INLINE Eigen::VectorXd product(const Eigen::MatrixXd& a, const Eigen::V
     for (Eigen::Index i = 0; i < a.rows(); ++i) result[i] += a(i, j) * x[j];
   }
   return result;
+}
+
+SUREFOOT_INLINE Eigen::VectorXd add_lower_product(Eigen::VectorXd a, const Eigen::MatrixXd& lower,
+                                                 const Eigen::VectorXd& x) {
+  constexpr Eigen::Index panel = 8;  // columns whose products with the rows below them are summed first
+  const Eigen::Index n = x.size();
+  for (Eigen::Index begin = 0; begin < n; begin += panel) {
+    const Eigen::Index end = std::min(n, begin + panel);
+    for (Eigen::Index j = begin; j < end; ++j) {
+      for (Eigen::Index i = j; i < end; ++i) a[i] += x[j] * lower(i, j);
+    }
+    for (Eigen::Index i = end; i < n; ++i) {
+      double sum = 0;
+      for (Eigen::Index j = begin; j < end; ++j) sum += lower(i, j) * x[j];
+      a[i] += sum;
+    }
+  }
+  return a;
 }
 
 SUREFOOT_INLINE Eigen::MatrixXd transposed(const Eigen::MatrixXd& a) {
