@@ -177,8 +177,8 @@ class LeastSquaresFit {
       if (next_cost < cost_) {
         const double gain = cost_ - next_cost;
         const Eigen::VectorXd bent = product(hessian_, step);
-        const double expected = -(dot(gradient_.data(), step.data(), step.size()) +
-                                  0.5 * dot(step.data(), bent.data(), step.size()));
+        const double expected =
+            -(dot(gradient_.data(), step.data(), step.size()) + 0.5 * dot(step.data(), bent.data(), step.size()));
         const double ratio = expected > 0 ? gain / expected : 1;
         damping_ *= std::max(1.0 / 3, 1 - std::pow(2 * ratio - 1, 3));
         growth_ = 2;

@@ -2,7 +2,8 @@
 // models share. Cost of each decomposition: of the order of n^3.
 //
 // The sums are taken in the order of Eigen 3.4's own decompositions, so that the results are equal to the last bit to
-// those of the releases that used them, for up to 128 unknowns; Eigen's, which make a type of every expression, cost the compiler seconds.
+// those of the releases that used them, for up to 128 unknowns; Eigen's, which make a type of every expression, cost
+// the compiler seconds.
 #pragma once
 
 #include <Eigen/Core>

@@ -96,7 +96,7 @@ SUREFOOT_INLINE Eigen::VectorXd product(const Eigen::MatrixXd& a, const Eigen::V
 }
 
 SUREFOOT_INLINE Eigen::VectorXd add_lower_product(Eigen::VectorXd a, const Eigen::MatrixXd& lower,
-                                                 const Eigen::VectorXd& x) {
+                                                  const Eigen::VectorXd& x) {
   constexpr Eigen::Index panel = 8;  // columns whose products with the rows below them are summed first
   const Eigen::Index n = x.size();
   for (Eigen::Index begin = 0; begin < n; begin += panel) {

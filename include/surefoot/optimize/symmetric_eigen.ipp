@@ -21,8 +21,8 @@ struct TridiagonalForm {
   double scale = 1;
 };
 
-/// Replaces x[1] to x[count - 1] by the rest of a vector v with v[0] = 1 for which (1 - factor v v^T) x = (x[0], 0, ...)
-/// with the new x[0].
+/// Replaces x[1] to x[count - 1] by the rest of a vector v with v[0] = 1 for which (1 - factor v v^T) x = (x[0], 0,
+/// ...) with the new x[0].
 SUREFOOT_INLINE void reflect(double* x, Eigen::Index count, double& factor) {
   const double rest = dot(x + 1, x + 1, count - 1);
   factor = 0;
@@ -37,9 +37,8 @@ SUREFOOT_INLINE void reflect(double* x, Eigen::Index count, double& factor) {
 }
 
 SUREFOOT_INLINE TridiagonalForm tridiagonal_form(const Eigen::MatrixXd& symmetric) {
-  using LowerTimesVector =
-      Eigen::internal::selfadjoint_matrix_vector_product<double, Eigen::Index, Eigen::ColMajor, Eigen::Lower, false,
-                                                         false>;
+  using LowerTimesVector = Eigen::internal::selfadjoint_matrix_vector_product<double, Eigen::Index, Eigen::ColMajor,
+                                                                              Eigen::Lower, false, false>;
   const Eigen::Index n = symmetric.rows();
   TridiagonalForm form{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd(n - 1), Eigen::VectorXd(n), Eigen::VectorXd(n - 1)};
   Eigen::MatrixXd& a = form.reflections;
@@ -111,7 +110,8 @@ SUREFOOT_INLINE double shift(double before_last, double beside, double last) {
   const double half = (before_last - last) * 0.5;
   if (half == 0) return last - std::abs(beside);
   if (beside == 0) return last;
-  const double larger = std::max(std::abs(half), std::abs(beside)), ratio = std::min(std::abs(half), std::abs(beside)) / larger;
+  const double larger = std::max(std::abs(half), std::abs(beside)),
+               ratio = std::min(std::abs(half), std::abs(beside)) / larger;
   const double length = larger * std::sqrt(1 + ratio * ratio), sum = half + (half > 0 ? length : -length);
   const double square = beside * beside;
   return square == 0 ? last - beside / (sum / beside) : last - square / sum;

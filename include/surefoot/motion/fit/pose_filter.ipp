@@ -153,8 +153,7 @@ SUREFOOT_INLINE double log_likelihood(std::span<const Eigen::Matrix3Xd> displace
     for (const Innovation& innovation : innovations(displacements[i], noise, accuracy, sequences[i])) {
       double squares = 0;
       for (const double value : innovation.whitened()) squares += value * value;
-      sum -= 0.5 * (squares + innovation.log_det +
-                    static_cast<double>(innovation.error.size()) * log_two_pi);
+      sum -= 0.5 * (squares + innovation.log_det + static_cast<double>(innovation.error.size()) * log_two_pi);
     }
   }
   return sum;

@@ -29,8 +29,9 @@ SUREFOOT_INLINE Eigen::MatrixXd Cholesky::inverse() const {
   return result;
 }
 
-// The smaller motion models of the library have 3 or 6 parameters. Their sums are taken as Eigen takes those of matrices
-// of a fixed size: half plus half, so that results stay equal to the last bit to those of the releases that used them.
+// The smaller motion models of the library have 3 or 6 parameters. Their sums are taken as Eigen takes those of
+// matrices of a fixed size: half plus half, so that results stay equal to the last bit to those of the releases that
+// used them.
 
 SUREFOOT_INLINE bool is_small(Eigen::Index n) { return n == 3 || n == 6; }
 

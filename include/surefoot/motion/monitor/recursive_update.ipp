@@ -48,8 +48,8 @@ SUREFOOT_INLINE InformationUpdate linearize(const MotionTracker& tracker, const 
   InformationUpdate update;
   update.at = tracker.model.parameters();
   const Eigen::VectorXd innovations = poses.residuals(update.at);
-  const Eigen::MatrixXd jacobian = poses.jacobian(update.at);                // of what innovations lose
-  update.information = detail::transposed_product(jacobian, jacobian);       // the rows of the prior are 0
+  const Eigen::MatrixXd jacobian = poses.jacobian(update.at);           // of what innovations lose
+  update.information = detail::transposed_product(jacobian, jacobian);  // the rows of the prior are 0
   update.offset = detail::times(-1, detail::transposed_product(jacobian, innovations));
   update.rest = detail::dot(innovations.data(), innovations.data(), innovations.size());
   update.count = innovations.size() - tracker.model.parameter_count();
