@@ -28,3 +28,24 @@ TEST_CASE("solutions and factors are Eigen's to the last bit") {
     CHECK(factor == expected);
   }
 }
+
+TEST_CASE("products are Eigen's to the last bit") {
+  for (const Eigen::Index n : {1, 2, 3, 5, 12, 30}) {
+    for (const Eigen::Index m : {2, 7, 60}) {
+      const Eigen::MatrixXd a = Eigen::MatrixXd::Random(m, n), b = Eigen::MatrixXd::Random(m, n);
+      const Eigen::VectorXd x = Eigen::VectorXd::Random(m), y = Eigen::VectorXd::Random(n);
+      const Eigen::MatrixXd turned = a.transpose();
+      CHECK(surefoot::detail::transposed(a) == turned);
+      CHECK(surefoot::detail::product(turned, b) == turned * b);
+      CHECK(surefoot::detail::transposed_product(a, b) == a.transpose() * b);
+      CHECK(surefoot::detail::transposed_product(a, x) == a.transpose() * x);
+      CHECK(surefoot::detail::product(a, y) == a * y);
+      CHECK(surefoot::detail::norm(x) == x.norm());
+      CHECK(surefoot::detail::column_norm(a, n - 1) == a.col(n - 1).norm());
+      CHECK(surefoot::detail::scaled(y, turned * a) == y.asDiagonal() * (turned * a) * y.asDiagonal());
+      Eigen::VectorXd sum = y;
+      sum += (turned * a).eval().triangularView<Eigen::Lower>() * y;
+      CHECK(surefoot::detail::add_lower_product(y, turned * a, y) == sum);
+    }
+  }
+}

@@ -181,21 +181,32 @@ SUREFOOT_INLINE void solve_lower_transposed(const Eigen::MatrixXd& lower, Eigen:
   }
 }
 
-// Many vectors: panels of 4 unknowns, and products with the inverse of the diagonal.
+// Many vectors: panels of 4 unknowns, and products with the inverse of the diagonal. Sums begin at 0.0, which decides
+// the sign of those that are 0.
+
+/// One over the diagonal of `lower`, or ones.
+SUREFOOT_INLINE Eigen::VectorXd inverse_diagonal(const Eigen::MatrixXd& lower, DiagonalOf diagonal) {
+  Eigen::VectorXd result = Eigen::VectorXd::Ones(lower.rows());
+  for (Eigen::Index i = 0; i < lower.rows() && diagonal == DiagonalOf::any; ++i) result[i] = 1 / lower(i, i);
+  return result;
+}
+
 SUREFOOT_INLINE void solve_lower(const Eigen::MatrixXd& lower, Eigen::MatrixXd& x, DiagonalOf diagonal) {
   constexpr Eigen::Index panel = 4;
   const Eigen::Index n = x.rows();
+  const Eigen::VectorXd inverse = inverse_diagonal(lower, diagonal);
   for (Eigen::Index column = 0; column < x.cols(); ++column) {
+    double* const y = x.data() + column * n;
     for (Eigen::Index begin = 0; begin < n; begin += panel) {
       const Eigen::Index end = std::min(n, begin + panel);
       for (Eigen::Index i = begin; i < end; ++i) {
-        if (diagonal == DiagonalOf::any) x(i, column) *= 1 / lower(i, i);
-        for (Eigen::Index k = i + 1; k < end; ++k) x(k, column) -= x(i, column) * lower(k, i);
+        y[i] *= inverse[i];
+        for (Eigen::Index k = i + 1; k < end; ++k) y[k] -= y[i] * lower(k, i);
       }
+      const double* const l = lower.data() + begin * n;
+      const double* const z = y + begin;
       for (Eigen::Index i = end; i < n; ++i) {
-        double sum = 0;
-        for (Eigen::Index k = begin; k < end; ++k) sum += lower(i, k) * x(k, column);
-        x(i, column) -= sum;
+        y[i] -= 0.0 + l[i] * z[0] + l[n + i] * z[1] + l[2 * n + i] * z[2] + l[3 * n + i] * z[3];
       }
     }
   }
@@ -204,18 +215,20 @@ SUREFOOT_INLINE void solve_lower(const Eigen::MatrixXd& lower, Eigen::MatrixXd& 
 SUREFOOT_INLINE void solve_lower_transposed(const Eigen::MatrixXd& lower, Eigen::MatrixXd& x, DiagonalOf diagonal) {
   constexpr Eigen::Index panel = 4;
   const Eigen::Index n = x.rows();
+  const Eigen::VectorXd inverse = inverse_diagonal(lower, diagonal);
   for (Eigen::Index column = 0; column < x.cols(); ++column) {
+    double* const y = x.data() + column * n;
     for (Eigen::Index end = n; end > 0; end -= std::min(end, panel)) {
       const Eigen::Index begin = end - std::min(end, panel);
       for (Eigen::Index i = end; i-- > begin;) {
         double sum = 0;
-        for (Eigen::Index k = i + 1; k < end; ++k) sum += lower(k, i) * x(k, column);
-        x(i, column) = (x(i, column) - sum) * (diagonal == DiagonalOf::any ? 1 / lower(i, i) : 1);
+        for (Eigen::Index k = i + 1; k < end; ++k) sum += lower(k, i) * y[k];
+        y[i] = (y[i] - sum) * inverse[i];
       }
+      const double* const z = y + begin;
       for (Eigen::Index i = 0; i < begin; ++i) {
-        double sum = 0;
-        for (Eigen::Index k = begin; k < end; ++k) sum += lower(k, i) * x(k, column);
-        x(i, column) -= sum;
+        const double* const l = lower.data() + i * n + begin;
+        y[i] -= 0.0 + l[0] * z[0] + l[1] * z[1] + l[2] * z[2] + l[3] * z[3];
       }
     }
   }
