@@ -44,7 +44,7 @@ TEST_CASE("products are Eigen's to the last bit") {
       CHECK(surefoot::detail::column_norm(a, n - 1) == a.col(n - 1).norm());
       CHECK(surefoot::detail::scaled(y, turned * a) == y.asDiagonal() * (turned * a) * y.asDiagonal());
       Eigen::VectorXd sum = y;
-      sum += (turned * a).eval().triangularView<Eigen::Lower>() * y;
+      sum.noalias() += (turned * a).eval().triangularView<Eigen::Lower>() * y;
       CHECK(surefoot::detail::add_lower_product(y, turned * a, y) == sum);
     }
   }
