@@ -1,6 +1,7 @@
 // An axis-aligned box: the bounds of states, actions and search spaces.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -36,11 +37,17 @@ class Box {
 
   /// Whether the point lies inside, its faces included. False for a point with a NaN.
   bool contains(const Vec<N>& point) const {
-    return (point.array() >= low_.array()).all() && (point.array() <= high_.array()).all();
+    for (Eigen::Index i = 0; i < point.size(); ++i) {
+      if (!(point[i] >= low_[i] && point[i] <= high_[i])) return false;
+    }
+    return true;
   }
 
   /// The nearest point of the box.
-  Vec<N> clamp(const Vec<N>& point) const { return point.cwiseMax(low_).cwiseMin(high_); }
+  Vec<N> clamp(Vec<N> point) const {
+    for (Eigen::Index i = 0; i < point.size(); ++i) point[i] = std::min(std::max(point[i], low_[i]), high_[i]);
+    return point;
+  }
 
   /// Maps [0,1]^N onto the box, and back (a dimension without width maps back to 0).
   Vec<N> from_unit(const Vec<N>& unit) const { return low_ + unit.cwiseProduct(width()); }

@@ -35,7 +35,7 @@ struct AnyCalibration {
   MotionNoise noise = {};           // constant, normal: what the weights of the poses are made from
   double log_likelihood = 0;        // of all measured poses [nats]
 
-  Eigen::VectorXd standard_errors() const { return covariance.diagonal().cwiseSqrt(); }
+  Eigen::VectorXd standard_errors() const { return roots_of_diagonal<Eigen::Dynamic>(covariance); }
 };
 
 template <MotionModel M>
@@ -45,7 +45,7 @@ struct Calibration {
   MotionNoise noise;                            // constant, normal: what the weights of the poses are made from
   double log_likelihood = 0;                    // of all measured poses [nats]
 
-  Vec<M::parameter_count> standard_errors() const { return covariance.diagonal().cwiseSqrt(); }
+  Vec<M::parameter_count> standard_errors() const { return roots_of_diagonal<M::parameter_count>(covariance); }
 };
 
 /// Fits model and constant noise. Cost: some ten milliseconds for 25 sequences of 25 cycles and 12 parameters.

@@ -18,7 +18,7 @@ namespace surefoot {
 SUREFOOT_INLINE void check(const CalibrationOptions& options) {
   check(options.model);
   const auto positive = [](const Vec<3>& v, const char* field) {
-    if (!(v.minCoeff() > 0 && v.allFinite())) {
+    if (!(v.minCoeff() > 0 && all_finite(v))) {
       throw MotionError(std::string("CalibrationOptions: ") + field + " must be finite and above 0 in every component");
     }
   };

@@ -44,7 +44,10 @@ requires(Count == 3 || Count == 6 || Count == 12) class LinearCorrection {
 
   /// Displacement of a cycle with these commands (x, y, turn) [m, m, rad].
   Pose2 displacement(const Vec<3>& commands) const {
-    return Pose2::from_vec(matrix_.template leftCols<1>() + matrix_.template rightCols<3>() * commands);
+    const auto along = [&](int row, int column) { return matrix_(row, column) * commands[column - 1]; };
+    return {.x = matrix_(0, 0) + (along(0, 1) + along(0, 2) + along(0, 3)),
+            .y = matrix_(1, 0) + (along(1, 1) + along(1, 2) + along(1, 3)),
+            .angle = matrix_(2, 0) + (along(2, 1) + (along(2, 2) + along(2, 3)))};
   }
 
   static std::array<ModelParameter, std::size_t{Count}> parameter_info() {
@@ -58,7 +61,7 @@ requires(Count == 3 || Count == 6 || Count == 12) class LinearCorrection {
 
   static Matrix identity() {
     Matrix matrix = Matrix::Zero();
-    matrix.template rightCols<3>().setIdentity();
+    for (int i = 0; i < 3; ++i) matrix(i, i + 1) = 1;
     return matrix;
   }
 

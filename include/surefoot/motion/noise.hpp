@@ -45,12 +45,19 @@ struct MotionNoise {
   static constexpr auto fields = std::tuple(&MotionNoise::shape, &MotionNoise::constant, &MotionNoise::per_speed,
                                             &MotionNoise::per_acceleration, &MotionNoise::scale);
 
-  double speed(const Vec<3>& commands) const { return commands.cwiseQuotient(scale).norm(); }
+  double speed(const Vec<3>& commands) const {
+    double squares = 0;
+    for (int i = 0; i < 3; ++i) squares += (commands[i] / scale[i]) * (commands[i] / scale[i]);
+    return std::sqrt(squares);
+  }
   double acceleration(const Vec<3>& commands, const Vec<3>& previous) const { return speed(commands - previous); }
 
   /// Standard deviations (x, y, turn) [m, m, rad].
   Vec<3> deviation(const Vec<3>& commands, const Vec<3>& previous) const {
-    return constant + per_speed * speed(commands) + per_acceleration * acceleration(commands, previous);
+    const double fast = speed(commands), jerky = acceleration(commands, previous);
+    Vec<3> result;
+    for (int i = 0; i < 3; ++i) result[i] = constant[i] + per_speed[i] * fast + per_acceleration[i] * jerky;
+    return result;
   }
 
   Vec<3> sample(const Vec<3>& commands, const Vec<3>& previous, Rng& rng) const {

@@ -29,14 +29,17 @@ class PreviousCommandCorrection {
 
   static PreviousCommandCorrection from_parameters(const Parameters& parameters) {
     PreviousCommandCorrection result;
-    result.present_ = FullLinearCorrection::from_parameters(parameters.head<12>());
+    FullLinearCorrection::Parameters present;
+    for (int i = 0; i < 12; ++i) present[i] = parameters[i];
+    result.present_ = FullLinearCorrection::from_parameters(present);
     for (int i = 0; i < 9; ++i) result.previous_(i / 3, i % 3) = parameters[12 + i];
     return result;
   }
 
   Parameters parameters() const {
     Parameters result;
-    result.head<12>() = present_.parameters();
+    const FullLinearCorrection::Parameters present = present_.parameters();
+    for (int i = 0; i < 12; ++i) result[i] = present[i];
     for (int i = 0; i < 9; ++i) result[12 + i] = previous_(i / 3, i % 3);
     return result;
   }

@@ -21,7 +21,7 @@ SUREFOOT_INLINE void check(const WalkSequence& sequence) {
   const auto fail = [&](const std::string& what) { throw MotionError("sequence " + sequence.name + ": " + what); };
   if (sequence.cycles() == 0) fail("has no cycle");
   if (sequence.poses.cols() != sequence.cycles()) fail("must have one column of poses per cycle");
-  if (!sequence.commands.allFinite() || !sequence.command_before.allFinite())
+  if (!all_finite(sequence.commands) || !all_finite(sequence.command_before))
     fail("has a command that is not a number");
   if (!sequence.position_measured(sequence.cycles() - 1)) {
     fail("has no final position; measure where the robot stopped, or leave the sequence out");
@@ -34,7 +34,7 @@ SUREFOOT_INLINE void check(std::span<const WalkSequence> sequences) {
 }
 
 SUREFOOT_INLINE WalkSequence final_pose_only(WalkSequence sequence) {
-  if (sequence.cycles() > 1) sequence.poses.leftCols(sequence.cycles() - 1).setConstant(std::nan(""));
+  if (sequence.cycles() > 1) std::fill_n(sequence.poses.data(), 3 * (sequence.cycles() - 1), std::nan(""));
   return sequence;
 }
 

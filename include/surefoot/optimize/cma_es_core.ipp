@@ -14,6 +14,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/vec.hpp"
 #include "surefoot/optimize/cma_es_constants.hpp"
 #include "surefoot/optimize/cma_es_core.hpp"
 #include "surefoot/optimize/cma_es_state.hpp"
@@ -25,7 +26,7 @@ namespace surefoot {
 SUREFOOT_INLINE CmaEsState cma_es_start(const Eigen::VectorXd& start, double sigma, Eigen::Index population,
                                         std::uint64_t seed, std::uint64_t descent) {
   const Eigen::Index n = start.size();
-  if (n == 0 || !start.allFinite()) {
+  if (n == 0 || !all_finite(start)) {
     throw OptimizeError("cma_es: the start must have at least one dimension and finite coordinates");
   }
   if (!(sigma > 0) || !std::isfinite(sigma)) {
@@ -161,7 +162,10 @@ SUREFOOT_INLINE void CmaEsCore::record_values() {
 
 SUREFOOT_INLINE void CmaEsCore::factorise() {
   state_.factor = state_.covariance;
-  state_.degenerate = !detail::factorise_in_place(state_.factor) || !state_.factor.diagonal().allFinite();
+  state_.degenerate = !detail::factorise_in_place(state_.factor);
+  for (Eigen::Index i = 0; i < state_.dimension(); ++i) {
+    if (!std::isfinite(state_.factor(i, i))) state_.degenerate = true;
+  }
 }
 
 }  // namespace surefoot

@@ -19,6 +19,7 @@
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/box.hpp"
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/core/vec.hpp"
 #include "surefoot/optimize/cma_es_search.hpp"
 #include "surefoot/optimize/cma_es_serialize.hpp"
 
@@ -140,7 +141,7 @@ SUREFOOT_INLINE bool is_sound(const CmaEsSearch& search) {
   const CmaEsState& state = search.state;
   const Eigen::Index n = state.dimension(), users = search.start.size();
   const auto square = [n](const Eigen::MatrixXd& m) { return m.rows() == n && m.cols() == n; };
-  const auto column = [n](const Eigen::VectorXd& v) { return v.size() == n && v.allFinite(); };
+  const auto column = [n](const Eigen::VectorXd& v) { return v.size() == n && all_finite(v); };
   const auto population = [](Eigen::Index count) { return count >= 4 && count <= max_population; };
   const auto point = [users](const CmaEsDescent& d) {
     return (d.best.size() == users || d.best.size() == 0) && (d.mean.size() == users || d.mean.size() == 0);
@@ -148,9 +149,10 @@ SUREFOOT_INLINE bool is_sound(const CmaEsSearch& search) {
   Eigen::Index free = users;
   if (search.box) {
     if (search.box->size() != users) return false;
-    free = (search.box->width().array() > 0).count();
+    free = 0;
+    for (const double width : search.box->width()) free += width > 0 ? 1 : 0;
   }
-  return n > 0 && n == free && search.start.allFinite() && search.sigma > 0 && population(state.population) &&
+  return n > 0 && n == free && all_finite(search.start) && search.sigma > 0 && population(state.population) &&
          state.descent == search.finished.size() && search.plan.population == state.population &&
          search.descent.population == state.population && population(search.schedule.first_population) &&
          population(search.schedule.large_population) && column(state.mean) && state.sigma > 0 &&

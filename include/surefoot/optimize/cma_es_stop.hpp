@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "surefoot/optimize/cma_es_state.hpp"
-#include "surefoot/optimize/linear_algebra.hpp"
+#include "surefoot/optimize/symmetric_eigen.hpp"
 
 namespace surefoot {
 

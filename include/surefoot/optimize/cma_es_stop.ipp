@@ -16,7 +16,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/optimize/cma_es_state.hpp"
 #include "surefoot/optimize/cma_es_stop.hpp"
-#include "surefoot/optimize/linear_algebra.hpp"
+#include "surefoot/optimize/symmetric_eigen.hpp"
 
 namespace surefoot::detail {
 
@@ -34,18 +34,25 @@ namespace surefoot {
 SUREFOOT_INLINE std::optional<StopReason> converged(const CmaEsState& state, const CmaEsTolerances& tolerances) {
   if (state.generation == 0) return std::nullopt;
   const Eigen::Index n = state.dimension();
-  const auto deviation = state.covariance.diagonal().array().sqrt() * state.sigma;
+  const auto deviation = [&](Eigen::Index i) { return std::sqrt(state.covariance(i, i)) * state.sigma; };
+  double widest = deviation(0), farthest = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    widest = std::max(widest, deviation(i));
+    farthest = std::max(farthest, std::abs(state.path[i]));
+  }
   if (state.degenerate || !std::isfinite(state.sigma)) return StopReason::condition;
-  if (deviation.maxCoeff() < tolerances.x * state.start_sigma &&
-      state.path.cwiseAbs().maxCoeff() * state.sigma < tolerances.x * state.start_sigma) {
+  if (widest < tolerances.x * state.start_sigma && farthest * state.sigma < tolerances.x * state.start_sigma) {
     return StopReason::tol_x;
   }
-  if (deviation.maxCoeff() > tolerances.x_up * state.start_sigma) return StopReason::tol_x_up;
-  if ((state.mean.array() == state.mean.array() + 0.2 * deviation).any()) return StopReason::no_effect_coordinate;
-  const auto axis = state.factor.col(static_cast<Eigen::Index>(state.generation % static_cast<std::uint64_t>(n)));
-  if ((state.mean.array() == state.mean.array() + 0.1 * state.sigma * axis.array()).all()) {
-    return StopReason::no_effect_axis;
+  if (widest > tolerances.x_up * state.start_sigma) return StopReason::tol_x_up;
+  const auto axis = static_cast<Eigen::Index>(state.generation % static_cast<std::uint64_t>(n));
+  bool axis_without_effect = true;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double at = state.mean[i];
+    if (at == at + 0.2 * deviation(i)) return StopReason::no_effect_coordinate;
+    if (at != at + 0.1 * state.sigma * state.factor(i, axis)) axis_without_effect = false;
   }
+  if (axis_without_effect) return StopReason::no_effect_axis;
 
   const auto window = static_cast<std::ptrdiff_t>(10 + (30 * n + state.population - 1) / state.population);
   if (std::ssize(state.best_values) >= window) {

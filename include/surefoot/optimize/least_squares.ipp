@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -11,7 +10,9 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/optimize/least_squares.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 #include "surefoot/optimize/robust_loss.hpp"
+#include "surefoot/optimize/symmetric_eigen.hpp"
 
 namespace surefoot::detail {
 
@@ -21,16 +22,18 @@ SUREFOOT_INLINE Eigen::MatrixXd invert_normal_matrix(const Eigen::MatrixXd& a, E
                                                      std::vector<bool>& open) {
   constexpr double least_eigenvalue = 1e-12;  // per parameter; columns of `a` have length 1
   constexpr double takes_part = 1e-4;         // component of an eigenvector
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a.transpose() * a);
+  const SymmetricEigen eigen = eigen_of_symmetric(transposed_product(a, a));
   const Eigen::Index count = a.cols();
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(count, count);
   open.assign(static_cast<std::size_t>(count), false);
   rank = 0;
   for (Eigen::Index k = 0; k < count; ++k) {
-    const Eigen::VectorXd axis = solver.eigenvectors().col(k);
-    if (solver.eigenvalues()[k] > least_eigenvalue * static_cast<double>(count)) {
+    const double* const axis = &eigen.vectors(0, k);
+    if (eigen.values[k] > least_eigenvalue * static_cast<double>(count)) {
       ++rank;
-      inverse += axis * axis.transpose() / solver.eigenvalues()[k];
+      for (Eigen::Index j = 0; j < count; ++j) {
+        for (Eigen::Index i = 0; i < count; ++i) inverse(i, j) += axis[i] * axis[j] / eigen.values[k];
+      }
     } else {
       for (Eigen::Index i = 0; i < count; ++i) {
         if (std::abs(axis[i]) > takes_part) open[static_cast<std::size_t>(i)] = true;
@@ -62,13 +65,17 @@ SUREFOOT_INLINE void estimate_covariance(LeastSquaresResult& result, const Eigen
   result.covariance = Eigen::MatrixXd::Zero(result.x.size(), result.x.size());
   if (free.empty()) return;
 
-  const Eigen::MatrixXd jacobian = full_jacobian(Eigen::all, free);
-  const Eigen::VectorXd norms = jacobian.colwise().norm().transpose();
-  const Eigen::VectorXd scale = norms.unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 1.0; });
-  const Eigen::MatrixXd scaled = jacobian * scale.asDiagonal();
+  const auto count = static_cast<Eigen::Index>(free.size());
+  Eigen::MatrixXd normed(full_jacobian.rows(), count);  // columns of length 1
+  Eigen::VectorXd scale(count);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const Eigen::Index column = free[static_cast<std::size_t>(j)];
+    const double length = column_norm(full_jacobian, column);
+    scale[j] = length > 0 ? 1 / length : 1.0;
+    for (Eigen::Index i = 0; i < normed.rows(); ++i) normed(i, j) = full_jacobian(i, column) * scale[j];
+  }
   std::vector<bool> open;
-  Eigen::MatrixXd inverse = invert_normal_matrix(scaled, result.rank, open);
-  inverse = scale.asDiagonal() * inverse * scale.asDiagonal();
+  const Eigen::MatrixXd inverse = scaled(scale, invert_normal_matrix(normed, result.rank, open));
   for (std::size_t i = 0; i < free.size(); ++i) {
     for (std::size_t j = 0; j < free.size(); ++j) {
       const auto a = static_cast<Eigen::Index>(i), b = static_cast<Eigen::Index>(j);

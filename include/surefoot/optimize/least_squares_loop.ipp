@@ -37,14 +37,14 @@ class LeastSquaresFit {
   LeastSquaresFit(const VectorFunction& function, const MatrixFunction& jacobian, Eigen::VectorXd start,
                   const LeastSquaresOptions& options)
       : function_(function), jacobian_(jacobian), options_(options), x_(std::move(start)) {
-    if (x_.size() == 0 || !x_.allFinite()) {
+    if (x_.size() == 0 || !all_finite(x_)) {
       throw OptimizeError("least_squares: the start must have at least one parameter and be finite");
     }
     if (options_.box && (options_.box->size() != x_.size() || !options_.box->contains(x_))) {
       throw OptimizeError("least_squares: the start must lie in the box and have its dimension");
     }
     residuals_ = function_(x_);
-    if (residuals_.size() == 0 || !residuals_.allFinite()) {
+    if (residuals_.size() == 0 || !all_finite(residuals_)) {
       throw OptimizeError("least_squares: the residuals at the start must be finite and at least one; got " +
                           std::to_string(residuals_.size()));
     }
@@ -90,20 +90,22 @@ class LeastSquaresFit {
   void linearise() {
     jacobian_at_x_ = jacobian_(x_);
     if (jacobian_at_x_.rows() != residuals_.size() || jacobian_at_x_.cols() != x_.size() ||
-        !jacobian_at_x_.allFinite()) {
+        !all_finite(jacobian_at_x_)) {
       throw OptimizeError(
           "least_squares: the Jacobian must be finite with one row per residual and one column per parameter");
     }
-    Eigen::VectorXd weights(residuals_.size());
-    for (Eigen::Index i = 0; i < weights.size(); ++i) {
+    Eigen::VectorXd weights(residuals_.size()), weighted = residuals_;
+    Eigen::MatrixXd weighted_jacobian = jacobian_at_x_;
+    for (Eigen::Index i = 0; i < weighted.size(); ++i) {
       weights[i] = loss_terms(options_.loss, residuals_[i] / options_.loss_scale).weight;
+      weighted[i] *= weights[i];
     }
-    const Eigen::VectorXd weighted = weights.cwiseProduct(residuals_);
-    gradient_ = jacobian_at_x_.transpose() * weighted;
-    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> weighted_jacobian =
-        jacobian_at_x_.transpose() * weights.asDiagonal();
-    hessian_ = weighted_jacobian * jacobian_at_x_;
-    weighted_norm_ = weighted.norm();
+    for (Eigen::Index j = 0; j < x_.size(); ++j) {
+      for (Eigen::Index i = 0; i < weights.size(); ++i) weighted_jacobian(i, j) *= weights[i];
+    }
+    gradient_ = transposed_product(jacobian_at_x_, weighted);
+    hessian_ = transposed_product(weighted_jacobian, jacobian_at_x_);
+    weighted_norm_ = norm(weighted);
     active_bound_.assign(static_cast<std::size_t>(x_.size()), false);
     if (!options_.box) return;
     for (Eigen::Index i = 0; i < x_.size(); ++i) {
@@ -120,36 +122,63 @@ class LeastSquaresFit {
     return free;
   }
 
+  // Of the free parameters: what scales the Gauss-Newton matrix to a diagonal of ones, that matrix and the gradient.
+  struct ScaledStep {
+    Eigen::VectorXd scale, gradient;
+    Eigen::MatrixXd hessian;
+  };
+
+  ScaledStep scale_to_unit_diagonal(const std::vector<Eigen::Index>& free) const {
+    const auto count = static_cast<Eigen::Index>(free.size());
+    ScaledStep result{Eigen::VectorXd(count), Eigen::VectorXd(count), Eigen::MatrixXd(count, count)};
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Eigen::Index at = free[static_cast<std::size_t>(i)];
+      const double d = hessian_(at, at);
+      result.scale[i] = d > 0 ? 1 / std::sqrt(d) : 1.0;
+      result.gradient[i] = result.scale[i] * gradient_[at];
+      for (Eigen::Index j = 0; j < count; ++j) result.hessian(i, j) = hessian_(at, free[static_cast<std::size_t>(j)]);
+    }
+    result.hessian = scaled(result.scale, result.hessian);
+    return result;
+  }
+
+  // Where a step with the present damping ends.
+  Eigen::VectorXd damped_step(const std::vector<Eigen::Index>& free, const ScaledStep& scaled) const {
+    Eigen::MatrixXd damped = scaled.hessian;
+    for (Eigen::Index i = 0; i < damped.rows(); ++i) damped(i, i) += damping_;
+    const Eigen::VectorXd step = solve_symmetric(damped, scaled.gradient);
+    Eigen::VectorXd next = x_;
+    for (Eigen::Index i = 0; i < step.size(); ++i) next[free[static_cast<std::size_t>(i)]] -= scaled.scale[i] * step[i];
+    return options_.box ? options_.box->clamp(next) : next;
+  }
+
   // Steps until one makes the cost smaller; the reason to stop when there is nothing left to gain.
   std::optional<LeastSquaresStop> improve() {
     const std::vector<Eigen::Index> free = free_parameters();
-    const Eigen::VectorXd norms = jacobian_at_x_.colwise().norm().transpose();
     double steepest = 0;
     for (const Eigen::Index i : free) {
-      if (norms[i] > 0 && weighted_norm_ > 0)
-        steepest = std::max(steepest, std::abs(gradient_[i]) / (norms[i] * weighted_norm_));
+      const double length = column_norm(jacobian_at_x_, i);
+      if (length > 0 && weighted_norm_ > 0) {
+        steepest = std::max(steepest, std::abs(gradient_[i]) / (length * weighted_norm_));
+      }
     }
     if (steepest <= options_.tol_gradient) return LeastSquaresStop::gradient;
 
-    const Eigen::MatrixXd hessian = hessian_(free, free);
-    const Eigen::VectorXd gradient = gradient_(free);
-    const Eigen::VectorXd scale = hessian.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 1.0; });
-    const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
+    const ScaledStep scaled_step = scale_to_unit_diagonal(free);
     while (true) {
-      Eigen::MatrixXd damped = scaled;
-      damped.diagonal().array() += damping_;
-      Eigen::VectorXd next = x_;
-      next(free) -= scale.cwiseProduct(solve_symmetric(damped, scale.cwiseProduct(gradient)));
-      if (options_.box) next = options_.box->clamp(next);
-      const Eigen::VectorXd step = next - x_;
-      if (!(step.norm() > options_.tol_step * (x_.norm() + options_.tol_step))) return LeastSquaresStop::step;
+      const Eigen::VectorXd next = damped_step(free, scaled_step);
+      Eigen::VectorXd step = next;
+      for (Eigen::Index i = 0; i < step.size(); ++i) step[i] -= x_[i];
+      if (!(norm(step) > options_.tol_step * (norm(x_) + options_.tol_step))) return LeastSquaresStop::step;
       const Eigen::VectorXd residuals = function_(next);
-      const double next_cost = residuals.size() == residuals_.size() && residuals.allFinite()
+      const double next_cost = residuals.size() == residuals_.size() && all_finite(residuals)
                                    ? cost(residuals)
                                    : std::numeric_limits<double>::infinity();
       if (next_cost < cost_) {
         const double gain = cost_ - next_cost;
-        const double expected = -(gradient_.dot(step) + 0.5 * step.dot(hessian_ * step));
+        const Eigen::VectorXd bent = product(hessian_, step);
+        const double expected =
+            -(dot(gradient_.data(), step.data(), step.size()) + 0.5 * dot(step.data(), bent.data(), step.size()));
         const double ratio = expected > 0 ? gain / expected : 1;
         damping_ *= std::max(1.0 / 3, 1 - std::pow(2 * ratio - 1, 3));
         growth_ = 2;

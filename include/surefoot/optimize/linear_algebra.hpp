@@ -1,5 +1,9 @@
-// Decompositions of small symmetric matrices, compiled once: what least squares, CMA-ES and the fits of motion models
-// share. Cost of each: of the order of n^3.
+// Products and decompositions of small matrices, compiled once: what least squares, CMA-ES and the fits of motion
+// models share. Cost of each decomposition: of the order of n^3.
+//
+// The sums are taken in the order of Eigen 3.4's own decompositions, so that the results are equal to the last bit to
+// those of the releases that used them, for up to 128 unknowns; Eigen's, which make a type of every expression, cost
+// the compiler seconds.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,6 +12,29 @@
 
 namespace surefoot::detail {
 
+/// The sum of a[i] b[i]: by four partial sums as Eigen's dot(), or by two as its products of a row with a vector.
+double dot(const double* a, const double* b, Eigen::Index count);
+double dot_by_two(const double* a, const double* b, Eigen::Index count);
+
+Eigen::VectorXd times(double factor, Eigen::VectorXd a);
+double norm(const Eigen::VectorXd& a);
+double column_norm(const Eigen::MatrixXd& a, Eigen::Index column);
+
+/// a b, with as many rows as columns, and a x.
+Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+Eigen::VectorXd product(const Eigen::MatrixXd& a, const Eigen::VectorXd& x);
+
+/// a + lower x, of the lower triangle of a matrix.
+Eigen::VectorXd add_lower_product(Eigen::VectorXd a, const Eigen::MatrixXd& lower, const Eigen::VectorXd& x);
+
+/// a^T, a^T b, with as many rows as columns, and a^T x.
+Eigen::MatrixXd transposed(const Eigen::MatrixXd& a);
+Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+Eigen::VectorXd transposed_product(const Eigen::MatrixXd& a, const Eigen::VectorXd& x);
+
+/// diagonal a diagonal, for a diagonal matrix.
+Eigen::MatrixXd scaled(const Eigen::VectorXd& diagonal, const Eigen::MatrixXd& a);
+
 /// Solutions of a x = b for symmetric `a` (L D L^T with pivots): one per column of b.
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 Eigen::MatrixXd invert_symmetric(const Eigen::MatrixXd& a);
@@ -15,8 +42,16 @@ Eigen::MatrixXd invert_symmetric(const Eigen::MatrixXd& a);
 /// Replaces the lower triangle of `a` by its Cholesky factor; false if `a` is not positive definite.
 bool factorise_in_place(Eigen::MatrixXd& a);
 
-/// Largest over smallest eigenvalue; infinite unless all are positive.
-double condition_of_symmetric(const Eigen::MatrixXd& a);
+enum class DiagonalOf { any, ones };
+
+/// Replaces x by the solution of lower y = x, or of lower^T y = x; what stands above the diagonal of `lower` is not
+/// read, nor its diagonal if it is all ones.
+void solve_lower(const Eigen::MatrixXd& lower, Eigen::VectorXd& x, DiagonalOf diagonal = DiagonalOf::any);
+void solve_lower_transposed(const Eigen::MatrixXd& lower, Eigen::VectorXd& x, DiagonalOf diagonal = DiagonalOf::any);
+
+/// The same for every column of a matrix.
+void solve_lower(const Eigen::MatrixXd& lower, Eigen::MatrixXd& x, DiagonalOf diagonal = DiagonalOf::any);
+void solve_lower_transposed(const Eigen::MatrixXd& lower, Eigen::MatrixXd& x, DiagonalOf diagonal = DiagonalOf::any);
 
 }  // namespace surefoot::detail
 

@@ -35,9 +35,11 @@ Eigen::MatrixXd numeric_jacobian(const F& function, const Eigen::VectorXd& x,
     point[i] = x[i];
     if (i == 0) jacobian.resize(value_above.size(), x.size());
     if (above > below) {
-      jacobian.col(i) = (value_above - value_below) / (above - below);
-    } else {
-      jacobian.col(i).setZero();  // a box without width in this dimension
+      for (Eigen::Index k = 0; k < jacobian.rows(); ++k) {
+        jacobian(k, i) = (value_above[k] - value_below[k]) / (above - below);
+      }
+    } else {  // a box without width in this dimension
+      for (Eigen::Index k = 0; k < jacobian.rows(); ++k) jacobian(k, i) = 0;
     }
   }
   return jacobian;

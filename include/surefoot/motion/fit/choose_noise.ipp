@@ -12,6 +12,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/motion/fit/choose_noise.hpp"
 #include "surefoot/motion/fit/pose_filter.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot {
 
@@ -88,10 +89,13 @@ SUREFOOT_INLINE NoiseChoice NoiseComparison::choose(const std::vector<Result>& r
   }
   const auto count = static_cast<double>(sequences_.size());
   for (std::size_t k = 0; k < kinds; ++k) {
-    const Eigen::ArrayXd behind = heldout[best] - heldout[k];
+    Eigen::ArrayXd behind = heldout[best];
+    behind -= heldout[k];
     NoiseCandidate& candidate = choice.candidates[k];
     candidate.behind = behind.mean();
-    candidate.behind_error = std::sqrt((behind - behind.mean()).square().sum() / (count - 1) / count);
+    for (double& one : behind) one -= candidate.behind;
+    const double squares = dot(behind.data(), behind.data(), behind.size());
+    candidate.behind_error = std::sqrt(squares / (count - 1) / count);
   }
   double cycles = 0;
   for (const WalkSequence& sequence : sequences_) cycles += static_cast<double>(sequence.cycles());

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
 #include <utility>
@@ -45,14 +47,17 @@ SUREFOOT_INLINE AnyModelFit fit_model(std::span<const WalkSequence> sequences, c
         detail::minimise_squares([&](const Eigen::VectorXd& p) { return poses.residuals(p); }, fit.model.parameters(),
                                  inner, [&](const Eigen::VectorXd& p) { return poses.jacobian(p); })
             .result;
-    const Eigen::VectorXd change = (result.x - fit.model.parameters()).cwiseQuotient(range.high() - range.low());
+    double change = 0;  // [widths of the parameters' ranges]
+    for (Eigen::Index k = 0; k < result.x.size(); ++k) {
+      const double width = range.high()[k] - range.low()[k];
+      change = std::max(change, std::abs((result.x[k] - fit.model.parameters()[k]) / width));
+    }
     fit.model = fit.model.with_parameters(result.x);
     fit.cost = result.cost;
-    fit.converged = change.lpNorm<Eigen::Infinity>() < negligible_change;
+    fit.converged = change < negligible_change;
   }
   const Eigen::MatrixXd jacobian = weighted(fit.model).jacobian(fit.model.parameters());
-  const Eigen::MatrixXd transposed = jacobian.transpose();
-  fit.covariance = detail::invert_symmetric(transposed * jacobian);
+  fit.covariance = detail::invert_symmetric(detail::product(detail::transposed(jacobian), jacobian));
   return fit;
 }
 

@@ -14,6 +14,7 @@
 #include "surefoot/motion/fit/noise_fit.hpp"
 #include "surefoot/motion/fit/pose_filter.hpp"
 #include "surefoot/optimize/cma_es.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot {
 
@@ -57,17 +58,22 @@ SUREFOOT_INLINE double log_erfc(double z) {
 }
 
 SUREFOOT_INLINE Eigen::ArrayXd ComponentDeviations::log_density(NoiseShape shape, const Eigen::VectorXd& growth) const {
-  const Eigen::ArrayXd sigma = growth[0] + growth[1] * speed + growth[2] * acceleration;
+  const auto sigma = [&](Eigen::Index i) { return growth[0] + growth[1] * speed[i] + growth[2] * acceleration[i]; };
   const double blur2 = std::max(blur * blur, 1e-20);
   if (shape == NoiseShape::gaussian) {
-    const Eigen::ArrayXd variance = sigma.square() + blur2;
-    return -0.5 * (size.square() / variance + (2 * std::numbers::pi * variance).log());
+    Eigen::ArrayXd log = size;
+    for (Eigen::Index i = 0; i < size.size(); ++i) log[i] = 2 * std::numbers::pi * (sigma(i) * sigma(i) + blur2);
+    log = log.log();  // by twos: not always std::log() to the last bit
+    for (Eigen::Index i = 0; i < size.size(); ++i) {
+      log[i] = -0.5 * (size[i] * size[i] / (sigma(i) * sigma(i) + blur2) + log[i]);
+    }
+    return log;
   }
   // Uniform and normal noise added up; at its edge the density falls as the normal one does.
   const double s = std::sqrt(blur2);
   Eigen::ArrayXd result(size.size());
   for (Eigen::Index i = 0; i < size.size(); ++i) {
-    const double half = std::numbers::sqrt3 * sigma[i];
+    const double half = std::numbers::sqrt3 * sigma(i);
     if (half < 1e-3 * s) {
       result[i] = -0.5 * size[i] * size[i] / blur2 - std::log(s * std::sqrt(2 * std::numbers::pi));
     } else {
@@ -77,6 +83,10 @@ SUREFOOT_INLINE Eigen::ArrayXd ComponentDeviations::log_density(NoiseShape shape
     }
   }
   return result;
+}
+
+SUREFOOT_INLINE double mean_of_squares(const Eigen::ArrayXd& values) {
+  return dot(values.data(), values.data(), values.size()) / static_cast<double>(values.size());
 }
 
 SUREFOOT_INLINE ComponentDeviations component(std::span<const CycleDeviation> cycles, Eigen::Index axis,
@@ -90,7 +100,7 @@ SUREFOOT_INLINE ComponentDeviations component(std::span<const CycleDeviation> cy
     result.acceleration[i] = scales.acceleration(cycle.commands, cycle.previous);
   }
   // Both ends of a cycle are measured; the model is known as well as `parameters` shared by three components allow.
-  const double mean_square = result.size.square().mean();
+  const double mean_square = mean_of_squares(result.size);
   result.blur = std::sqrt(2 * accuracy.variance()[axis] +
                           mean_square * std::min(1.0, parameters / 3.0 / static_cast<double>(count)));
   return result;
@@ -131,10 +141,10 @@ SUREFOOT_INLINE MotionNoise fit_cycle_noise(std::span<const CycleDeviation> cycl
   const Eigen::Index free = detail::count_free_terms(growth);
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const detail::ComponentDeviations data = detail::component(cycles, axis, options.accuracy, noise, parameters);
-    const double typical = std::max(std::sqrt(data.size.square().mean()), 1e-9);
+    const double typical = std::max(std::sqrt(detail::mean_of_squares(data.size)), 1e-9);
     const auto cost = [&](const Eigen::VectorXd& terms) {
       MotionNoise candidate;
-      detail::set_free_terms(candidate, growth, axis, typical * terms);
+      detail::set_free_terms(candidate, growth, axis, detail::times(typical, terms));
       return -data.log_density(shape, Vec<3>(candidate.constant[axis], candidate.per_speed[axis],
                                              candidate.per_acceleration[axis]))
                   .mean();
@@ -145,7 +155,7 @@ SUREFOOT_INLINE MotionNoise fit_cycle_noise(std::span<const CycleDeviation> cycl
     const Box<Eigen::Dynamic> box(Eigen::VectorXd::Zero(free), Eigen::VectorXd::Constant(free, 8));
     const CmaEsResult found =
         cma_es(cost, Eigen::VectorXd::Constant(free, 1.2 / static_cast<double>(free)), box, search, Serial{}, 1);
-    detail::set_free_terms(noise, growth, axis, typical * found.best);
+    detail::set_free_terms(noise, growth, axis, detail::times(typical, found.best));
   }
   return noise;
 }
@@ -156,7 +166,10 @@ SUREFOOT_INLINE MotionNoise fit_pose_noise(const AnyMotionModel& model, std::spa
   const auto noise_of = [&](const Eigen::VectorXd& terms) {  // logarithms, in units of `start`
     MotionNoise noise{.shape = NoiseShape::gaussian, .scale = options.scale};
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      detail::set_free_terms(noise, growth, axis, start[axis] * terms.segment(axis * free, free).array().exp());
+      Eigen::ArrayXd part(free);
+      for (Eigen::Index i = 0; i < free; ++i) part[i] = terms[axis * free + i];
+      part = part.exp();  // by twos: not always std::exp() to the last bit
+      detail::set_free_terms(noise, growth, axis, detail::times(start[axis], part.matrix()));
     }
     return noise;
   };
@@ -164,7 +177,7 @@ SUREFOOT_INLINE MotionNoise fit_pose_noise(const AnyMotionModel& model, std::spa
   const auto cost = [&](const Eigen::VectorXd& terms) {
     // What the poses do not tell stays near the first guess: by a factor of e or so.
     return -detail::log_likelihood(displacements, noise_of(terms), options.accuracy, sequences) +
-           0.5 * terms.squaredNorm();
+           0.5 * detail::dot(terms.data(), terms.data(), terms.size());
   };
   CmaEsOptions search{.max_evaluations = 3000};
   search.tolerances.fun = 1e-4;
@@ -174,7 +187,7 @@ SUREFOOT_INLINE MotionNoise fit_pose_noise(const AnyMotionModel& model, std::spa
 
 SUREFOOT_INLINE void check(const NoiseFitOptions& options) {
   check(options.accuracy);
-  if (!(options.scale.minCoeff() > 0 && options.scale.allFinite())) {
+  if (!(options.scale.minCoeff() > 0 && all_finite(options.scale))) {
     throw MotionError("NoiseFitOptions: scale must be finite and above 0 in every component");
   }
 }

@@ -31,7 +31,7 @@ struct Innovation {
   double log_det = 0;           // of the covariance of `error`
   double heading_variance = 0;  // what the heading is still unsure by after the measurement [rad^2]
 
-  Values whitened() const { return whitening * error; }
+  Values whitened() const;
 };
 
 namespace detail {

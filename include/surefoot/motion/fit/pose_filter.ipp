@@ -20,7 +20,8 @@ namespace detail {
 /// measured - expected, of the first `count` components.
 SUREFOOT_INLINE Innovation::Values pose_error(const WalkSequence& sequence, Eigen::Index cycle, const Vec<3>& pose,
                                               Eigen::Index count) {
-  Innovation::Values error = sequence.poses.col(cycle).head(count) - pose.head(count);
+  Innovation::Values error(count);
+  for (Eigen::Index i = 0; i < count; ++i) error[i] = sequence.poses(i, cycle) - pose[i];
   if (count == 3) error[2] = wrap_angle(error[2]);
   return error;
 }
@@ -78,17 +79,29 @@ SUREFOOT_INLINE void solve_upper_small(const Innovation::Square& lower, double* 
   }
 }
 
+/// Adds a x to `result`, for a matrix of up to three rows and columns.
+template <class Small>
+void add_product(const Small& a, const double* x, double* result) {
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    double sum = 0;
+    for (Eigen::Index k = 0; k < a.cols(); ++k) sum += a(i, k) * x[k];
+    result[i] += sum;
+  }
+}
+
 SUREFOOT_INLINE std::vector<Innovation> innovations(const Eigen::Matrix3Xd& displacements, const MotionNoise& noise,
                                                     const PoseAccuracy& accuracy, const WalkSequence& sequence) {
   constexpr double least_variance = 1e-14;  // [m^2, rad^2]: without any noise the expected pose would be certain
   std::vector<Innovation> result;
   Vec<3> pose = Vec<3>::Zero(), previous = sequence.command_before;
   PoseMoments moments;
-  const Vec<3> measured_variance = accuracy.variance().array() + least_variance;
+  Vec<3> measured_variance = accuracy.variance();
+  for (double& variance : measured_variance) variance += least_variance;
   for (Eigen::Index cycle = 0; cycle < sequence.cycles(); ++cycle) {
     const Vec<3> command = sequence.commands.col(cycle);
     const Pose2 displacement = Pose2::from_vec(displacements.col(cycle));
-    const Vec<3> variance = noise.deviation(command, previous).array().square() + least_variance;
+    Vec<3> variance = noise.deviation(command, previous);
+    for (double& v : variance) v = v * v + least_variance;
     moments.move(pose, displacement, variance);
     previous = command;
     if (!sequence.position_measured(cycle)) continue;
@@ -98,21 +111,33 @@ SUREFOOT_INLINE std::vector<Innovation> innovations(const Eigen::Matrix3Xd& disp
     innovation.cycle = cycle;
     innovation.error = pose_error(sequence, cycle, pose, count);
     Eigen::Matrix3d covariance = moments.covariance();
-    Innovation::Square expected = covariance.topLeftCorner(count, count);
-    expected.diagonal() += measured_variance.head(count);
+    Innovation::Square expected(count, count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      for (Eigen::Index i = 0; i < count; ++i) expected(i, k) = covariance(i, k);
+      expected(k, k) += measured_variance[k];
+    }
     factorise_small(expected);
     innovation.whitening = Innovation::Square::Identity(count, count);
-    for (Eigen::Index k = 0; k < count; ++k) solve_lower_small(expected, innovation.whitening.col(k).data());
-    innovation.log_det = -2 * innovation.whitening.diagonal().array().log().sum();
+    double logs = 0;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      solve_lower_small(expected, &innovation.whitening(0, k));
+      logs += std::log(innovation.whitening(k, k));
+    }
+    innovation.log_det = -2 * logs;
     innovation.gain.resize(3, count);
     for (Eigen::Index k = 0; k < 3; ++k) {
-      Innovation::Values column = covariance.col(k).head(count);
+      Innovation::Values column(count);
+      for (Eigen::Index i = 0; i < count; ++i) column[i] = covariance(i, k);
       solve_lower_small(expected, column.data());
       solve_upper_small(expected, column.data());
-      innovation.gain.row(k) = column.transpose();
+      for (Eigen::Index i = 0; i < count; ++i) innovation.gain(k, i) = column[i];
     }
-    pose += innovation.gain * innovation.error;
-    covariance -= (innovation.gain * covariance.topRows(count)).eval();
+    add_product(innovation.gain, innovation.error.data(), pose.data());
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      Vec<3> taken = Vec<3>::Zero();
+      add_product(innovation.gain, &covariance(0, k), taken.data());
+      for (Eigen::Index i = 0; i < 3; ++i) covariance(i, k) -= taken[i];
+    }
     innovation.heading_variance = std::max(0.0, covariance(2, 2));
     moments = PoseMoments(covariance, pose[2]);
     result.push_back(innovation);
@@ -126,14 +151,21 @@ SUREFOOT_INLINE double log_likelihood(std::span<const Eigen::Matrix3Xd> displace
   double sum = 0;
   for (std::size_t i = 0; i < sequences.size(); ++i) {
     for (const Innovation& innovation : innovations(displacements[i], noise, accuracy, sequences[i])) {
-      sum -= 0.5 * (innovation.whitened().squaredNorm() + innovation.log_det +
-                    static_cast<double>(innovation.error.size()) * log_two_pi);
+      double squares = 0;
+      for (const double value : innovation.whitened()) squares += value * value;
+      sum -= 0.5 * (squares + innovation.log_det + static_cast<double>(innovation.error.size()) * log_two_pi);
     }
   }
   return sum;
 }
 
 }  // namespace detail
+
+SUREFOOT_INLINE Innovation::Values Innovation::whitened() const {
+  Values result = Values::Zero(error.size());
+  detail::add_product(whitening, error.data(), result.data());
+  return result;
+}
 
 SUREFOOT_INLINE std::vector<Innovation> innovations(const AnyMotionModel& model, const MotionNoise& noise,
                                                     const PoseAccuracy& accuracy, const WalkSequence& sequence) {

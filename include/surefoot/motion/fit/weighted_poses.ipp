@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -40,7 +41,8 @@ SUREFOOT_INLINE WeightedPoses::WeightedPoses(const AnyMotionModel& at, const Mot
     for (const Innovation& innovation : weights_.back()) count_ += innovation.error.size();
     shortenings_.push_back(shortenings(sequence, weights_.back(), noise));
   }
-  prior_ = prior * width_;
+  prior_ = width_;
+  for (double& deviation : prior_) deviation *= prior;
 }
 
 /// Follows every sequence: before_cycle(sequence, cycle, pose, expected displacement), and measured(weight, error)
@@ -63,7 +65,7 @@ void WeightedPoses::each_innovation(const Eigen::VectorXd& parameters, BeforeCyc
       if (weight == weights_[i].end() || weight->cycle != cycle) continue;
       const Innovation::Values error = pose_error(sequence, cycle, pose, weight->error.size());
       measured(*weight, error);
-      pose += weight->gain * error;
+      add_product(weight->gain, error.data(), pose.data());
       ++weight;
     }
   }
@@ -71,33 +73,36 @@ void WeightedPoses::each_innovation(const Eigen::VectorXd& parameters, BeforeCyc
 
 SUREFOOT_INLINE Eigen::VectorXd WeightedPoses::residuals(const Eigen::VectorXd& parameters) const {
   const Eigen::Index n = model_.parameter_count();
-  Eigen::VectorXd result(count_ + n);
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(count_ + n);
   Eigen::Index next = 0;
   each_innovation(
       parameters, [](std::size_t, Eigen::Index, const Vec<3>&, const Pose2&) {},
       [&](const Innovation& weight, const Innovation::Values& error) {
-        result.segment(next, error.size()) = weight.whitening * error;
+        add_product(weight.whitening, error.data(), &result[next]);
         next += error.size();
       });
-  result.tail(n) = (parameters - model_.default_parameters()).cwiseQuotient(prior_);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    result[count_ + i] = (parameters[i] - model_.default_parameters()[i]) / prior_[i];
+  }
   return result;
 }
 
 SUREFOOT_INLINE std::vector<Eigen::Matrix3Xd> WeightedPoses::displacement_derivatives(const Eigen::VectorXd& parameters,
                                                                                       std::size_t sequence) const {
   const WalkSequence& walked = sequences_[sequence];
-  const Eigen::VectorXd step = 1e-5 * width_;
   std::vector<Eigen::Matrix3Xd> result;
   Eigen::VectorXd shifted = parameters;
   Eigen::Matrix3Xd below;
   for (Eigen::Index k = 0; k < parameters.size(); ++k) {
+    const double step = 1e-5 * width_[k];
     Eigen::Matrix3Xd above;
-    shifted[k] = parameters[k] + step[k];
+    shifted[k] = parameters[k] + step;
     model_.displacements(shifted, walked.commands, walked.command_before, above);
-    shifted[k] = parameters[k] - step[k];
+    shifted[k] = parameters[k] - step;
     model_.displacements(shifted, walked.commands, walked.command_before, below);
     shifted[k] = parameters[k];
-    result.push_back((above - below) / (2 * step[k]));
+    for (Eigen::Index i = 0; i < above.size(); ++i) above.data()[i] = (above.data()[i] - below.data()[i]) / (2 * step);
+    result.push_back(std::move(above));
   }
   return result;
 }
@@ -105,9 +110,9 @@ SUREFOOT_INLINE std::vector<Eigen::Matrix3Xd> WeightedPoses::displacement_deriva
 SUREFOOT_INLINE Eigen::MatrixXd WeightedPoses::jacobian(const Eigen::VectorXd& parameters) const {
   const Eigen::Index n = model_.parameter_count();
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(count_ + n, n);
-  result.bottomRows(n).diagonal() = prior_.cwiseInverse();
+  for (Eigen::Index k = 0; k < n; ++k) result(count_ + k, k) = 1 / prior_[k];
   std::vector<Eigen::Matrix3Xd> derivatives;
-  Eigen::Matrix3Xd pose_jacobian(3, n), by_parameters(3, n);
+  Eigen::Matrix3Xd pose_jacobian(3, n);
   Eigen::Index next = 0;
   each_innovation(
       parameters,
@@ -116,16 +121,26 @@ SUREFOOT_INLINE Eigen::MatrixXd WeightedPoses::jacobian(const Eigen::VectorXd& p
           derivatives = displacement_derivatives(parameters, i);
           pose_jacobian.setZero();
         }
-        for (Eigen::Index k = 0; k < n; ++k) by_parameters.col(k) = derivatives[static_cast<std::size_t>(k)].col(cycle);
-        by_parameters.topRows<2>() *= shortenings_[i][cycle];
-        pose_jacobian =
-            (jacobian_by_pose(pose, displacement) * pose_jacobian + jacobian_by_displacement(pose) * by_parameters)
-                .eval();
+        const Eigen::Matrix3d by_pose = jacobian_by_pose(pose, displacement);
+        const Eigen::Matrix3d by_displacement = jacobian_by_displacement(pose);
+        for (Eigen::Index k = 0; k < n; ++k) {
+          Vec<3> derivative = derivatives[static_cast<std::size_t>(k)].col(cycle), moved = Vec<3>::Zero();
+          derivative[0] *= shortenings_[i][cycle];
+          derivative[1] *= shortenings_[i][cycle];
+          add_product(by_pose, &pose_jacobian(0, k), moved.data());
+          add_product(by_displacement, derivative.data(), moved.data());
+          for (Eigen::Index row = 0; row < 3; ++row) pose_jacobian(row, k) = moved[row];
+        }
       },
       [&](const Innovation& weight, const Innovation::Values& error) {
         const Eigen::Index size = error.size();
-        result.middleRows(next, size) = -weight.whitening * pose_jacobian.topRows(size);
-        pose_jacobian -= (weight.gain * pose_jacobian.topRows(size)).eval();
+        for (Eigen::Index k = 0; k < n; ++k) {
+          Vec<3> whitened = Vec<3>::Zero(), taken = Vec<3>::Zero();
+          add_product(weight.whitening, &pose_jacobian(0, k), whitened.data());
+          add_product(weight.gain, &pose_jacobian(0, k), taken.data());
+          for (Eigen::Index row = 0; row < size; ++row) result(next + row, k) = -whitened[row];
+          for (Eigen::Index row = 0; row < 3; ++row) pose_jacobian(row, k) -= taken[row];
+        }
         next += size;
       });
   return result;

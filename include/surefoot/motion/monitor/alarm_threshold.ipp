@@ -18,6 +18,7 @@
 #include "surefoot/motion/monitor/alarm_threshold.hpp"
 #include "surefoot/motion/monitor/cholesky.hpp"
 #include "surefoot/motion/simulate_walk.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot {
 
@@ -54,12 +55,12 @@ SUREFOOT_INLINE double AlarmSimulation::run(std::size_t run) const {
   Eigen::VectorXd unit(root_.rows());
   for (double& u : unit) u = rng.normal();
   const AnyMotionModel& known = calibrated_.model;
-  const AnyMotionModel robot = known.with_parameters(known.parameters() + root_.triangularView<Eigen::Lower>() * unit);
+  const AnyMotionModel robot = known.with_parameters(add_lower_product(known.parameters(), root_, unit));
   MotionNoise noise = calibrated_.noise;
   Vec<3> factor;
   for (int i = 0; i < 3; ++i) factor[i] = std::exp(options_.noise_error * rng.normal());
   for (Vec<3>* part : {&noise.constant, &noise.per_speed, &noise.per_acceleration}) {
-    *part = part->cwiseProduct(factor).eval();
+    for (int i = 0; i < 3; ++i) (*part)[i] *= factor[i];
   }
   ChangeAlarm alarm{
       .tracker = calibrated_, .threshold = std::numeric_limits<double>::infinity(), .options = options_.alarm};

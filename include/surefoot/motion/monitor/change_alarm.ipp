@@ -13,6 +13,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/motion/monitor/change_alarm.hpp"
 #include "surefoot/motion/monitor/cholesky.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot {
 
@@ -37,11 +38,14 @@ class JumpScore {
   /// `together` is the sum of the information of the sequences, `about_zero` that of their offsets for parameters 0.
   JumpScore(const MotionTracker& before, const Eigen::MatrixXd& together, const Eigen::VectorXd& about_zero) {
     const Eigen::Index n = about_zero.size();
-    Eigen::MatrixXd right(n, n + 1);
-    right << together, about_zero - multiply(together, before.model.parameters());
-    Cholesky(before.information + together).solve_in_place(right);
-    information_ = multiply(before.information, Eigen::MatrixXd(right.leftCols(n)));
-    score_ = multiply(before.information, Eigen::VectorXd(right.col(n)));
+    const Eigen::VectorXd before_jump = multiply(together, before.model.parameters());
+    Eigen::MatrixXd by_information = together, by_offset(n, 1);
+    for (Eigen::Index i = 0; i < n; ++i) by_offset(i, 0) = about_zero[i] - before_jump[i];
+    const Cholesky all(before.information + together);
+    all.solve_in_place(by_information);
+    all.solve_in_place(by_offset);
+    information_ = multiply(before.information, by_information);
+    score_ = multiply(before.information, Eigen::VectorXd(by_offset));
   }
 
   /// Log likelihood ratio of the likeliest jump of one parameter, or of normally distributed jumps of all with these
@@ -52,9 +56,14 @@ class JumpScore {
       return known > 0 ? score_[parameter] * score_[parameter] / (2 * known) : 0;
     }
     const Eigen::Index n = score_.size();
-    const Eigen::MatrixXd scaled = deviation.asDiagonal() * information_ * deviation.asDiagonal();
-    const Cholesky root(Eigen::MatrixXd::Identity(n, n) + scaled);
-    const Eigen::VectorXd half = root.solve_lower(deviation.cwiseProduct(score_));
+    Eigen::MatrixXd posterior = scaled(deviation, information_);
+    Eigen::VectorXd whitened = score_;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      posterior(i, i) += 1;
+      whitened[i] *= deviation[i];
+    }
+    const Cholesky root(posterior);
+    const Eigen::VectorXd half = root.solve_lower(whitened);
     return 0.5 * squared_norm(half) - root.half_log_determinant();
   }
 
@@ -70,10 +79,10 @@ class JumpScore {
       return;
     }
     Eigen::MatrixXd posterior = information_;
-    posterior.diagonal() += deviation.array().square().inverse().matrix();
+    for (Eigen::Index i = 0; i < n; ++i) posterior(i, i) += 1 / (deviation[i] * deviation[i]);
     const Eigen::MatrixXd covariance = Cholesky(posterior).inverse();
     change.jump = multiply(covariance, score_);
-    change.standard_error = covariance.diagonal().cwiseSqrt();
+    change.standard_error = roots_of_diagonal<Eigen::Dynamic>(covariance);
   }
 
  private:
@@ -125,7 +134,8 @@ SUREFOOT_INLINE AlarmReport update(ChangeAlarm& alarm, const WalkSequence& seque
   alarm.recent.push_back({.number = ++alarm.count, .before = alarm.tracker, .update = information});
   if (alarm.recent.size() > static_cast<std::size_t>(alarm.options.window)) alarm.recent.pop_front();
   if (!report.outlier) learn(alarm.tracker, information);
-  const Eigen::VectorXd deviation = alarm.options.jump_deviation * alarm.tracker.model.parameter_box().width();
+  const Eigen::VectorXd deviation =
+      detail::times(alarm.options.jump_deviation, alarm.tracker.model.parameter_box().width());
   Change change = detail::likeliest_change(alarm.recent, deviation);
   report.evidence = change.evidence;
   if (change.evidence > alarm.threshold) report.change = std::move(change);

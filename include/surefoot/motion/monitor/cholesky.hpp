@@ -14,7 +14,7 @@ class Cholesky {
 
   bool ok() const { return ok_; }                          // whether `a` is positive definite
   const Eigen::MatrixXd& lower() const { return lower_; }  // L; what stands above its diagonal means nothing
-  double half_log_determinant() const { return lower_.diagonal().array().log().sum(); }
+  double half_log_determinant() const;
 
   /// Solutions of a x = b, and of L x = b.
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const;

@@ -35,7 +35,7 @@ struct MotionTracker {
   Eigen::MatrixXd floor = prior_information(model);        // the information that is never forgotten
 
   Eigen::MatrixXd covariance() const;
-  Eigen::VectorXd standard_errors() const { return covariance().diagonal().cwiseSqrt(); }
+  Eigen::VectorXd standard_errors() const { return roots_of_diagonal<Eigen::Dynamic>(covariance()); }
 };
 
 /// Continues a calibration: its model, covariance and noise, made with these options. Throws MotionError if the

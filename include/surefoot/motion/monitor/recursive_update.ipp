@@ -10,12 +10,15 @@
 #include "surefoot/motion/fit/weighted_poses.hpp"
 #include "surefoot/motion/monitor/cholesky.hpp"
 #include "surefoot/motion/monitor/recursive_update.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot {
 
 SUREFOOT_INLINE Eigen::MatrixXd prior_information(const AnyMotionModel& model, double prior) {
-  const Eigen::VectorXd deviation = prior * model.parameter_box().width();
-  return deviation.array().square().inverse().matrix().asDiagonal();
+  const Eigen::VectorXd deviation = detail::times(prior, model.parameter_box().width());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(deviation.size(), deviation.size());
+  for (Eigen::Index i = 0; i < deviation.size(); ++i) information(i, i) = 1 / (deviation[i] * deviation[i]);
+  return information;
 }
 
 SUREFOOT_INLINE Eigen::MatrixXd MotionTracker::covariance() const { return detail::Cholesky(information).inverse(); }
@@ -27,7 +30,7 @@ SUREFOOT_INLINE MotionTracker track(const AnyMotionModel& model, const Eigen::Ma
     throw MotionError("track: the covariance of the calibration must have a row and a column per parameter");
   }
   const detail::Cholesky root(covariance);
-  if (!covariance.allFinite() || !root.ok()) {
+  if (!all_finite(covariance) || !root.ok()) {
     throw MotionError("track: the covariance of the calibration must be finite and positive definite");
   }
   MotionTracker tracker{.model = model};
@@ -45,10 +48,10 @@ SUREFOOT_INLINE InformationUpdate linearize(const MotionTracker& tracker, const 
   InformationUpdate update;
   update.at = tracker.model.parameters();
   const Eigen::VectorXd innovations = poses.residuals(update.at);
-  const Eigen::MatrixXd jacobian = -poses.jacobian(update.at);
-  update.information = jacobian.transpose() * jacobian;  // the rows of the prior are 0
-  update.offset = jacobian.transpose() * innovations;
-  update.rest = innovations.squaredNorm();
+  const Eigen::MatrixXd jacobian = poses.jacobian(update.at);           // of what innovations lose
+  update.information = detail::transposed_product(jacobian, jacobian);  // the rows of the prior are 0
+  update.offset = detail::times(-1, detail::transposed_product(jacobian, innovations));
+  update.rest = detail::dot(innovations.data(), innovations.data(), innovations.size());
   update.count = innovations.size() - tracker.model.parameter_count();
   return update;
 }
@@ -57,7 +60,10 @@ SUREFOOT_INLINE void forget(MotionTracker& tracker) {
   if (!(tracker.forgetting > 0 && tracker.forgetting <= 1)) {
     throw MotionError("MotionTracker: forgetting must be in (0, 1], got " + std::to_string(tracker.forgetting));
   }
-  tracker.information = tracker.forgetting * tracker.information + (1 - tracker.forgetting) * tracker.floor;
+  for (Eigen::Index i = 0; i < tracker.information.size(); ++i) {
+    double& value = tracker.information.data()[i];
+    value = tracker.forgetting * value + (1 - tracker.forgetting) * tracker.floor.data()[i];
+  }
 }
 
 SUREFOOT_INLINE Surprise surprise(const MotionTracker& tracker, const InformationUpdate& update) {
@@ -68,7 +74,8 @@ SUREFOOT_INLINE Surprise surprise(const MotionTracker& tracker, const Informatio
 SUREFOOT_INLINE void learn(MotionTracker& tracker, const InformationUpdate& update) {
   const Eigen::VectorXd now = tracker.model.parameters();
   tracker.information += update.information;
-  const Eigen::VectorXd right = update.offset + detail::multiply(update.information, Eigen::VectorXd(update.at - now));
+  Eigen::VectorXd right = update.offset;
+  right += detail::multiply(update.information, Eigen::VectorXd(update.at - now));
   tracker.model = tracker.model.with_parameters(now + detail::Cholesky(tracker.information).solve(right));
 }
 

@@ -124,7 +124,8 @@ SUREFOOT_INLINE CheckPlan plan_check_commands(const MotionTracker& tracker, cons
   constexpr int rounds = 3;  // of exchanging every sequence for the best
   const Eigen::Index n = tracker.model.parameter_count();
   if (jumps.size() != n) throw MotionError("plan_check_commands: jumps must have one entry per parameter");
-  if (!(jumps.array() != 0).any()) throw MotionError("plan_check_commands: jumps must not all be 0");
+  if (std::ranges::all_of(jumps, [](double jump) { return jump == 0; }))
+    throw MotionError("plan_check_commands: jumps must not all be 0");
   const detail::InformativeCandidates candidates = detail::informative_candidates(tracker, options, seed);
   const auto seen = [&](const Eigen::MatrixXd& together) {
     Eigen::MatrixXd solution = together;
