@@ -10,18 +10,19 @@
 
 namespace surefoot::effects {
 
-template <double Pose2::*From, double Pose2::*To>
-Effect coupling(const std::string& from, const std::string& to, EffectParameter gain) {
+/// `gain` times the part `from` is added to the part `to`; names as in the forms.
+inline Effect coupling(double Pose2::*from, double Pose2::*to, const std::string& from_name, const std::string& to_name,
+                       EffectParameter gain) {
   return {.name = "cross_coupling",
-          .sentence = from + " motion causes " + to + " motion, {gain}",
+          .sentence = from_name + " motion causes " + to_name + " motion, {gain}",
           .place = Place::planar,
           .parameters = {std::move(gain)},
           .confusable_with = {"body_drift", "input_asymmetry", "ground_slope"},
-          .experiment = "walks with " + from + " steps alone, both ways and in two sizes",
-          .form = from + "_to_" + to,
-          .planar = [](const Pose2& displacement, double, Values p) {
+          .experiment = "walks with " + from_name + " steps alone, both ways and in two sizes",
+          .form = from_name + "_to_" + to_name,
+          .planar = [from, to](const Pose2& displacement, double, Values p) {
             Pose2 moved = displacement;
-            moved.*To += p[0] * displacement.*From;
+            moved.*to += p[0] * displacement.*from;
             return moved;
           }};
 }
@@ -48,22 +49,22 @@ inline EffectParameter sideways_gain() {
 }
 
 inline Effect cross_coupling_forward_to_turn() {
-  return coupling<&Pose2::x, &Pose2::angle>("forward", "turn", turn_gain());
+  return coupling(&Pose2::x, &Pose2::angle, "forward", "turn", turn_gain());
 }
 inline Effect cross_coupling_forward_to_lateral() {
-  return coupling<&Pose2::x, &Pose2::y>("forward", "lateral", sideways_gain());
+  return coupling(&Pose2::x, &Pose2::y, "forward", "lateral", sideways_gain());
 }
 inline Effect cross_coupling_lateral_to_turn() {
-  return coupling<&Pose2::y, &Pose2::angle>("lateral", "turn", turn_gain());
+  return coupling(&Pose2::y, &Pose2::angle, "lateral", "turn", turn_gain());
 }
 inline Effect cross_coupling_lateral_to_forward() {
-  return coupling<&Pose2::y, &Pose2::x>("lateral", "forward", sideways_gain());
+  return coupling(&Pose2::y, &Pose2::x, "lateral", "forward", sideways_gain());
 }
 inline Effect cross_coupling_turn_to_forward() {
-  return coupling<&Pose2::angle, &Pose2::x>("turn", "forward", distance_gain());
+  return coupling(&Pose2::angle, &Pose2::x, "turn", "forward", distance_gain());
 }
 inline Effect cross_coupling_turn_to_lateral() {
-  return coupling<&Pose2::angle, &Pose2::y>("turn", "lateral", distance_gain());
+  return coupling(&Pose2::angle, &Pose2::y, "turn", "lateral", distance_gain());
 }
 
 }  // namespace surefoot::effects

@@ -9,8 +9,7 @@
 
 namespace surefoot::effects {
 
-template <double Pose2::*Part>
-Effect slip_saturation_of(std::string form, EffectParameter level) {
+inline Effect slip_saturation_of(double Pose2::*part, std::string form, EffectParameter level) {
   return {.name = "slip_saturation",
           .sentence = "slip: " + form + " steps level off at {level}",
           .place = Place::planar,
@@ -18,9 +17,9 @@ Effect slip_saturation_of(std::string form, EffectParameter level) {
           .confusable_with = {"saturation", "input_gain", "supply_sag"},
           .experiment = "walks of small, medium and the largest " + form + " steps",
           .form = std::move(form),
-          .planar = [](const Pose2& displacement, double, Values p) {
+          .planar = [part](const Pose2& displacement, double, Values p) {
             Pose2 slipped = displacement;
-            slipped.*Part = p[0] * std::tanh(displacement.*Part / p[0]);
+            slipped.*part = p[0] * std::tanh(displacement.*part / p[0]);
             return slipped;
           }};
 }
@@ -30,13 +29,14 @@ inline EffectParameter slip_distance() {
   return {.name = "level", .measure = {.value = 1}, .low = 0.005, .high = 2, .starts = {0.02, 0.05, 0.12, 0.3}};
 }
 
-inline Effect slip_saturation_forward() { return slip_saturation_of<&Pose2::x>("forward", slip_distance()); }
+inline Effect slip_saturation_forward() { return slip_saturation_of(&Pose2::x, "forward", slip_distance()); }
 
-inline Effect slip_saturation_lateral() { return slip_saturation_of<&Pose2::y>("lateral", slip_distance()); }
+inline Effect slip_saturation_lateral() { return slip_saturation_of(&Pose2::y, "lateral", slip_distance()); }
 
 inline Effect slip_saturation_turn() {
-  return slip_saturation_of<&Pose2::angle>(
-      "turn", {.name = "level", .measure = {.position = 1}, .low = 0.02, .high = 3, .starts = {0.1, 0.25, 0.6}});
+  return slip_saturation_of(
+      &Pose2::angle, "turn",
+      {.name = "level", .measure = {.position = 1}, .low = 0.02, .high = 3, .starts = {0.1, 0.25, 0.6}});
 }
 
 }  // namespace surefoot::effects

@@ -71,7 +71,7 @@ class FitFunctions {
 /// Whether any of these recordings has an initial state to be estimated.
 inline bool has_unknown_initial_state(const BoundSimulator& bound, const std::vector<std::size_t>& recordings) {
   return std::any_of(recordings.begin(), recordings.end(),
-                     [&](std::size_t r) { return (bound.recordings[r].initial_scale.array() > 0).any(); });
+                     [&](std::size_t r) { return has_unknown_initial_state(bound.recordings[r]); });
 }
 
 /// Mean robust squared residual.

@@ -89,7 +89,8 @@ SUREFOOT_INLINE Eigen::MatrixXd FitFunctions::jacobian(const Eigen::VectorXd& z,
     Eigen::VectorXd moved = z;
     moved[k] += step;
     const Eigen::Index length = begin_[i + 1] - begin_[i];
-    jacobian.col(k).segment(begin_[i], length) = (residuals_of(at(moved), i) - here.segment(begin_[i], length)) / step;
+    const Eigen::VectorXd there = residuals_of(at(moved), i);
+    for (Eigen::Index n = 0; n < length; ++n) jacobian(begin_[i] + n, k) = (there[n] - here[begin_[i] + n]) / step;
   });
   for (Eigen::Index i = 0; i < jacobian.size(); ++i) {
     if (!std::isfinite(jacobian.data()[i])) jacobian.data()[i] = 0;

@@ -24,8 +24,8 @@ inline Eigen::Index memory_of(NoiseKind noise) { return noise == NoiseKind::proc
 
 /// Correlations between errors of predictions from one measured row to the next that are one, two and three rows apart,
 /// about their mean (columns), by output (rows): -1/2, 0, 0 for measurement noise, 0 for noise of the process.
-Eigen::MatrixX3d step_correlations(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                   const std::vector<std::size_t>& recordings);
+Eigen::MatrixXd step_correlations(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                  const std::vector<std::size_t>& recordings);
 
 bool only_final_pose(const BoundSimulator& bound);
 

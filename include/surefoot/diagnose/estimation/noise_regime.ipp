@@ -16,23 +16,34 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE Eigen::MatrixX3d step_correlations(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                                   const std::vector<std::size_t>& recordings) {
+/// Errors of an output from the second row on, about their mean; 0 where nothing was measured.
+SUREFOOT_INLINE Eigen::VectorXd errors_of_steps(const BoundSimulator& bound, std::size_t r,
+                                                const SimulatedRun& trajectory, Eigen::Index output) {
+  const Eigen::MatrixXd& measured = bound.recordings[r].outputs;
+  const bool wrapped = bound.wrapped[static_cast<std::size_t>(output)];
+  Eigen::VectorXd off(measured.cols() - 1);
+  for (Eigen::Index i = 0; i < off.size(); ++i) {
+    const double value = trajectory.outputs(output, i + 1) - measured(output, i + 1);
+    off[i] = wrapped ? wrap_angle(value) : value;
+    if (!std::isfinite(off[i])) off[i] = 0;
+  }
+  const double mean = off.mean();
+  for (double& value : off) value -= mean;
+  return off;
+}
+
+SUREFOOT_INLINE Eigen::MatrixXd step_correlations(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                  const std::vector<std::size_t>& recordings) {
   Integration stepwise = bound.integration;
   stepwise.restart = 1;
   const auto outputs = static_cast<Eigen::Index>(bound.info.outputs.size());
-  Eigen::MatrixX3d products = Eigen::MatrixX3d::Zero(outputs, 3);
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(outputs, 3);
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(outputs);
   for (const std::size_t r : recordings) {
     const SimulatedRun trajectory = simulate(bound, hypothesis, r, stepwise);
     if (!trajectory.finite || bound.recordings[r].rows() < 5) continue;
     for (Eigen::Index k = 0; k < outputs; ++k) {
-      Eigen::RowVectorXd off = trajectory.outputs.row(k) - bound.recordings[r].outputs.row(k);
-      const bool wrapped = bound.wrapped[static_cast<std::size_t>(k)];
-      for (double& value : off) value = wrapped ? wrap_angle(value) : value;
-      off = off.tail(off.size() - 1).eval();
-      for (double& value : off) value = std::isfinite(value) ? value : 0.0;
-      off.array() -= off.mean();
+      const Eigen::VectorXd off = errors_of_steps(bound, r, trajectory, k);
       for (Eigen::Index lag = 1; lag <= 3; ++lag) {
         products(k, lag - 1) += off.tail(off.size() - lag).dot(off.head(off.size() - lag));
       }
@@ -49,7 +60,9 @@ SUREFOOT_INLINE bool only_final_pose(const BoundSimulator& bound) {
   if (!bound.info.planar) return false;
   for (const Recording& recording : bound.recordings) {
     for (Eigen::Index row = 1; row + 1 < recording.rows(); ++row) {
-      if (recording.outputs.col(row).array().isFinite().any()) return false;
+      for (Eigen::Index k = 0; k < recording.outputs.rows(); ++k) {
+        if (std::isfinite(recording.outputs(k, row))) return false;
+      }
     }
   }
   return true;
@@ -60,11 +73,23 @@ SUREFOOT_INLINE NoiseKind noise_kind(const BoundSimulator& bound, const Hypothes
   if (bound.info.kind != SimulatorKind::map) return NoiseKind::measurement;
   if (only_final_pose(bound)) return NoiseKind::final_pose;
   if (!bound.structure.all_states_measured) return NoiseKind::measurement;
-  const Eigen::MatrixX3d apart = step_correlations(bound, hypothesis, recordings);
+  const Eigen::MatrixXd apart = step_correlations(bound, hypothesis, recordings);
   constexpr double alternating = 0.3;    // a correlation two or three rows apart: such steps differ in turn, no noise
   constexpr double differenced = -0.25;  // half way between noise of the process (0) and of measurement (-1/2)
-  const bool in_turn = apart.rightCols<2>().maxCoeff() > alternating;
-  return apart.col(0).mean() < differenced && !in_turn ? NoiseKind::measurement : NoiseKind::process;
+  bool in_turn = false;
+  Eigen::VectorXd next(apart.rows());
+  for (Eigen::Index k = 0; k < apart.rows(); ++k) {
+    next[k] = apart(k, 0);
+    in_turn = in_turn || std::max(apart(k, 1), apart(k, 2)) > alternating;
+  }
+  return next.mean() < differenced && !in_turn ? NoiseKind::measurement : NoiseKind::process;
+}
+
+/// Adds v v^T to `sum`.
+SUREFOOT_INLINE void add_outer_product(Eigen::MatrixXd& sum, const Eigen::VectorXd& v) {
+  for (Eigen::Index j = 0; j < v.size(); ++j) {
+    for (Eigen::Index i = 0; i < v.size(); ++i) sum(i, j) += v[i] * v[j];
+  }
 }
 
 /// Residuals of a walk of which the end was measured, and how their covariance grows with each variance.
@@ -101,37 +126,51 @@ SUREFOOT_INLINE FinalResiduals final_residuals(const BoundSimulator& bound, std:
       turn[i] = what == 0 ? -y : what == 1 ? x : what == 2 ? 1 : 0;
       if (what == 0 || what == 1) sequence.by_position(i, i) += 1;
     }
-    sequence.by_heading += turn * turn.transpose();
+    add_outer_product(sequence.by_heading, turn);
   }
   return sequence;
 }
 
-SUREFOOT_INLINE Eigen::MatrixXd covariance_of(const FinalResiduals& s, const Eigen::Vector4d& v) {
-  return v[0] * s.by_position + v[1] * s.by_heading + v[2] * s.tape_position + v[3] * s.tape_heading;
+/// For the logarithms of the four variances.
+SUREFOOT_INLINE Eigen::MatrixXd covariance_of(const FinalResiduals& s, const Eigen::VectorXd& logarithms) {
+  const Eigen::ArrayXd v = logarithms.array().exp();
+  Eigen::MatrixXd sum(s.by_position.rows(), s.by_position.cols());
+  for (Eigen::Index j = 0; j < sum.cols(); ++j) {
+    for (Eigen::Index i = 0; i < sum.rows(); ++i) {
+      sum(i, j) = v[0] * s.by_position(i, j) + v[1] * s.by_heading(i, j) + v[2] * s.tape_position(i, j) +
+                  v[3] * s.tape_heading(i, j);
+    }
+  }
+  return sum;
 }
 
 /// Logarithms of the four variances with the highest likelihood, by a coordinate search.
-SUREFOOT_INLINE Eigen::Vector4d most_likely_variances(const std::vector<FinalResiduals>& sequences,
+SUREFOOT_INLINE Eigen::VectorXd most_likely_variances(const std::vector<FinalResiduals>& sequences,
                                                       const std::vector<std::size_t>& recordings) {
-  const auto cost = [&](const Eigen::Vector4d& logarithms) {
+  const auto cost = [&](const Eigen::VectorXd& logarithms) {
     double sum = 0;
     for (const std::size_t r : recordings) {
       const FinalResiduals& s = sequences[r];
       if (s.off.size() == 0 || !s.off.allFinite()) continue;
-      const Eigen::LDLT<Eigen::MatrixXd> ldlt(covariance_of(s, logarithms.array().exp().matrix()));
+      const Eigen::LDLT<Eigen::MatrixXd> ldlt(covariance_of(s, logarithms));
       const Eigen::VectorXd solved = ldlt.solve(s.off);
-      sum += ldlt.vectorD().array().max(1e-30).log().sum() + s.off.dot(solved);
+      double log_determinant = 0;
+      for (Eigen::Index i = 0; i < solved.size(); ++i) log_determinant += std::log(std::max(ldlt.vectorD()[i], 1e-30));
+      sum += log_determinant + s.off.dot(solved);
     }
     return sum;
   };
   // A step is off by about 1 cm and 20 mrad, the tape by 1 cm and 30 mrad.
-  Eigen::Vector4d best(2 * std::log(0.01), 2 * std::log(0.02), 2 * std::log(0.01), 2 * std::log(0.03));
+  Eigen::VectorXd best(4);
+  best[0] = best[2] = 2 * std::log(0.01);
+  best[1] = 2 * std::log(0.02);
+  best[3] = 2 * std::log(0.03);
   constexpr double lowest = -20, highest = 4;  // of a logarithm
   double least = cost(best);
   for (double width = 2; width > 0.1; width *= 0.7) {
     for (int k = 0; k < 4; ++k) {
       for (const double move : {-width, width}) {
-        Eigen::Vector4d next = best;
+        Eigen::VectorXd next = best;
         next[k] = std::clamp(next[k] + move, lowest, highest);
         const double value = cost(next);
         if (value < least) {
@@ -152,12 +191,12 @@ SUREFOOT_INLINE std::vector<Eigen::MatrixXd> final_pose_whitening(const BoundSim
   for (std::size_t r = 0; r < bound.recordings.size(); ++r) {
     sequences.push_back(final_residuals(bound, r, simulate(bound, hypothesis, r, integration)));
   }
-  const Eigen::Vector4d best = most_likely_variances(sequences, recordings);
+  const Eigen::VectorXd best = most_likely_variances(sequences, recordings);
   std::vector<Eigen::MatrixXd> whitening(bound.recordings.size());
   for (std::size_t r = 0; r < sequences.size(); ++r) {
     const auto count = sequences[r].off.size();
     if (count == 0) continue;
-    Eigen::MatrixXd factor = covariance_of(sequences[r], best.array().exp().matrix());
+    Eigen::MatrixXd factor = covariance_of(sequences[r], best);
     surefoot::detail::factorise_in_place(factor);
     whitening[r] = Eigen::MatrixXd::Identity(count, count);
     factor.triangularView<Eigen::Lower>().solveInPlace(whitening[r]);

@@ -28,6 +28,14 @@ struct Cell {
   Eigen::Index row = 0, output = 0;
 };
 
+/// Whether the initial state is to be estimated.
+inline bool has_unknown_initial_state(const Recording& recording) {
+  for (const double scale : recording.initial_scale) {
+    if (scale > 0) return true;
+  }
+  return false;
+}
+
 /// The measured cells of a recording that can be off: not the first row if the start is known from it.
 std::vector<Cell> cells_of(const Recording& recording);
 

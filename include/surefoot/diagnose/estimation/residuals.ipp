@@ -16,7 +16,7 @@
 namespace surefoot::diagnosis {
 
 SUREFOOT_INLINE std::vector<Cell> cells_of(const Recording& recording) {
-  const bool known_start = !(recording.initial_scale.array() > 0).any();
+  const bool known_start = !has_unknown_initial_state(recording);
   std::vector<Cell> cells;
   for (Eigen::Index row = known_start ? 1 : 0; row < recording.rows(); ++row) {
     for (Eigen::Index k = 0; k < recording.outputs.rows(); ++k) {

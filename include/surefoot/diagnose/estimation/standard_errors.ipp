@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -43,16 +44,22 @@ SUREFOOT_INLINE StandardErrors standard_errors(const BoundSimulator& bound, cons
     const Eigen::Index parts = std::clamp<Eigen::Index>(length / block_rows, 1, most_blocks);
     for (Eigen::Index part = 0; part < parts; ++part) {
       const Eigen::Index a = from + length * part / parts, b = from + length * (part + 1) / parts;
-      const Eigen::MatrixXd rows = jacobian.middleRows(a, b - a);
-      const Eigen::VectorXd off = residuals.segment(a, b - a);
-      Eigen::VectorXd gradient = rows.transpose() * off;
+      Eigen::MatrixXd rows(b - a, count);
+      Eigen::VectorXd off(b - a);
+      for (Eigen::Index i = 0; i < off.size(); ++i) off[i] = residuals[a + i];
+      for (Eigen::Index k = 0; k < count; ++k) {
+        for (Eigen::Index i = 0; i < off.size(); ++i) rows(i, k) = jacobian(a + i, k);
+      }
+      Eigen::VectorXd gradient = std::as_const(rows).transpose() * off;
       for (Eigen::Index k = 0; k < count; ++k) gradient[k] *= scale[k];
-      gradients += gradient * gradient.transpose();
+      for (Eigen::Index j = 0; j < count; ++j) {
+        for (Eigen::Index i = 0; i < count; ++i) gradients(i, j) += gradient[i] * gradient[j];
+      }
       ++blocks;
     }
   }
   Eigen::MatrixXd scaled = scaled_by(scale, hessian);
-  scaled.diagonal().array() += ridge;
+  for (Eigen::Index i = 0; i < count; ++i) scaled(i, i) += ridge;
   const Eigen::MatrixXd inverse = surefoot::detail::invert_symmetric(scaled);
   const Eigen::MatrixXd half = inverse * gradients;
   Eigen::MatrixXd covariance = half * inverse;

@@ -105,7 +105,12 @@ SUREFOOT_INLINE FeatureTable only_states(const BoundSimulator& bound, const Feat
     kept.push_back(found - all.names.begin());
     table.names.push_back(state.name);
   }
-  table.values = all.values(kept, Eigen::all);
+  table.values.resize(static_cast<Eigen::Index>(kept.size()), all.values.cols());
+  for (Eigen::Index j = 0; j < table.values.cols(); ++j) {
+    for (Eigen::Index k = 0; k < table.values.rows(); ++k) {
+      table.values(k, j) = all.values(kept[static_cast<std::size_t>(k)], j);
+    }
+  }
   return table;
 }
 

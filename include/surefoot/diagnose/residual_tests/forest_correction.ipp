@@ -106,7 +106,8 @@ SUREFOOT_INLINE SimulatedRun corrected(const BoundSimulator& bound, std::size_t 
       const auto from = static_cast<Eigen::Index>(found - table.names.begin());
       for (Eigen::Index j = 0; j < inputs.cols(); ++j) inputs(row, j) = single_precision(table.values(from, j));
     } else if (const auto& constants = bound.recordings[recording].constants; constants.contains(name)) {
-      inputs.row(row).setConstant(static_cast<float>(constants.at(name)));
+      const auto constant = static_cast<float>(constants.at(name));
+      for (Eigen::Index j = 0; j < inputs.cols(); ++j) inputs(row, j) = constant;
     } else {
       throw DiagnoseError(bound.recordings[recording].name + ": the residual model asks for '" + name +
                           "', which neither the simulator nor the recording has");

@@ -13,6 +13,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/diagnosis.hpp"
+#include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/residual_tests/features.hpp"
 #include "surefoot/diagnose/residual_tests/locate.hpp"
 
@@ -174,7 +175,8 @@ SUREFOOT_INLINE std::vector<MismatchInterval> find_intervals(const BoundSimulato
       all.push_back({recording.name, recording.time[from], recording.time[to], parts[part] / total});
     }
   }
-  std::ranges::sort(all, [](const auto& a, const auto& b) { return a.share_of_excess > b.share_of_excess; });
+  sort_items(
+      all, [](const MismatchInterval& a, const MismatchInterval& b) { return a.share_of_excess > b.share_of_excess; });
   if (all.size() > count) all.resize(count);
   return all;
 }

@@ -61,11 +61,18 @@ SUREFOOT_INLINE double climb(const NoiseCoordinates& coordinates, const std::vec
     for (int round = 0; round < 4; ++round) {
       const Eigen::VectorXd before = z;
       for (Eigen::Index k = 0; k < z.size(); ++k) {
-        const Eigen::VectorXd step = width * Eigen::VectorXd::Unit(z.size(), k);
-        if (!try_at(z + step)) try_at(z - step);
+        const Eigen::VectorXd here = z;
+        const auto moved = [&](double by) {
+          Eigen::VectorXd next = here;
+          next[k] += by;
+          return next;
+        };
+        if (!try_at(moved(width))) try_at(moved(-width));
       }
       if (z == before) break;
-      try_at(2 * z - before);  // coordinates hang together
+      Eigen::VectorXd beyond = z;
+      for (Eigen::Index k = 0; k < z.size(); ++k) beyond[k] = 2 * z[k] - before[k];
+      try_at(beyond);  // coordinates hang together
     }
   }
   return most;

@@ -12,6 +12,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
+#include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/estimation/starting_values.hpp"
 #include "surefoot/diagnose/selection/candidates.hpp"
 #include "surefoot/diagnose/selection/propose.hpp"
@@ -69,7 +70,7 @@ SUREFOOT_INLINE Eigen::MatrixXd signatures(const BoundSimulator& bound, const Hy
     const FitFunctions changed(bound, with, problem, serially());
     const Eigen::VectorXd after = changed.residuals(changed.start());
     if (!after.allFinite()) return {};
-    result.col(m) = after - residuals;
+    for (Eigen::Index i = 0; i < residuals.size(); ++i) result(i, m) = after[i] - residuals[i];
   }
   return result;
 }
@@ -116,14 +117,16 @@ SUREFOOT_INLINE Proposal predict_gain(const BoundSimulator& bound, const OpenRes
     share[m] = std::clamp(share[m], std::min(a, b), std::max(a, b));
     proposal.start[k] = share[m] * start[k];
   }
-  proposal.gain = 1 - (open.open + distinct * share).squaredNorm() / open.energy;
+  Eigen::VectorXd rest = distinct * share;
+  for (Eigen::Index i = 0; i < rest.size(); ++i) rest[i] += open.open[i];
+  proposal.gain = 1 - rest.squaredNorm() / open.energy;
   return proposal;
 }
 
 /// The best proposal of each effect, with its other starts in their order.
 SUREFOOT_INLINE std::vector<Proposal> best_of_each_effect(std::vector<Proposal> tried) {
   std::erase_if(tried, [](const Proposal& one) { return !one.effect.effect; });
-  std::ranges::sort(tried, std::greater{}, &Proposal::gain);
+  sort_items(tried, [](const Proposal& a, const Proposal& b) { return a.gain > b.gain; });
   std::vector<Proposal> best;
   for (const Proposal& one : tried) {
     const auto same = std::find_if(best.begin(), best.end(),

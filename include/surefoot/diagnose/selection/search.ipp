@@ -11,6 +11,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
+#include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
 #include "surefoot/diagnose/selection/propose.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
@@ -59,12 +60,13 @@ SUREFOOT_INLINE std::vector<Fit> fit_children(const BoundSimulator& bound, const
                                               const SearchProblem& problem, std::size_t keep,
                                               const Parallel& parallel) {
   constexpr std::uint64_t scatter_seed = 1;
+  const auto by_loss = [](const Fit& a, const Fit& b) { return a.loss < b.loss; };
   std::vector<Fit> fits(additions.size());
   parallel(additions.size(), [&](std::size_t i) {
     if (!problem.stopped()) fits[i] = fit_child(bound, parent, additions[i], problem);
   });
   std::erase_if(fits, [](const Fit& one) { return !one.ok; });
-  std::ranges::sort(fits, [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
+  sort_items(fits, by_loss);
   if (fits.size() > keep) fits.resize(keep);
   parallel(fits.size(), [&](std::size_t i) {
     if (problem.stopped()) return;
@@ -75,7 +77,7 @@ SUREFOOT_INLINE std::vector<Fit> fit_children(const BoundSimulator& bound, const
                               scatter_seed, serially());
     }
   });
-  std::ranges::sort(fits, [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
+  sort_items(fits, by_loss);
   return fits;
 }
 

@@ -9,6 +9,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/text.hpp"
 #include "surefoot/diagnose/verdict/alternatives.hpp"
 
@@ -77,7 +78,7 @@ SUREFOOT_INLINE Alternatives find_alternatives(const Selection& selection, const
   const BlockLosses& without = selection.nominal.cross_validated;
   const bool found_any = chosen.effects.size() > selection.nominal.hypothesis.effects.size();
   std::vector<EvaluatedHypothesis> others = selection.alternatives;
-  std::ranges::sort(others, [](const EvaluatedHypothesis& a, const EvaluatedHypothesis& b) {
+  sort_items(others, [](const EvaluatedHypothesis& a, const EvaluatedHypothesis& b) {
     return a.cross_validated.total() < b.cross_validated.total();
   });
   const double chosen_gain = 1 - selection.chosen.cross_validated.rms() / without.rms();

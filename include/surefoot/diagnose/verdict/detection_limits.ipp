@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/verdict/detection_limits.hpp"
 
 namespace surefoot::diagnosis {
@@ -23,7 +24,7 @@ SUREFOOT_INLINE std::vector<DetectionLimit> detection_limits(const BoundSimulato
                       {parameter.name, measure_unit(bound, proposal.effect, parameter.measure),
                        std::abs(proposal.visible) * proposal.tried[k], 0, 0}});
   }
-  std::ranges::sort(limits, [](const DetectionLimit& a, const DetectionLimit& b) { return a.name < b.name; });
+  sort_items(limits, [](const DetectionLimit& a, const DetectionLimit& b) { return a.name < b.name; });
   return limits;
 }
 

@@ -104,7 +104,8 @@ SUREFOOT_INLINE Eigen::MatrixXd sequence_covariance(const std::vector<std::vecto
   std::vector<Eigen::Index> begin{0};
   for (const auto& steps : sequences) begin.push_back(begin.back() + (steps.empty() ? 0 : steps[0].lever.rows()));
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(begin.back(), begin.back());
-  const Eigen::Vector3d variance = (0.05 * step_size).array().square();
+  Eigen::Vector3d variance;
+  for (Eigen::Index k = 0; k < 3; ++k) variance[k] = (0.05 * step_size[k]) * (0.05 * step_size[k]);
   for (std::size_t a = 0; a < sequences.size(); ++a) {
     for (std::size_t b = 0; b <= a; ++b) {
       Eigen::MatrixXd block = Eigen::MatrixXd::Zero(begin[a + 1] - begin[a], begin[b + 1] - begin[b]);
@@ -129,12 +130,16 @@ SUREFOOT_INLINE Eigen::MatrixXd sequence_covariance(const std::vector<std::vecto
 
 SUREFOOT_INLINE double process_evidence(const Eigen::ArrayXd& values, const Eigen::ArrayXd& turned) {
   const auto n = static_cast<double>(turned.size());
-  const Eigen::ArrayXd squares = turned.square();
+  Eigen::ArrayXd squares(turned.size()), variance(turned.size()), ratio(turned.size());
+  for (Eigen::Index i = 0; i < squares.size(); ++i) squares[i] = turned[i] * turned[i];
   double best = 0;
   for (const double size : process_sizes) {
     for (const double noise : noise_variances) {  // the scale of both together by its maximum
-      const Eigen::ArrayXd variance = size * values + noise;
-      const double scale = std::max((squares / variance).mean(), 1e-12);
+      for (Eigen::Index i = 0; i < variance.size(); ++i) {
+        variance[i] = size * values[i] + noise;
+        ratio[i] = squares[i] / variance[i];
+      }
+      const double scale = std::max(ratio.mean(), 1e-12);
       const double null = std::log(std::max(squares.mean(), 1e-12));
       best = std::max(best, n * (null - std::log(scale)) - variance.log().sum());
     }
@@ -154,17 +159,21 @@ SUREFOOT_INLINE Eigen::VectorXd predict_held_out(const Eigen::MatrixXd& covarian
     for (Eigen::Index i = 0; i < count; ++i) among(i, j) = covariance(known[static_cast<std::size_t>(i)], column);
   }
   const surefoot::detail::SymmetricEigen eigen = surefoot::detail::eigen_of_symmetric(among);
-  const Eigen::ArrayXd values = eigen.values.array().max(0);
   const Eigen::VectorXd turned = eigen.vectors.transpose() * y;
+  Eigen::ArrayXd variance(count), ratio(count);
+  Eigen::VectorXd share(count);
   double least = std::numeric_limits<double>::infinity();
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(count);
   for (const double size : process_sizes) {
     for (const double noise : noise_variances) {
-      const Eigen::ArrayXd variance = size * values + noise;
-      const double cost = variance.log().sum() + (turned.array().square() / variance).sum();
+      for (Eigen::Index i = 0; i < count; ++i) {
+        variance[i] = size * std::max(eigen.values[i], 0.0) + noise;
+        ratio[i] = turned[i] * turned[i] / variance[i];
+        share[i] = turned[i] / variance[i];
+      }
+      const double cost = variance.log().sum() + ratio.sum();
       if (cost >= least) continue;
       least = cost;
-      const Eigen::VectorXd share = turned.array() / variance;
       weights = size * (eigen.vectors * share);
     }
   }
@@ -183,7 +192,8 @@ SUREFOOT_INLINE std::vector<double> permuted_evidence(const Eigen::MatrixXd& cov
   const auto count = static_cast<Eigen::Index>(sequences), length = residuals.size() / count;
   if (length * count != residuals.size()) return {};
   const surefoot::detail::SymmetricEigen eigen = surefoot::detail::eigen_of_symmetric(covariance);
-  const Eigen::ArrayXd values = eigen.values.array().max(0);
+  Eigen::ArrayXd values = eigen.values;
+  for (double& value : values) value = std::max(value, 0.0);
   const auto evidence = [&](const Eigen::VectorXd& shuffled) {
     const Eigen::VectorXd turned = eigen.vectors.transpose() * shuffled;
     return process_evidence(values, turned);

@@ -28,13 +28,10 @@ SUREFOOT_INLINE std::optional<MeasuredSteps> measured_steps(const BoundSimulator
   const int x = output_of(bound.info.planar->x), y = output_of(bound.info.planar->y),
             heading = output_of(bound.info.planar->heading);
   if (x < 0 || y < 0 || heading < 0) return std::nullopt;
-  Eigen::Index count = 0;
-  for (const std::size_t r : recordings) count += bound.recordings[r].rows();
-  MeasuredSteps steps;
-  steps.place.resize(2, count);
-  steps.simulated.resize(3, count);
-  steps.residual.resize(3, count);
-  Eigen::Index at = 0;
+  const auto is_finite = [](const Pose2& pose) {
+    return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.angle);
+  };
+  std::vector<double> places, simulations, residuals;  // step by step
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     const Eigen::MatrixXd& measured = bound.recordings[recordings[i]].outputs;
     const auto pose = [&](const Eigen::MatrixXd& outputs, Eigen::Index row) {
@@ -42,18 +39,22 @@ SUREFOOT_INLINE std::optional<MeasuredSteps> measured_steps(const BoundSimulator
     };
     for (Eigen::Index row = 1; row < measured.cols(); ++row) {
       const Pose2 before = pose(measured, row - 1), after = pose(measured, row), expected = pose(runs[i].outputs, row);
-      if (!(before.vec() + after.vec() + expected.vec()).allFinite()) continue;
-      const Pose2 back = before.inverse();
-      steps.place.col(at) = before.position();
-      steps.simulated.col(at) = (back * expected).vec();
-      steps.residual.col(at) = steps.simulated.col(at) - (back * after).vec();
-      steps.residual(2, at) = wrap_angle(steps.residual(2, at));
-      ++at;
+      if (!is_finite(before) || !is_finite(after) || !is_finite(expected)) continue;
+      const Pose2 back = before.inverse(), simulated = back * expected, moved = back * after;
+      places.insert(places.end(), {before.x, before.y});
+      simulations.insert(simulations.end(), {simulated.x, simulated.y, simulated.angle});
+      residuals.insert(residuals.end(),
+                       {simulated.x - moved.x, simulated.y - moved.y, wrap_angle(simulated.angle - moved.angle)});
     }
   }
-  steps.place.conservativeResize(2, at);
-  steps.simulated.conservativeResize(3, at);
-  steps.residual.conservativeResize(3, at);
+  const auto count = static_cast<Eigen::Index>(places.size() / 2);
+  MeasuredSteps steps;
+  steps.place.resize(2, count);
+  steps.simulated.resize(3, count);
+  steps.residual.resize(3, count);
+  std::copy(places.begin(), places.end(), steps.place.data());
+  std::copy(simulations.begin(), simulations.end(), steps.simulated.data());
+  std::copy(residuals.begin(), residuals.end(), steps.residual.data());
   return steps;
 }
 
