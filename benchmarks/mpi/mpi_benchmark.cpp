@@ -48,7 +48,7 @@ class Meter {
 void train(const MpiExecutor& executor, double budget) {
   const auto problem = sigmaban::Approach::ha();
   surefoot::RfpiOptions options;
-  options.budget.seconds = budget;
+  options.budget.counted_seconds = budget;
   Meter meter(executor);
   options.on_progress = [&](const surefoot::RfpiProgress& p) {
     meter.print("iteration " + std::to_string(p.iteration), p.states, p.leaves);

@@ -113,7 +113,7 @@ void learning(benchmark::State& state, const P& problem, std::initializer_list<i
   for (auto _ : state) {
     for (const int seconds : budgets) {
       RfpiOptions options;
-      options.budget.seconds = seconds;
+      options.budget.counted_seconds = seconds;
       options.horizon = P::horizon;
       const auto result = rfpi(problem, options, Threads{}, 1);
       const std::string at = "_" + std::to_string(seconds) + "s";
