@@ -11,9 +11,11 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -48,7 +50,7 @@ SUREFOOT_INLINE Fit scattered_fit(const BoundSimulator& bound, Fit best, const H
   parallel(starts.size(), [&](std::size_t k) {
     const FitFunctions functions(bound, starts[k], problem, serially());
     const Eigen::VectorXd residuals = functions.residuals(functions.start());
-    losses[k] = residuals.allFinite() ? mean_loss(residuals, problem.weighting.robust)
+    losses[k] = all_finite(residuals) ? mean_loss(residuals, problem.weighting.robust)
                                       : std::numeric_limits<double>::infinity();
   });
   std::vector<std::size_t> order(starts.size());
@@ -71,7 +73,7 @@ SUREFOOT_INLINE std::vector<double> recording_scales(const BoundSimulator& bound
   for (std::size_t i = 0; i < problem.recordings.size(); ++i) {
     const std::size_t r = problem.recordings[i];
     const Eigen::VectorXd off = weighted_residuals(bound, r, trajectories[i], cells_of(bound.recordings[r]), plain);
-    if (off.size() == 0 || !off.allFinite()) continue;
+    if (off.size() == 0 || !all_finite(off)) continue;
     scales[r] = std::sqrt(std::clamp(std::sqrt(mean_loss(off, plain.robust)), least, most));
   }
   return scales;
@@ -82,7 +84,7 @@ SUREFOOT_INLINE Fit calibrate(const BoundSimulator& bound, const Hypothesis& nom
   constexpr double least_sigma = 1e-6;  // of the output's standard deviation, where no noise is stated
   constexpr int search_iterations = 20, reweightings = 2;
   problem.weighting.sigma = output_deviations(bound, problem.recordings);
-  Eigen::VectorXd floor = problem.weighting.sigma * least_sigma;
+  Eigen::VectorXd floor = surefoot::detail::times(least_sigma, problem.weighting.sigma);
   for (Eigen::Index k = 0; k < floor.size(); ++k) {
     const double noise = bound.info.outputs[static_cast<std::size_t>(k)].noise;
     if (noise > 0) floor[k] = noise;
@@ -99,7 +101,10 @@ SUREFOOT_INLINE Fit calibrate(const BoundSimulator& bound, const Hypothesis& nom
   }
   for (int round = 0; round < reweightings; ++round) {
     const auto trajectories = simulate_all(bound, best.hypothesis, problem.recordings, problem.integration, parallel);
-    problem.weighting.sigma = residual_sizes(bound, problem.recordings, trajectories).cwiseMax(floor);
+    problem.weighting.sigma = residual_sizes(bound, problem.recordings, trajectories);
+    for (Eigen::Index k = 0; k < floor.size(); ++k) {
+      problem.weighting.sigma[k] = std::max(problem.weighting.sigma[k], floor[k]);
+    }
     problem.weighting.scale = recording_scales(bound, problem, trajectories);
     best = fit(bound, best.hypothesis, problem, parallel);
   }

@@ -12,6 +12,7 @@
 
 #include "surefoot/diagnose/simulation/simulation_run.hpp"
 #include "surefoot/diagnose/simulation/structure.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -64,9 +65,9 @@ class SimulatorPool {
   std::vector<std::vector<S>> idle_;
 };
 
-double root_mean_square(const Eigen::Ref<const Eigen::RowVectorXd>& values);
+double root_mean_square(const Eigen::VectorXd& values);
 
-double standard_deviation(const Eigen::Ref<const Eigen::RowVectorXd>& values);
+double standard_deviation(const Eigen::VectorXd& values);
 
 /// The nominal values of all parameters.
 Eigen::VectorXd nominal_parameters(const SimulatorInfo& info);

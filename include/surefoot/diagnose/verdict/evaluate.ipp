@@ -18,6 +18,7 @@
 #include "surefoot/diagnose/residual_tests/forest_correction.hpp"
 #include "surefoot/diagnose/residual_tests/whiteness.hpp"
 #include "surefoot/diagnose/verdict/evaluate.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -99,7 +100,8 @@ SUREFOOT_INLINE std::vector<ChannelMismatch> mismatch_by_output(const Estimation
     double count = 0;
     for (std::size_t i = 0; i < held_out.size(); ++i) {
       for (std::size_t m = 0; m < all.size(); ++m) {
-        sums[m] += series_of(bound, held_out[i], all[m]->runs.whole_held_out[i], output).squaredNorm();
+        const SimulatedRun& run = all[m]->runs.whole_held_out[i];
+        sums[m] += surefoot::detail::squared_norm(series_of(bound, held_out[i], run, output));
       }
       for (const Cell& cell : cells_of(bound.recordings[held_out[i]])) count += cell.output == output ? 1 : 0;
     }

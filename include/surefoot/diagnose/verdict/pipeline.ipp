@@ -56,8 +56,8 @@ SUREFOOT_INLINE Hypothesis nominal_with_known(const BoundSimulator& bound, const
   Hypothesis hypothesis = nominal_hypothesis(bound);
   for (const NamedEffect& named : options.known) {
     hypothesis.effects.push_back(attach(bound.info, named, effects));
-    hypothesis.values.emplace_back(
-        Eigen::Map<const Eigen::VectorXd>(named.values.data(), static_cast<Eigen::Index>(named.values.size())));
+    hypothesis.values.emplace_back(static_cast<Eigen::Index>(named.values.size()));
+    std::copy(named.values.begin(), named.values.end(), hypothesis.values.back().data());
   }
   return hypothesis;
 }
