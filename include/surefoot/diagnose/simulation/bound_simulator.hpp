@@ -102,8 +102,8 @@ BoundSimulator bind_simulator(const S& simulator, std::vector<Recording> recordi
     Eigen::VectorXd effort;
     std::vector<double> signal;
     for (Eigen::Index row = 0; row < states.cols(); ++row) {
-      run.probe(converted<typename S::State>(states.col(row)), row, effort, signal);
-      efforts.col(row) = effort;
+      run.probe(converted<typename S::State>(surefoot::detail::column_of(states, row)), row, effort, signal);
+      write(effort, efforts, row);
       for (std::size_t k = 0; k < signal.size(); ++k) signals(static_cast<Eigen::Index>(k), row) = signal[k];
     }
     pool->give_back(i, std::move(s));
