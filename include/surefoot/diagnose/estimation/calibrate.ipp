@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -35,7 +36,7 @@ SUREFOOT_INLINE std::vector<Hypothesis> scattered(const BoundSimulator& bound, c
       const double share = (cell + rng.uniform()) / static_cast<double>(points);
       value_of(start, variables[i]) = from_search(variables[i], low + share * (high - low));
     }
-    starts.push_back(start);
+    starts.push_back(std::move(start));
   }
   return starts;
 }

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -51,7 +52,7 @@ SUREFOOT_INLINE std::vector<std::vector<double>> deciles(const FeatureTable& tab
       const double cut = sorted[sorted.size() * static_cast<std::size_t>(k) / 10];
       if (cut > sorted.front() && (cuts.empty() || cut > cuts.back())) cuts.push_back(cut);
     }
-    result.push_back(cuts);
+    result.push_back(std::move(cuts));
   }
   return result;
 }

@@ -112,7 +112,7 @@ SUREFOOT_INLINE std::vector<ChannelMismatch> mismatch_by_output(const Estimation
     const double stated = bound.info.outputs[k].noise;
     channel.noise = stated > 0 ? stated : std::min(fast_noise(bound, setup.split.training, output), channel.rmse_after);
     channel.p_value = models.calibrated.by_output[k].p_value;
-    result.push_back(channel);
+    result.push_back(std::move(channel));
   }
   return result;
 }

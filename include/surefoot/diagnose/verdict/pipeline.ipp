@@ -180,11 +180,11 @@ SUREFOOT_INLINE void describe_models(const EstimationSetup& setup, const FittedM
   for (std::size_t e = 0; e < chosen.effects.size(); ++e) {
     FoundEffect found = describe(bound, chosen, e, &errors);
     if (e < known) {
-      diagnosis.known_effects.push_back(found);
+      diagnosis.known_effects.push_back(std::move(found));
       continue;
     }
     found.evidence = evidence_for(selection, e - known, run.seed);
-    diagnosis.effects.push_back(found);
+    diagnosis.effects.push_back(std::move(found));
   }
 }
 
