@@ -11,6 +11,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/vec.hpp"
+#include "surefoot/diagnose/estimation/exponentials.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
 #include "surefoot/diagnose/estimation/noise_regime.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
@@ -130,19 +131,6 @@ SUREFOOT_INLINE FinalResiduals final_residuals(const BoundSimulator& bound, std:
     add_outer_product(sequence.by_heading, turn);
   }
   return sequence;
-}
-
-/// exp() of each element; as Eigen computes it, which is not to the last bit that of the standard library.
-SUREFOOT_INLINE Eigen::VectorXd exponentials(const Eigen::VectorXd& x) {
-  using Packet = Eigen::internal::packet_traits<double>::type;
-  constexpr Eigen::Index together = Eigen::internal::packet_traits<double>::size;
-  Eigen::VectorXd result(x.size());
-  Eigen::Index i = 0;
-  for (; i + together <= x.size(); i += together) {
-    Eigen::internal::pstoreu(&result[i], Eigen::internal::pexp(Eigen::internal::ploadu<Packet>(&x[i])));
-  }
-  for (; i < x.size(); ++i) result[i] = std::exp(x[i]);
-  return result;
 }
 
 /// For the logarithms of the four variances.

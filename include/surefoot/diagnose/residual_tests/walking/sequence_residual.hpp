@@ -30,9 +30,9 @@ struct WalkedStep {
 
 /// Typical sizes of what steps are compared by.
 struct StepScales {
-  Eigen::VectorXd input;                           // of each input
+  Eigen::VectorXd input;             // of each input
   Eigen::Vector3d step = {0, 0, 0};  // of a step forward, to the side and of its turn [m, m, rad]
-  double extent = 0;                               // farthest that x or y gets from 0 [m]
+  double extent = 0;                 // farthest that x or y gets from 0 [m]
 };
 
 StepScales step_scales(const BoundSimulator& bound, const Hypothesis& hypothesis,

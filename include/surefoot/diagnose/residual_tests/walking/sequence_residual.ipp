@@ -14,6 +14,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
+#include "surefoot/diagnose/estimation/exponentials.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
 #include "surefoot/diagnose/residual_tests/walking/sequence_residual.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
@@ -136,19 +137,6 @@ SUREFOOT_INLINE Eigen::MatrixXd sequence_covariance(const std::vector<std::vecto
   return covariance;
 }
 
-/// The sum of the logarithms; as Eigen computes them, which is not to the last bit as the standard library does.
-SUREFOOT_INLINE double sum_of_logarithms(const Eigen::VectorXd& x) {
-  using Packet = Eigen::internal::packet_traits<double>::type;
-  constexpr Eigen::Index together = Eigen::internal::packet_traits<double>::size;
-  Eigen::VectorXd logarithms(x.size());
-  Eigen::Index i = 0;
-  for (; i + together <= x.size(); i += together) {
-    Eigen::internal::pstoreu(&logarithms[i], Eigen::internal::plog(Eigen::internal::ploadu<Packet>(&x[i])));
-  }
-  for (; i < x.size(); ++i) logarithms[i] = std::log(x[i]);
-  return logarithms.sum();
-}
-
 SUREFOOT_INLINE double process_evidence(const Eigen::VectorXd& values, const Eigen::VectorXd& turned) {
   const auto n = static_cast<double>(turned.size());
   Eigen::VectorXd squares(turned.size()), variance(turned.size()), ratio(turned.size());
@@ -162,15 +150,16 @@ SUREFOOT_INLINE double process_evidence(const Eigen::VectorXd& values, const Eig
       }
       const double scale = std::max(ratio.mean(), 1e-12);
       const double null = std::log(std::max(squares.mean(), 1e-12));
-      best = std::max(best, n * (null - std::log(scale)) - sum_of_logarithms(variance));
+      best = std::max(best, n * (null - std::log(scale)) - logarithms(variance).sum());
     }
   }
   return best;
 }
 
-/// factor a x; the sums of as many columns at a time as Eigen takes, for any number of columns.
+/// factor a x; summed by as many columns at a time as Eigen takes: all if they are few, else 16, or 4 if they are long.
 SUREFOOT_INLINE Eigen::VectorXd scaled_product(double factor, const Eigen::MatrixXd& a, const Eigen::VectorXd& x) {
-  const Eigen::Index block = a.cols() < 128 ? std::max<Eigen::Index>(1, a.cols()) : a.rows() < 4000 ? 16 : 4;
+  constexpr Eigen::Index few = 128, long_rows = 4000;  // columns; rows of a column of 32 kB
+  const Eigen::Index block = a.cols() < few ? std::max<Eigen::Index>(1, a.cols()) : a.rows() < long_rows ? 16 : 4;
   Eigen::VectorXd result = Eigen::VectorXd::Zero(a.rows());
   for (Eigen::Index begin = 0; begin < a.cols(); begin += block) {
     Eigen::VectorXd sums = Eigen::VectorXd::Zero(a.rows());
@@ -205,7 +194,7 @@ SUREFOOT_INLINE Eigen::VectorXd predict_held_out(const Eigen::MatrixXd& covarian
         ratio[i] = turned[i] * turned[i] / variance[i];
         share[i] = turned[i] / variance[i];
       }
-      const double cost = sum_of_logarithms(variance) + ratio.sum();
+      const double cost = logarithms(variance).sum() + ratio.sum();
       if (cost >= least) continue;
       least = cost;
       weights = scaled_product(size, eigen.vectors, share);

@@ -73,7 +73,7 @@ SUREFOOT_INLINE double sign_flip_p_value(const std::vector<double>& terms) {
 }
 
 SUREFOOT_INLINE Eigen::MatrixXd left_by_slip(const std::vector<MeasuredSteps>& by_fold, std::size_t fold,
-                                              std::uint64_t seed) {
+                                             std::uint64_t seed) {
   Eigen::Index total = 0, at = 0;
   for (std::size_t g = 0; g < by_fold.size(); ++g) total += g == fold ? 0 : by_fold[g].place.cols();
   Dataset<Eigen::Dynamic, Eigen::Dynamic> known;
