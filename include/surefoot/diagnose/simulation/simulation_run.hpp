@@ -69,8 +69,7 @@ class SimulationRun {
     for (const EffectSlot& slot : m_.slots.sensors) {
       std::vector<double> readings;
       for (Eigen::Index row = 0; row < rows; ++row) readings.push_back(result.outputs(slot.at, row));
-      slot.effect->sensor(
-          {{recording_.time.data(), static_cast<std::size_t>(rows)}, readings}, slot.p);
+      slot.effect->sensor({{recording_.time.data(), static_cast<std::size_t>(rows)}, readings}, slot.p);
       for (Eigen::Index row = 0; row < rows; ++row) {
         result.outputs(slot.at, row) = readings[static_cast<std::size_t>(row)];
       }
