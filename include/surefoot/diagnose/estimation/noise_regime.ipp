@@ -49,7 +49,7 @@ SUREFOOT_INLINE Eigen::MatrixXd step_correlations(const BoundSimulator& bound, c
       for (Eigen::Index lag = 1; lag <= 3; ++lag) {
         products(k, lag - 1) += surefoot::detail::dot(off.data() + lag, off.data(), off.size() - lag);
       }
-      squares[k] += surefoot::detail::squared_norm(off);
+      squares[k] += surefoot::detail::sum_of_squares(off);
     }
   }
   for (Eigen::Index k = 0; k < outputs; ++k) {

@@ -90,7 +90,7 @@ SUREFOOT_INLINE NoiseFit best_memory(const std::vector<NoiseSeries>& series, con
 SUREFOOT_INLINE double typical_speed(const std::vector<NoiseSeries>& series) {
   double sum = 0, count = 0;
   for (const NoiseSeries& one : series) {
-    sum += surefoot::detail::squared_norm(one.speed);
+    sum += surefoot::detail::sum_of_squares(one.speed);
     count += static_cast<double>(one.speed.size());
   }
   return count > 0 ? std::sqrt(sum / count) : 0;

@@ -69,7 +69,7 @@ SUREFOOT_INLINE WhitenessTest test_whiteness(const BoundSimulator& bound, const 
     for (double& value : series) {
       value = std::isfinite(value) ? std::clamp(value, -5 * result.rms, 5 * result.rms) : 0.0;
     }
-    squares += surefoot::detail::squared_norm(series);
+    squares += surefoot::detail::sum_of_squares(series);
   }
   if (!(squares > 0)) return result;
   Eigen::VectorXd correlation = lagged_products(all, from, to);
@@ -88,11 +88,11 @@ SUREFOOT_INLINE WhitenessTest test_whiteness(const BoundSimulator& bound, const 
     }
     Eigen::VectorXd null = lagged_products(turned, from, to);
     null /= squares;
-    nulls.push_back(surefoot::detail::squared_norm(null));
+    nulls.push_back(surefoot::detail::sum_of_squares(null));
     mean += nulls.back() / draws;
   }
   for (const double null : nulls) variance += (null - mean) * (null - mean) / (draws - 1);
-  const double correlated = surefoot::detail::squared_norm(correlation);
+  const double correlated = surefoot::detail::sum_of_squares(correlation);
   result.p_value = chi_square_tail(correlated, mean, variance);
   const double excess = std::max(0.0, correlated - mean) / static_cast<double>(correlation.size());
   double largest = 0;

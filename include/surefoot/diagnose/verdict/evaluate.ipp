@@ -101,7 +101,7 @@ SUREFOOT_INLINE std::vector<ChannelMismatch> mismatch_by_output(const Estimation
     for (std::size_t i = 0; i < held_out.size(); ++i) {
       for (std::size_t m = 0; m < all.size(); ++m) {
         const SimulatedRun& run = all[m]->runs.whole_held_out[i];
-        sums[m] += surefoot::detail::squared_norm(series_of(bound, held_out[i], run, output));
+        sums[m] += surefoot::detail::sum_of_squares(series_of(bound, held_out[i], run, output));
       }
       for (const Cell& cell : cells_of(bound.recordings[held_out[i]])) count += cell.output == output ? 1 : 0;
     }

@@ -121,7 +121,7 @@ SUREFOOT_INLINE Eigen::MatrixXd sequence_covariance(const std::vector<std::vecto
         Eigen::VectorXd apart(one.features.size());
         for (const WalkedStep& other : sequences[b]) {
           for (Eigen::Index k = 0; k < apart.size(); ++k) apart[k] = one.features[k] - other.features[k];
-          const double near = std::exp(-0.5 * surefoot::detail::squared_norm(apart));
+          const double near = std::exp(-0.5 * surefoot::detail::sum_of_squares(apart));
           for (Eigen::Index k = 0; k < sum.size() && near > 1e-4; ++k) sum.data()[k] += near * other.lever.data()[k];
         }
         add_shared_change(block, one.lever, variance, sum);
@@ -284,7 +284,7 @@ SUREFOOT_INLINE bool SequenceTest::read_off(const KernelChoice& kernel, Sequence
     }
     off[i] = kernel.headings_only ? raw_residuals(bound, r, runs[i], cells)
                                   : weighted_residuals(bound, r, runs[i], cells, problem.weighting);
-    size += surefoot::detail::squared_norm(off[i]);
+    size += surefoot::detail::sum_of_squares(off[i]);
     for (Eigen::Index step = 0; step + 1 < runs[i].states.cols(); ++step) {
       Eigen::MatrixXd lever = lever_of_step(bound, runs[i], cells, step);
       if (!kernel.headings_only && r < whitening.size() && whitening[r].cols() == lever.rows()) {
