@@ -22,7 +22,7 @@ Eigen::VectorXd column_of(const Eigen::MatrixXd& a, Eigen::Index column);
 
 Eigen::VectorXd times(double factor, Eigen::VectorXd a);
 double norm(const Eigen::VectorXd& a);
-double squared_norm(const Eigen::VectorXd& a);
+double sum_of_squares(const Eigen::VectorXd& a);
 double column_norm(const Eigen::MatrixXd& a, Eigen::Index column);
 
 /// a b, with as many rows as columns, and a x.

@@ -62,9 +62,9 @@ SUREFOOT_INLINE Eigen::VectorXd times(double factor, Eigen::VectorXd a) {
   return a;
 }
 
-SUREFOOT_INLINE double norm(const Eigen::VectorXd& a) { return std::sqrt(squared_norm(a)); }
+SUREFOOT_INLINE double norm(const Eigen::VectorXd& a) { return std::sqrt(sum_of_squares(a)); }
 
-SUREFOOT_INLINE double squared_norm(const Eigen::VectorXd& a) { return dot(a.data(), a.data(), a.size()); }
+SUREFOOT_INLINE double sum_of_squares(const Eigen::VectorXd& a) { return dot(a.data(), a.data(), a.size()); }
 
 SUREFOOT_INLINE double column_norm(const Eigen::MatrixXd& a, Eigen::Index column) {
   const double* const first = a.data() + column * a.rows();

@@ -21,7 +21,7 @@
 
 namespace surefoot::diagnosis {
 
-using surefoot::detail::product, surefoot::detail::transposed_product, surefoot::detail::squared_norm;
+using surefoot::detail::product, surefoot::detail::transposed_product, surefoot::detail::sum_of_squares;
 
 SUREFOOT_INLINE Eigen::VectorXd OpenResiduals::beyond_parameters(const Eigen::VectorXd& change) const {
   if (basis.cols() == 0) return change;
@@ -42,7 +42,7 @@ SUREFOOT_INLINE OpenResiduals open_residuals(const BoundSimulator& bound, const 
   Eigen::VectorXd clipped = result.residuals;
   for (double& value : clipped) value = std::isfinite(value) ? std::clamp(value, -limit, limit) : 0.0;
   result.open = result.beyond_parameters(clipped);
-  result.energy = std::max(squared_norm(result.open), never_zero);
+  result.energy = std::max(sum_of_squares(result.open), never_zero);
   return result;
 }
 
@@ -89,7 +89,7 @@ SUREFOOT_INLINE Proposal predict_gain(const BoundSimulator& bound, const OpenRes
   for (Eigen::Index m = 0; m < count; ++m) {
     const Eigen::VectorXd signature = surefoot::detail::column_of(signatures, m);
     const Eigen::VectorXd beyond = open.beyond_parameters(signature);
-    all += squared_norm(signature);
+    all += sum_of_squares(signature);
     for (Eigen::Index i = 0; i < beyond.size(); ++i) distinct(i, m) = beyond[i];
   }
   const double left = surefoot::detail::dot(distinct.data(), distinct.data(), distinct.size());
@@ -120,7 +120,7 @@ SUREFOOT_INLINE Proposal predict_gain(const BoundSimulator& bound, const OpenRes
   }
   Eigen::VectorXd rest = product(distinct, share);
   for (Eigen::Index i = 0; i < rest.size(); ++i) rest[i] += open.open[i];
-  proposal.gain = 1 - squared_norm(rest) / open.energy;
+  proposal.gain = 1 - sum_of_squares(rest) / open.energy;
   return proposal;
 }
 
