@@ -1,4 +1,4 @@
-// The face of surefoot/diagnose, and the areas that it stands on: diagnosis of what a simulator leaves out.
+// The face of surefoot/diagnose, and core: diagnosis of what a simulator leaves out.
 #pragma once
 
 #include "surefoot/core.hpp"
@@ -14,5 +14,3 @@
 #include "surefoot/diagnose/simulate_augmented.hpp"
 #include "surefoot/diagnose/simulator.hpp"
 #include "surefoot/diagnose/text.hpp"
-#include "surefoot/forest.hpp"
-#include "surefoot/optimize.hpp"

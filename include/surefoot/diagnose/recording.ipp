@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -19,9 +20,15 @@ SUREFOOT_INLINE Recording part_of(const Recording& whole, Eigen::Index from, Eig
   Recording part;
   part.name = whole.name + "[" + std::to_string(from) + ":" + std::to_string(to) + "]";
   part.constants = whole.constants;
-  part.time = whole.time.segment(from, to - from);
-  part.inputs = whole.inputs.middleCols(from, to - from);
-  part.outputs = whole.outputs.middleCols(from, to - from);
+  const auto columns = [&](const Eigen::MatrixXd& all) {
+    Eigen::MatrixXd some(all.rows(), to - from);
+    std::copy_n(all.data() + from * all.rows(), some.size(), some.data());
+    return some;
+  };
+  part.time.resize(to - from);
+  std::copy_n(whole.time.data() + from, part.time.size(), part.time.data());
+  part.inputs = columns(whole.inputs);
+  part.outputs = columns(whole.outputs);
   part.initial = from == 0 ? whole.initial : initial;
   part.initial_scale = from == 0 ? whole.initial_scale : scale;
   return part;

@@ -12,6 +12,7 @@
 
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/residual_model.hpp"
 #include "surefoot/forest/forest.hpp"
 #include "surefoot/forest/serialize.hpp"
@@ -47,8 +48,9 @@ SUREFOOT_INLINE ResidualModel load_residual_model(const std::filesystem::path& p
   for (std::uint32_t i = 0; i < outputs; ++i) model.outputs.push_back(in.text());
   std::vector<double> scales;
   for (std::uint32_t i = 0; i < outputs; ++i) scales.push_back(in.f64());
-  model.scale = Eigen::Map<const Eigen::VectorXd>(scales.data(), static_cast<Eigen::Index>(scales.size()));
-  if (!model.scale.allFinite()) in.fail("has a scale that is not finite");
+  model.scale.resize(static_cast<Eigen::Index>(outputs));
+  std::copy(scales.begin(), scales.end(), model.scale.data());
+  if (!all_finite(model.scale)) in.fail("has a scale that is not finite");
   model.forest = read<ResidualForest>(in);
   in.expect_checksum();
   in.expect_end();

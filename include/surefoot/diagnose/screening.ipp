@@ -11,9 +11,11 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/diagnosis.hpp"
 #include "surefoot/diagnose/screening.hpp"
 #include "surefoot/diagnose/simulator.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot {
 
@@ -30,7 +32,7 @@ SUREFOOT_INLINE void check_recording(const SimulatorInfo& info, const Recording&
   }
   const auto states = static_cast<Eigen::Index>(info.states.size());
   if (recording.initial.size() != states || recording.initial_scale.size() != states ||
-      !recording.initial.allFinite()) {
+      !all_finite(recording.initial)) {
     fail("the initial state must have one finite value, and one scale, per state of the model");
   }
   for (Eigen::Index row = 0; row < recording.rows(); ++row) {
@@ -53,7 +55,7 @@ SUREFOOT_INLINE void check_recording(const SimulatorInfo& info, const Recording&
 SUREFOOT_INLINE std::vector<Remark> remove_outliers(const SimulatorInfo& info, Recording& recording) {
   std::vector<Remark> remarks;
   for (Eigen::Index k = 0; k < recording.outputs.rows(); ++k) {
-    const Eigen::RowVectorXd y = recording.outputs.row(k);
+    const Eigen::VectorXd y = detail::row_of(recording.outputs, k);
     std::vector<double> bends;
     for (Eigen::Index i = 1; i + 1 < y.size(); ++i) {
       const double bend = std::abs(y[i] - 0.5 * (y[i - 1] + y[i + 1]));
@@ -89,8 +91,10 @@ SUREFOOT_INLINE std::vector<Remark> screen(const SimulatorInfo& info, const std:
     const auto k = static_cast<Eigen::Index>(i);
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Recording& recording : recordings) {
-      low = std::min(low, recording.inputs.row(k).minCoeff());
-      high = std::max(high, recording.inputs.row(k).maxCoeff());
+      for (const double value : detail::row_of(recording.inputs, k)) {
+        low = std::min(low, value);
+        high = std::max(high, value);
+      }
     }
     if (!(high > low)) {
       remarks.push_back({"", "input " + info.inputs[i].name +
@@ -104,7 +108,7 @@ SUREFOOT_INLINE std::vector<Remark> screen(const SimulatorInfo& info, const std:
     for (const Recording& recording : recordings) {
       double low = std::numeric_limits<double>::infinity(), high = -low;
       Eigen::Index count = 0, at_edge = 0;
-      const auto y = recording.outputs.row(static_cast<Eigen::Index>(i));
+      const Eigen::VectorXd y = detail::row_of(recording.outputs, static_cast<Eigen::Index>(i));
       for (const double value : y) {
         if (!std::isfinite(value)) continue;
         low = std::min(low, value);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -29,8 +30,8 @@ SimulatedRun simulate_augmented(const S& simulator, const Augmented& augmented, 
   std::vector<Eigen::VectorXd> values;
   for (const NamedEffect& named : augmented.effects) {
     attached.push_back(attach(info, named, effects));
-    values.emplace_back(
-        Eigen::Map<const Eigen::VectorXd>(named.values.data(), static_cast<Eigen::Index>(named.values.size())));
+    values.emplace_back(static_cast<Eigen::Index>(named.values.size()));
+    std::copy(named.values.begin(), named.values.end(), values.back().data());
   }
   Eigen::VectorXd p(static_cast<Eigen::Index>(info.parameters.size()));
   for (std::size_t i = 0; i < info.parameters.size(); ++i) {

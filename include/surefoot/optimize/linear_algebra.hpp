@@ -16,8 +16,13 @@ namespace surefoot::detail {
 double dot(const double* a, const double* b, Eigen::Index count);
 double dot_by_two(const double* a, const double* b, Eigen::Index count);
 
+/// A row or a column of a matrix, as a vector.
+Eigen::VectorXd row_of(const Eigen::MatrixXd& a, Eigen::Index row);
+Eigen::VectorXd column_of(const Eigen::MatrixXd& a, Eigen::Index column);
+
 Eigen::VectorXd times(double factor, Eigen::VectorXd a);
 double norm(const Eigen::VectorXd& a);
+double sum_of_squares(const Eigen::VectorXd& a);
 double column_norm(const Eigen::MatrixXd& a, Eigen::Index column);
 
 /// a b, with as many rows as columns, and a x.

@@ -45,12 +45,26 @@ SUREFOOT_INLINE double dot_by_two(const double* a, const double* b, Eigen::Index
   return count % 2 == 0 ? s0 + s1 : s0 + s1 + a[count - 1] * b[count - 1];
 }
 
+SUREFOOT_INLINE Eigen::VectorXd row_of(const Eigen::MatrixXd& a, Eigen::Index row) {
+  Eigen::VectorXd result(a.cols());
+  for (Eigen::Index j = 0; j < a.cols(); ++j) result[j] = a(row, j);
+  return result;
+}
+
+SUREFOOT_INLINE Eigen::VectorXd column_of(const Eigen::MatrixXd& a, Eigen::Index column) {
+  Eigen::VectorXd result(a.rows());
+  for (Eigen::Index i = 0; i < a.rows(); ++i) result[i] = a(i, column);
+  return result;
+}
+
 SUREFOOT_INLINE Eigen::VectorXd times(double factor, Eigen::VectorXd a) {
   for (double& value : a) value *= factor;
   return a;
 }
 
-SUREFOOT_INLINE double norm(const Eigen::VectorXd& a) { return std::sqrt(dot(a.data(), a.data(), a.size())); }
+SUREFOOT_INLINE double norm(const Eigen::VectorXd& a) { return std::sqrt(sum_of_squares(a)); }
+
+SUREFOOT_INLINE double sum_of_squares(const Eigen::VectorXd& a) { return dot(a.data(), a.data(), a.size()); }
 
 SUREFOOT_INLINE double column_norm(const Eigen::MatrixXd& a, Eigen::Index column) {
   const double* const first = a.data() + column * a.rows();

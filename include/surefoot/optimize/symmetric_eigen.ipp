@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/optimize/householder.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
 #include "surefoot/optimize/symmetric_eigen.hpp"
 
@@ -20,21 +21,6 @@ struct TridiagonalForm {
   Eigen::VectorXd diagonal, subdiagonal;
   double scale = 1;
 };
-
-/// Replaces x[1] to x[count - 1] by the rest of a vector v with v[0] = 1 for which (1 - factor v v^T) x = (x[0], 0,
-/// ...) with the new x[0].
-SUREFOOT_INLINE void reflect(double* x, Eigen::Index count, double& factor) {
-  const double rest = dot(x + 1, x + 1, count - 1);
-  factor = 0;
-  if (rest <= std::numeric_limits<double>::min()) {
-    for (Eigen::Index i = 1; i < count; ++i) x[i] = 0;
-    return;
-  }
-  const double first = x[0], length = std::sqrt(first * first + rest);
-  x[0] = first >= 0 ? -length : length;
-  for (Eigen::Index i = 1; i < count; ++i) x[i] /= first - x[0];
-  factor = (x[0] - first) / x[0];
-}
 
 SUREFOOT_INLINE TridiagonalForm tridiagonal_form(const Eigen::MatrixXd& symmetric) {
   using LowerTimesVector = Eigen::internal::selfadjoint_matrix_vector_product<double, Eigen::Index, Eigen::ColMajor,
@@ -76,19 +62,8 @@ SUREFOOT_INLINE Eigen::MatrixXd product_of_reflections(const TridiagonalForm& fo
   const Eigen::Index n = form.diagonal.size();
   Eigen::MatrixXd q = Eigen::MatrixXd::Identity(n, n);
   for (Eigen::Index k = n - 1; k-- > 0;) {
-    const double factor = form.factors[k];
-    const Eigen::Index below = k + 2, count = n - below;
-    if (count == 0) {
-      q(n - 1, n - 1) *= 1 - factor;
-      continue;
-    }
-    if (factor == 0) continue;
-    const double* const v = &form.reflections(below, k);
-    for (Eigen::Index j = k + 1; j < n; ++j) {
-      const double along = dot_by_two(v, &q(below, j), count) + q(k + 1, j);
-      q(k + 1, j) -= factor * along;
-      for (Eigen::Index i = 0; i < count; ++i) q(below + i, j) -= factor * v[i] * along;
-    }
+    const double* const rest = k + 2 < n ? &form.reflections(k + 2, k) : nullptr;
+    apply_reflection(rest, form.factors[k], q, k + 1, k + 1);
   }
   return q;
 }

@@ -14,7 +14,10 @@ namespace {
 
 std::vector<Recording> named(std::size_t count) {
   std::vector<Recording> recordings(count);
-  for (std::size_t i = 0; i < count; ++i) recordings[i].name = "r" + std::to_string(i);
+  for (std::size_t i = 0; i < count; ++i) {
+    recordings[i].name = 'r';
+    recordings[i].name += std::to_string(i);
+  }
   return recordings;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -28,7 +29,7 @@ inline Effect cogging() {
                           .high = 10,
                           .starts = {0.2, 0.217, 0.235, 0.253, 0.274, 0.3, 0.33, 0.364, 0.41, 0.465, 0.54, 0.645, 0.8,
                                      1.05, 1.5, 2.9}}},
-          .confusable_with = {"gravity_offset", "stribeck_friction", "cubic_stiffness"},
+          .confusable_with = names_of({"gravity_offset", "stribeck_friction", "cubic_stiffness"}),
           .experiment = "turn through the whole range slowly and steadily, both ways",
           .force = [](const EffectContext& m, Values p, Values) {
             const double phase = 2 * std::numbers::pi * m.position / p[2];

@@ -2,6 +2,7 @@
 // Confusable with a leak when the state hardly changes, and with a drift of its sensor.
 #pragma once
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -11,9 +12,9 @@ inline Effect constant_rate() {
       .name = "constant_rate",
       .sentence = "a constant change of {rate} at {at}",
       .place = Place::state,
-      .parameters =
-          {{.name = "rate", .measure = {.effort = 1}, .low = -3, .high = 3, .starts = {0.003, 0.1}, .strength = true}},
-      .confusable_with = {"leak", "sensor_drift", "input_gain"},
+      .parameters = parameters_of(
+          {{.name = "rate", .measure = {.effort = 1}, .low = -3, .high = 3, .starts = {0.003, 0.1}, .strength = true}}),
+      .confusable_with = names_of({"leak", "sensor_drift", "input_gain"}),
       .experiment = "stop every input at a low and at a high level and wait",
       .force = [](const EffectContext&, Values p, Values) { return p[0]; }};
 }

@@ -5,6 +5,7 @@
 // never changes, and with hysteresis and a dead zone, which also swallow small motions.
 #pragma once
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -14,10 +15,10 @@ inline Effect coulomb_friction() {
       .name = "coulomb_friction",
       .sentence = "dry friction of {level} at {at}",
       .place = Place::velocity,
-      .parameters =
-          {{.name = "level", .measure = {.effort = 1}, .low = 0, .high = 3, .starts = {0.003, 0.1}, .strength = true}},
-      .confusable_with = {"stribeck_friction", "load_dependent_friction", "hysteresis", "viscous_friction",
-                          "dead_zone"},
+      .parameters = parameters_of(
+          {{.name = "level", .measure = {.effort = 1}, .low = 0, .high = 3, .starts = {0.003, 0.1}, .strength = true}}),
+      .confusable_with =
+          names_of({"stribeck_friction", "load_dependent_friction", "hysteresis", "viscous_friction", "dead_zone"}),
       .experiment = "a slow ramp with reversals, at a few speeds down to the slowest that still moves",
       .dry = [](const EffectContext&, Values p) { return p[0]; }};
 }

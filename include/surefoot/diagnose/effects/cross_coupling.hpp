@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -17,7 +18,7 @@ inline Effect coupling(double Pose2::*from, double Pose2::*to, const std::string
           .sentence = from_name + " motion causes " + to_name + " motion, {gain}",
           .place = Place::planar,
           .parameters = {std::move(gain)},
-          .confusable_with = {"body_drift", "input_asymmetry", "ground_slope"},
+          .confusable_with = names_of({"body_drift", "input_asymmetry", "ground_slope"}),
           .experiment = "walks with " + from_name + " steps alone, both ways and in two sizes",
           .form = from_name + "_to_" + to_name,
           .planar = [from, to](const Pose2& displacement, double, Values p) {

@@ -3,6 +3,7 @@
 // Confusable with a linear spring of the model at one amplitude, and with a soft end stop.
 #pragma once
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -12,13 +13,13 @@ inline Effect cubic_stiffness() {
       .name = "cubic_stiffness",
       .sentence = "a spring that hardens with the cube of the position, {stiffness}, at {at}",
       .place = Place::velocity,
-      .parameters = {{.name = "stiffness",
-                      .measure = {.effort = 1, .position = -3},
-                      .low = -3,
-                      .high = 3,
-                      .starts = {0.003, 0.1},
-                      .strength = true}},
-      .confusable_with = {"end_stop", "gravity_offset", "saturation"},
+      .parameters = parameters_of({{.name = "stiffness",
+                                    .measure = {.effort = 1, .position = -3},
+                                    .low = -3,
+                                    .high = 3,
+                                    .starts = {0.003, 0.1},
+                                    .strength = true}}),
+      .confusable_with = names_of({"end_stop", "gravity_offset", "saturation"}),
       .experiment = "free oscillations, or slow sweeps, at a small and at the largest amplitude",
       .force = [](const EffectContext& m, Values p, Values) { return -p[0] * m.position * m.position * m.position; }};
 }

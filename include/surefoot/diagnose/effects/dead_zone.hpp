@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -17,13 +18,13 @@ inline Effect dead_zone() {
   return {.name = "dead_zone",
           .sentence = "a dead zone of {width} to either side of {at}",
           .place = Place::input,
-          .parameters = {{.name = "width",
-                          .measure = {.value = 1},
-                          .low = 0,
-                          .high = 2,
-                          .starts = {0.003, 0.05, 0.2},
-                          .strength = true}},
-          .confusable_with = {"coulomb_friction", "input_gain", "backlash"},
+          .parameters = parameters_of({{.name = "width",
+                                        .measure = {.value = 1},
+                                        .low = 0,
+                                        .high = 2,
+                                        .starts = {0.003, 0.05, 0.2},
+                                        .strength = true}}),
+          .confusable_with = names_of({"coulomb_friction", "input_gain", "backlash"}),
           .experiment = "small inputs that grow slowly from zero, both ways",
           .signal = [](const EffectContext& m, Values p, Values) {
             return std::max(m.value - p[0], 0.0) + std::min(m.value + p[0], 0.0);
@@ -34,8 +35,9 @@ inline Effect dead_zone_step() {
   return {.name = "dead_zone",
           .sentence = "{at} does nothing below {width} to either side",
           .place = Place::input,
-          .parameters = {{.name = "width", .measure = {.value = 1}, .low = 0.01, .high = 2, .starts = {0.1, 0.3, 0.6}}},
-          .confusable_with = {"coulomb_friction", "backlash"},
+          .parameters = parameters_of(
+              {{.name = "width", .measure = {.value = 1}, .low = 0.01, .high = 2, .starts = {0.1, 0.3, 0.6}}}),
+          .confusable_with = names_of({"coulomb_friction", "backlash"}),
           .experiment = "small inputs that grow slowly from zero, both ways",
           .form = "step",
           .signal = [](const EffectContext& m, Values p, Values) {

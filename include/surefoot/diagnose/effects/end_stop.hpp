@@ -3,6 +3,7 @@
 // Confusable with a limit of the input (the machine does not get further) and with a hardening spring.
 #pragma once
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/detail/extremes.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
@@ -11,24 +12,25 @@ namespace surefoot::effects {
 // side +1: upper, -1: lower
 template <int Side>
 Effect end_stop_of(std::string form) {
-  return {.name = "end_stop",
-          .sentence = "an end stop at {level} that returns {restitution} of the speed, at {at}",
-          .place = Place::velocity,
-          .parameters = {{.name = "level",
-                          .measure = {.position = 1},
-                          .low = -12,
-                          .high = 12,
-                          .starts = {0.6 * Side, 1.0 * Side, 1.5 * Side}},
-                         {.name = "restitution", .measure = {}, .low = 0, .high = 0.95, .starts = {0.1}}},
-          .confusable_with = {"saturation", "cubic_stiffness", "coulomb_friction"},
-          .experiment = "push slowly against the suspected stop, then hit it at two speeds",
-          .form = std::move(form),
-          .suggest = Side > 0 ? near_largest : near_smallest,
-          .limit = [](Values p, double& value, double& position, double&) {
-            if (Side * (position - p[0]) <= 0) return;
-            position = p[0];
-            if (Side * value > 0) value *= -p[1];
-          }};
+  return {
+      .name = "end_stop",
+      .sentence = "an end stop at {level} that returns {restitution} of the speed, at {at}",
+      .place = Place::velocity,
+      .parameters = parameters_of({{.name = "level",
+                                    .measure = {.position = 1},
+                                    .low = -12,
+                                    .high = 12,
+                                    .starts = {0.6 * Side, 1.0 * Side, 1.5 * Side}},
+                                   {.name = "restitution", .measure = {}, .low = 0, .high = 0.95, .starts = {0.1}}}),
+      .confusable_with = names_of({"saturation", "cubic_stiffness", "coulomb_friction"}),
+      .experiment = "push slowly against the suspected stop, then hit it at two speeds",
+      .form = std::move(form),
+      .suggest = Side > 0 ? near_largest : near_smallest,
+      .limit = [](Values p, double& value, double& position, double&) {
+        if (Side * (position - p[0]) <= 0) return;
+        position = p[0];
+        if (Side * value > 0) value *= -p[1];
+      }};
 }
 
 inline Effect end_stop_upper() { return end_stop_of<1>("upper"); }

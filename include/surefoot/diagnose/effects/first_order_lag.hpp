@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -15,13 +16,13 @@ inline Effect first_order_lag() {
   return {.name = "first_order_lag",
           .sentence = "{at} acts with a lag of {time}",
           .place = Place::input,
-          .parameters = {{.name = "time",
-                          .measure = {.time = 1},
-                          .low = 0.002,
-                          .high = 2,
-                          .starts = {0.003, 0.01, 0.05, 0.25},
-                          .strength = true}},
-          .confusable_with = {"input_delay", "rate_limit", "sensor_delay", "joint_elasticity"},
+          .parameters = parameters_of({{.name = "time",
+                                        .measure = {.time = 1},
+                                        .low = 0.002,
+                                        .high = 2,
+                                        .starts = {0.003, 0.01, 0.05, 0.25},
+                                        .strength = true}}),
+          .confusable_with = names_of({"input_delay", "rate_limit", "sensor_delay", "joint_elasticity"}),
           .experiment =
               "sharp steps of the input at random times: after a lag it starts at once, after a delay nothing "
               "moves",

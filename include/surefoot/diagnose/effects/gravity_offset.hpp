@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -13,13 +14,13 @@ inline Effect gravity_offset() {
   return {.name = "gravity_offset",
           .sentence = "weight off the assumed line, {weight} at angle 0, at {at}",
           .place = Place::velocity,
-          .parameters = {{.name = "weight",
-                          .measure = {.effort = 1},
-                          .low = -3,
-                          .high = 3,
-                          .starts = {0.003, 0.1},
-                          .strength = true}},
-          .confusable_with = {"constant_force", "sensor_bias", "cogging"},
+          .parameters = parameters_of({{.name = "weight",
+                                        .measure = {.effort = 1},
+                                        .low = -3,
+                                        .high = 3,
+                                        .starts = {0.003, 0.1},
+                                        .strength = true}}),
+          .confusable_with = names_of({"constant_force", "sensor_bias", "cogging"}),
           .experiment = "hold angles over at least half a turn, each reached from both sides",
           .force = [](const EffectContext& m, Values p, Values) { return p[0] * std::cos(m.position); }};
 }

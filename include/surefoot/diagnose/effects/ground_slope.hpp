@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -24,7 +25,7 @@ inline Effect ground_slope() {
           .sentence = "the ground carries each step by {x} along x and {y} along y of the world",
           .place = Place::planar,
           .parameters = {x, y},
-          .confusable_with = {"body_drift", "input_asymmetry"},
+          .confusable_with = names_of({"body_drift", "input_asymmetry"}),
           .experiment = "the same walk with headings all around the circle",
           .planar = [](const Pose2& displacement, double heading, Values p) {
             return moved_in_world(displacement, heading, p[0], p[1]);
@@ -39,7 +40,7 @@ inline Effect ground_slope_distance() {
           .sentence = "the ground carries the robot by {x} along x and {y} along y of the world, per distance walked",
           .place = Place::planar,
           .parameters = {x, y},
-          .confusable_with = {"body_drift", "input_gain"},
+          .confusable_with = names_of({"body_drift", "input_gain"}),
           .experiment = "walks with short and long steps, with headings all around the circle",
           .form = "distance",
           .planar = [](const Pose2& displacement, double heading, Values p) {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -38,10 +39,10 @@ Effect hysteresis_of(std::string form) {
       .name = "hysteresis",
       .sentence = "hysteresis of {force}, reached after {width} of travel, at {at}",
       .place = Place::velocity,
-      .parameters =
+      .parameters = parameters_of(
           {{.name = "force", .measure = {.effort = 1}, .low = 0, .high = 3, .starts = {0.003, 0.1}, .strength = true},
-           {.name = "width", .measure = {.position = 1}, .low = 0.005, .high = 2, .starts = {0.02, 0.1, 0.5}}},
-      .confusable_with = {"coulomb_friction", "backlash", "stribeck_friction"},
+           {.name = "width", .measure = {.position = 1}, .low = 0.005, .high = 2, .starts = {0.02, 0.1, 0.5}}}),
+      .confusable_with = names_of({"coulomb_friction", "backlash", "stribeck_friction"}),
       .experiment = "slow reversals of growing amplitude, from far below to far above the width",
       .form = std::move(form),
       .hidden_states = 2,

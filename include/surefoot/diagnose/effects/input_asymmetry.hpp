@@ -2,6 +2,7 @@
 // Confusable with a constant force (when the input is always about as large) and with a gain (when it is one-sided).
 #pragma once
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -11,9 +12,9 @@ inline Effect input_asymmetry() {
       .name = "input_asymmetry",
       .sentence = "{at} acts more to the positive side, by {asymmetry} of its value, and less to the negative",
       .place = Place::input,
-      .parameters =
-          {{.name = "asymmetry", .measure = {}, .low = -0.95, .high = 0.95, .starts = {0.003, 0.1}, .strength = true}},
-      .confusable_with = {"constant_force", "input_gain", "body_drift", "sensor_bias"},
+      .parameters = parameters_of(
+          {{.name = "asymmetry", .measure = {}, .low = -0.95, .high = 0.95, .starts = {0.003, 0.1}, .strength = true}}),
+      .confusable_with = names_of({"constant_force", "input_gain", "body_drift", "sensor_bias"}),
       .experiment = "the same steps of the input to either side, in two sizes",
       .signal = [](const EffectContext& m, Values p, Values) { return m.value * (m.value > 0 ? 1 + p[0] : 1 - p[0]); }};
 }

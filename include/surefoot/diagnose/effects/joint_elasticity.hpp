@@ -3,6 +3,7 @@
 // Confusable with a larger inertia (slow motions), with a lag of the input, and with backlash, which gives way too.
 #pragma once
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/detail/two_masses.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
@@ -15,18 +16,19 @@ inline Effect joint_elasticity() {
       .name = "joint_elasticity",
       .sentence = "an elastic joint with {ratio} times the inertia behind it, swinging at {frequency}, at {at}",
       .place = Place::velocity,
-      .parameters = {{.name = "ratio", .measure = {}, .low = 0, .high = 10, .starts = {0.01}, .strength = true},
-                     {.name = "frequency",  // of the two against each other [rad/s]
-                      .measure = {.time = -1},
-                      .low = 5,
-                      .high = 200,
-                      .starts = {10, 16, 25, 40, 65, 110}},
-                     {.name = "damping",  // share of the critical one
-                      .measure = {},
-                      .low = 0.01,
-                      .high = 1,
-                      .starts = {0.1}}},
-      .confusable_with = {"backlash", "first_order_lag", "input_delay"},
+      .parameters =
+          parameters_of({{.name = "ratio", .measure = {}, .low = 0, .high = 10, .starts = {0.01}, .strength = true},
+                         {.name = "frequency",  // of the two against each other [rad/s]
+                          .measure = {.time = -1},
+                          .low = 5,
+                          .high = 200,
+                          .starts = {10, 16, 25, 40, 65, 110}},
+                         {.name = "damping",  // share of the critical one
+                          .measure = {},
+                          .low = 0.01,
+                          .high = 1,
+                          .starts = {0.1}}}),
+      .confusable_with = names_of({"backlash", "first_order_lag", "input_delay"}),
       .experiment = "a chirp over the suspected frequency, and sharp stops with the ringing recorded",
       .hidden_states = 3,
       .force = [](const EffectContext& m, Values p, Values hidden) { return force_of(elastic_joint(p), m, hidden); },

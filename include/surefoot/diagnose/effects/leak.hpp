@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -15,13 +16,13 @@ inline Effect leak() {
   return {.name = "leak",
           .sentence = "a leak that grows with {at}, {leak}",
           .place = Place::state,
-          .parameters = {{.name = "leak",
-                          .measure = {.effort = 1, .value = -1},
-                          .low = -3,
-                          .high = 3,
-                          .starts = {0.003, 0.1},
-                          .strength = true}},
-          .confusable_with = {"constant_rate", "input_gain", "overflow"},
+          .parameters = parameters_of({{.name = "leak",
+                                        .measure = {.effort = 1, .value = -1},
+                                        .low = -3,
+                                        .high = 3,
+                                        .starts = {0.003, 0.1},
+                                        .strength = true}}),
+          .confusable_with = names_of({"constant_rate", "input_gain", "overflow"}),
           .experiment = "fill it up, stop every input and record the decay until little is left",
           .needs_conserved_state = true,
           .force = [](const EffectContext& m, Values p, Values) { return -p[0] * m.value; }};
@@ -31,13 +32,13 @@ inline Effect leak_hole() {
   return {.name = "leak",
           .sentence = "a leak through a hole, {rate_at_one} at level 1, at {at}",
           .place = Place::state,
-          .parameters = {{.name = "rate_at_one",
-                          .measure = {.effort = 1},
-                          .low = 0,
-                          .high = 10,
-                          .starts = {0.003, 0.1},
-                          .strength = true}},
-          .confusable_with = {"constant_rate", "input_gain", "overflow"},
+          .parameters = parameters_of({{.name = "rate_at_one",
+                                        .measure = {.effort = 1},
+                                        .low = 0,
+                                        .high = 10,
+                                        .starts = {0.003, 0.1},
+                                        .strength = true}}),
+          .confusable_with = names_of({"constant_rate", "input_gain", "overflow"}),
           .experiment = "fill it up, stop every input and record the decay until little is left",
           .form = "hole",
           .needs_conserved_state = true,

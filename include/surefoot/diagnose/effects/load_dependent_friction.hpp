@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -17,9 +18,9 @@ inline Effect load_friction(std::string form, std::string sentence,
           .sentence = std::move(sentence),
           .place = Place::velocity,
           // below 1: a joint whose friction exceeds the force that causes it would lock itself
-          .parameters =
-              {{.name = "factor", .measure = {}, .low = 0, .high = 0.9, .starts = {0.003, 0.1}, .strength = true}},
-          .confusable_with = {"coulomb_friction", "stribeck_friction", "input_gain"},
+          .parameters = parameters_of(
+              {{.name = "factor", .measure = {}, .low = 0, .high = 0.9, .starts = {0.003, 0.1}, .strength = true}}),
+          .confusable_with = names_of({"coulomb_friction", "stribeck_friction", "input_gain"}),
           .experiment = "the same slow ramp with reversals under two or three different loads",
           .form = std::move(form),
           .needs_drive = true,

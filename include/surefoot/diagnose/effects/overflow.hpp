@@ -2,6 +2,7 @@
 // Confusable with a clipped sensor or a limited input, which also cut the top off.
 #pragma once
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/detail/extremes.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
@@ -11,13 +12,13 @@ inline Effect overflow() {
   return {.name = "overflow",
           .sentence = "{at} overflows at {level}",
           .place = Place::state,
-          .parameters = {{.name = "level",
-                          .measure = {.value = 1},
-                          .low = 0.1,
-                          .high = 4,
-                          .starts = {0.7, 0.85, 0.95},
-                          .of_peak = true}},
-          .confusable_with = {"saturation", "leak"},
+          .parameters = parameters_of({{.name = "level",
+                                        .measure = {.value = 1},
+                                        .low = 0.1,
+                                        .high = 4,
+                                        .starts = {0.7, 0.85, 0.95},
+                                        .of_peak = true}}),
+          .confusable_with = names_of({"saturation", "leak"}),
           .experiment = "fill it well beyond the suspected level, slowly and quickly, and let it fall again",
           .needs_conserved_state = true,
           .suggest = near_largest,
@@ -30,14 +31,14 @@ inline Effect overflow_spill() {
   return {.name = "overflow",
           .sentence = "{at} overflows at {level}, and {share} of what is lost arrives elsewhere",
           .place = Place::state,
-          .parameters = {{.name = "level",
-                          .measure = {.value = 1},
-                          .low = 0.1,
-                          .high = 4,
-                          .starts = {0.7, 0.85, 0.95},
-                          .of_peak = true},
-                         {.name = "share", .measure = {}, .low = 0, .high = 2, .starts = {0.8}}},
-          .confusable_with = {"saturation", "leak"},
+          .parameters = parameters_of({{.name = "level",
+                                        .measure = {.value = 1},
+                                        .low = 0.1,
+                                        .high = 4,
+                                        .starts = {0.7, 0.85, 0.95},
+                                        .of_peak = true},
+                                       {.name = "share", .measure = {}, .low = 0, .high = 2, .starts = {0.8}}}),
+          .confusable_with = names_of({"saturation", "leak"}),
           .experiment = "fill it well beyond the suspected level, slowly and quickly, and watch where it goes",
           .form = "spill",
           .needs_conserved_state = true,

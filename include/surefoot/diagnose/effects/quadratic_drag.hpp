@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -13,13 +14,13 @@ inline Effect quadratic_drag() {
   return {.name = "quadratic_drag",
           .sentence = "drag that grows with the square of speed, {drag}, at {at}",
           .place = Place::velocity,
-          .parameters = {{.name = "drag",
-                          .measure = {.effort = 1, .value = -2},
-                          .low = 0,
-                          .high = 5,
-                          .starts = {0.003, 0.1},
-                          .strength = true}},
-          .confusable_with = {"viscous_friction", "coulomb_friction"},
+          .parameters = parameters_of({{.name = "drag",
+                                        .measure = {.effort = 1, .value = -2},
+                                        .low = 0,
+                                        .high = 5,
+                                        .starts = {0.003, 0.1},
+                                        .strength = true}}),
+          .confusable_with = names_of({"viscous_friction", "coulomb_friction"}),
           .experiment = "let it coast freely from the highest speed down to rest",
           .force = [](const EffectContext& m, Values p, Values) { return -p[0] * m.value * std::abs(m.value); }};
 }

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/detail/sensor_steps.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
@@ -23,12 +24,12 @@ inline Effect quantization() {
   return {.name = "quantization",
           .sentence = "the sensor {at} reads in steps of {step}",
           .place = Place::output,
-          .parameters = {{.name = "step",
-                          .measure = {.value = 1},
-                          .low = 0.001,
-                          .high = 2,
-                          .starts = {0.01, 0.03, 0.1, 0.2, 0.4, 0.8}}},
-          .confusable_with = {"backlash"},
+          .parameters = parameters_of({{.name = "step",
+                                        .measure = {.value = 1},
+                                        .low = 0.001,
+                                        .high = 2,
+                                        .starts = {0.01, 0.03, 0.1, 0.2, 0.4, 0.8}}}),
+          .confusable_with = names_of({"backlash"}),
           .experiment = "the slowest motion possible through many steps of the sensor",
           .suggest = [](Values readings, Values simulated) { return sensor_steps(readings, simulated, 0.5); },
           .sensor =

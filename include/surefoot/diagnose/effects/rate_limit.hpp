@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -14,12 +15,12 @@ inline Effect rate_limit() {
   return {.name = "rate_limit",
           .sentence = "{at} changes by {rate} at most",
           .place = Place::input,
-          .parameters = {{.name = "rate",
-                          .measure = {.value = 1, .time = -1},
-                          .low = 0.02,
-                          .high = 1000,
-                          .starts = {0.3, 1, 3, 10, 40}}},
-          .confusable_with = {"first_order_lag", "input_delay", "saturation"},
+          .parameters = parameters_of({{.name = "rate",
+                                        .measure = {.value = 1, .time = -1},
+                                        .low = 0.02,
+                                        .high = 1000,
+                                        .starts = {0.3, 1, 3, 10, 40}}}),
+          .confusable_with = names_of({"first_order_lag", "input_delay", "saturation"}),
           .experiment = "steps of the input of several sizes: the time to follow grows with the size",
           .hidden_states = 1,
           .start = [](const EffectContext& m, Values, HiddenStates hidden) { hidden[0] = m.value; },

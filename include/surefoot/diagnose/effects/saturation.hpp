@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -21,7 +22,7 @@ inline Effect saturation() {
           .sentence = "{at} is limited to {level} either way",
           .place = Place::input,
           .parameters = {saturation_level({0.4, 0.6, 0.8, 0.93})},
-          .confusable_with = {"input_gain", "supply_sag", "rate_limit", "slip_saturation"},
+          .confusable_with = names_of({"input_gain", "supply_sag", "rate_limit", "slip_saturation"}),
           .experiment = "steps of the input of growing size, up to the largest",
           .signal = [](const EffectContext& m, Values p, Values) { return std::clamp(m.value, -p[0], p[0]); }};
 }
@@ -31,7 +32,7 @@ inline Effect saturation_soft() {
           .sentence = "{at} levels off at {level} either way",
           .place = Place::input,
           .parameters = {saturation_level({0.5, 0.8, 1.3, 2.5})},
-          .confusable_with = {"input_gain", "supply_sag", "slip_saturation"},
+          .confusable_with = names_of({"input_gain", "supply_sag", "slip_saturation"}),
           .experiment = "steps of the input of growing size, up to the largest",
           .form = "soft",
           .signal = [](const EffectContext& m, Values p, Values) { return p[0] * std::tanh(m.value / p[0]); }};

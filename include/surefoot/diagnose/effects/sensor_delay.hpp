@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -33,13 +34,13 @@ inline Effect sensor_delay() {
   return {.name = "sensor_delay",
           .sentence = "the sensor {at} reads {delay} late",
           .place = Place::output,
-          .parameters = {{.name = "delay",
-                          .measure = {.time = 1},
-                          .low = 0,
-                          .high = 0.5,
-                          .starts = {0.002, 0.01, 0.05},
-                          .strength = true}},
-          .confusable_with = {"input_delay", "first_order_lag", "backlash"},
+          .parameters = parameters_of({{.name = "delay",
+                                        .measure = {.time = 1},
+                                        .low = 0,
+                                        .high = 0.5,
+                                        .starts = {0.002, 0.01, 0.05},
+                                        .strength = true}}),
+          .confusable_with = names_of({"input_delay", "first_order_lag", "backlash"}),
           .experiment = "move it by hand, or by a known drive, past a mark seen by a second sensor",
           .sensor = [](const Series& series, Values p) { read_late(series, p[0]); }};
 }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -12,13 +13,13 @@ inline Effect sensor_drift() {
   return {.name = "sensor_drift",
           .sentence = "the sensor {at} drifts by {rate}",
           .place = Place::output,
-          .parameters = {{.name = "rate",
-                          .measure = {.value = 1, .time = -1},
-                          .low = -20,
-                          .high = 20,
-                          .starts = {0.01},
-                          .strength = true}},
-          .confusable_with = {"constant_rate", "leak", "sensor_bias", "parameter_drift"},
+          .parameters = parameters_of({{.name = "rate",
+                                        .measure = {.value = 1, .time = -1},
+                                        .low = -20,
+                                        .high = 20,
+                                        .starts = {0.01},
+                                        .strength = true}}),
+          .confusable_with = names_of({"constant_rate", "leak", "sensor_bias", "parameter_drift"}),
           .experiment = "rest for as long as a recording lasts, in a pose known from elsewhere",
           .sensor = [](const Series& series, Values p) {
             for (std::size_t row = 0; row < series.readings.size(); ++row) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -14,7 +15,7 @@ inline Effect slip_saturation_of(double Pose2::*part, std::string form, EffectPa
           .sentence = "slip: " + form + " steps level off at {level}",
           .place = Place::planar,
           .parameters = {std::move(level)},
-          .confusable_with = {"saturation", "input_gain", "supply_sag"},
+          .confusable_with = names_of({"saturation", "input_gain", "supply_sag"}),
           .experiment = "walks of small, medium and the largest " + form + " steps",
           .form = std::move(form),
           .planar = [part](const Pose2& displacement, double, Values p) {

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -16,7 +17,7 @@ inline Effect stribeck_friction() {
       .name = "stribeck_friction",
       .sentence = "dry friction of {level} and another {breakaway} near rest (below {speed}) at {at}",
       .place = Place::velocity,
-      .parameters =
+      .parameters = parameters_of(
           {{.name = "level", .measure = {.effort = 1}, .low = 0, .high = 3, .starts = {0.003, 0.1}, .strength = true},
            {.name = "breakaway",
             .measure = {.effort = 1},
@@ -24,8 +25,8 @@ inline Effect stribeck_friction() {
             .high = 3,
             .starts = {0.003, 0.1},
             .strength = true},
-           {.name = "speed", .measure = {.value = 1}, .low = 0.005, .high = 2, .starts = {0.03, 0.1, 0.4}}},
-      .confusable_with = {"coulomb_friction", "load_dependent_friction", "hysteresis"},
+           {.name = "speed", .measure = {.value = 1}, .low = 0.005, .high = 2, .starts = {0.03, 0.1, 0.4}}}),
+      .confusable_with = names_of({"coulomb_friction", "load_dependent_friction", "hysteresis"}),
       .experiment =
           "slow ramps with reversals at several speeds, from crawling to fast: the force needed falls with "
           "speed",

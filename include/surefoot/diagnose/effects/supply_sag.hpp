@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -15,9 +16,9 @@ inline Effect supply_sag() {
       .name = "supply_sag",
       .sentence = "the supply of {at} sags by a share of {sag}",
       .place = Place::input,
-      .parameters =
-          {{.name = "sag", .measure = {.value = -1}, .low = 0, .high = 1, .starts = {0.003, 0.1}, .strength = true}},
-      .confusable_with = {"saturation", "input_gain", "quadratic_drag"},
+      .parameters = parameters_of(
+          {{.name = "sag", .measure = {.value = -1}, .low = 0, .high = 1, .starts = {0.003, 0.1}, .strength = true}}),
+      .confusable_with = names_of({"saturation", "input_gain", "quadratic_drag"}),
       .experiment = "long pushes of several strengths, with the supply's voltage recorded",
       .signal = [](const EffectContext& m, Values p, Values) {
         return m.value * std::max(0.0, 1 - p[0] * std::abs(m.value));

@@ -5,6 +5,7 @@
 // EMF of a motor brakes in the same way.
 #pragma once
 
+#include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -13,13 +14,13 @@ inline Effect viscous_friction() {
   return {.name = "viscous_friction",
           .sentence = "friction that grows with speed, {damping}, at {at}",
           .place = Place::velocity,
-          .parameters = {{.name = "damping",
-                          .measure = {.effort = 1, .value = -1},
-                          .low = 0,
-                          .high = 5,
-                          .starts = {0.003, 0.1},
-                          .strength = true}},
-          .confusable_with = {"coulomb_friction", "quadratic_drag", "input_gain"},
+          .parameters = parameters_of({{.name = "damping",
+                                        .measure = {.effort = 1, .value = -1},
+                                        .low = 0,
+                                        .high = 5,
+                                        .starts = {0.003, 0.1},
+                                        .strength = true}}),
+          .confusable_with = names_of({"coulomb_friction", "quadratic_drag", "input_gain"}),
           .experiment = "let it coast freely from a few different speeds",
           .force = [](const EffectContext& m, Values p, Values) { return -p[0] * m.value; }};
 }

@@ -7,13 +7,16 @@
 #include <cstddef>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -33,7 +36,7 @@ SUREFOOT_INLINE std::vector<Hypothesis> scattered(const BoundSimulator& bound, c
       const double share = (cell + rng.uniform()) / static_cast<double>(points);
       value_of(start, variables[i]) = from_search(variables[i], low + share * (high - low));
     }
-    starts.push_back(start);
+    starts.push_back(std::move(start));
   }
   return starts;
 }
@@ -48,7 +51,7 @@ SUREFOOT_INLINE Fit scattered_fit(const BoundSimulator& bound, Fit best, const H
   parallel(starts.size(), [&](std::size_t k) {
     const FitFunctions functions(bound, starts[k], problem, serially());
     const Eigen::VectorXd residuals = functions.residuals(functions.start());
-    losses[k] = residuals.allFinite() ? mean_loss(residuals, problem.weighting.robust)
+    losses[k] = all_finite(residuals) ? mean_loss(residuals, problem.weighting.robust)
                                       : std::numeric_limits<double>::infinity();
   });
   std::vector<std::size_t> order(starts.size());
@@ -71,7 +74,7 @@ SUREFOOT_INLINE std::vector<double> recording_scales(const BoundSimulator& bound
   for (std::size_t i = 0; i < problem.recordings.size(); ++i) {
     const std::size_t r = problem.recordings[i];
     const Eigen::VectorXd off = weighted_residuals(bound, r, trajectories[i], cells_of(bound.recordings[r]), plain);
-    if (off.size() == 0 || !off.allFinite()) continue;
+    if (off.size() == 0 || !all_finite(off)) continue;
     scales[r] = std::sqrt(std::clamp(std::sqrt(mean_loss(off, plain.robust)), least, most));
   }
   return scales;
@@ -82,7 +85,7 @@ SUREFOOT_INLINE Fit calibrate(const BoundSimulator& bound, const Hypothesis& nom
   constexpr double least_sigma = 1e-6;  // of the output's standard deviation, where no noise is stated
   constexpr int search_iterations = 20, reweightings = 2;
   problem.weighting.sigma = output_deviations(bound, problem.recordings);
-  Eigen::VectorXd floor = problem.weighting.sigma * least_sigma;
+  Eigen::VectorXd floor = surefoot::detail::times(least_sigma, problem.weighting.sigma);
   for (Eigen::Index k = 0; k < floor.size(); ++k) {
     const double noise = bound.info.outputs[static_cast<std::size_t>(k)].noise;
     if (noise > 0) floor[k] = noise;
@@ -99,7 +102,10 @@ SUREFOOT_INLINE Fit calibrate(const BoundSimulator& bound, const Hypothesis& nom
   }
   for (int round = 0; round < reweightings; ++round) {
     const auto trajectories = simulate_all(bound, best.hypothesis, problem.recordings, problem.integration, parallel);
-    problem.weighting.sigma = residual_sizes(bound, problem.recordings, trajectories).cwiseMax(floor);
+    problem.weighting.sigma = residual_sizes(bound, problem.recordings, trajectories);
+    for (Eigen::Index k = 0; k < floor.size(); ++k) {
+      problem.weighting.sigma[k] = std::max(problem.weighting.sigma[k], floor[k]);
+    }
     problem.weighting.scale = recording_scales(bound, problem, trajectories);
     best = fit(bound, best.hypothesis, problem, parallel);
   }

@@ -42,7 +42,9 @@ SUREFOOT_INLINE Integration choose_integration(const BoundSimulator& bound, cons
     if (!trajectory.finite) continue;
     bool good = true;
     for (Eigen::Index k = 0; k < residual_size.size(); ++k) {
-      const double error = root_mean_square(trajectory.outputs.row(k) - exact.outputs.row(k));
+      Eigen::VectorXd off(exact.outputs.cols());
+      for (Eigen::Index row = 0; row < off.size(); ++row) off[row] = trajectory.outputs(k, row) - exact.outputs(k, row);
+      const double error = root_mean_square(off);
       good = good && error < error_share * residual_size[k];
     }
     if (good) return coarse;

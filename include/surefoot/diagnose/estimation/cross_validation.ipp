@@ -18,7 +18,8 @@ SUREFOOT_INLINE void append_losses(BlockLosses& losses, const Eigen::VectorXd& r
   const Eigen::Index cells = residuals.size(), blocks = blocks_of(cells);
   for (Eigen::Index b = 0; b < blocks; ++b) {
     const Eigen::Index from = cells * b / blocks, to = cells * (b + 1) / blocks;
-    const Eigen::VectorXd part = residuals.segment(from, to - from);
+    Eigen::VectorXd part(to - from);
+    std::copy_n(residuals.data() + from, part.size(), part.data());
     double loss = mean_loss(part, robust) * static_cast<double>(part.size());
     if (!std::isfinite(loss)) loss = diverged * static_cast<double>(part.size());
     losses.blocks.push_back(loss);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
 #include "surefoot/diagnose/estimation/residuals.hpp"
 #include "surefoot/optimize/least_squares.hpp"
@@ -66,8 +67,10 @@ SUREFOOT_INLINE Hypothesis FitFunctions::at(const Eigen::VectorXd& z) const {
 SUREFOOT_INLINE Eigen::VectorXd FitFunctions::residuals(const Eigen::VectorXd& z) const {
   const Hypothesis hypothesis = at(z);
   Eigen::VectorXd all(begin_.back());
-  parallel_(cells_.size(),
-            [&](std::size_t i) { all.segment(begin_[i], begin_[i + 1] - begin_[i]) = residuals_of(hypothesis, i); });
+  parallel_(cells_.size(), [&](std::size_t i) {
+    const Eigen::VectorXd one = residuals_of(hypothesis, i);
+    std::copy_n(one.data(), one.size(), all.data() + begin_[i]);
+  });
   return all;
 }
 
@@ -118,7 +121,7 @@ SUREFOOT_INLINE Fit fit(const BoundSimulator& bound, const Hypothesis& start, co
   const Eigen::VectorXd z = functions.start();
   const Eigen::VectorXd first = functions.residuals(z);
   result.loss = mean_loss(first, problem.weighting.robust);
-  if (!first.allFinite() || first.size() == 0) return result;
+  if (!all_finite(first) || first.size() == 0) return result;
   result.ok = true;
   if (functions.variables().empty()) return result;
   LeastSquaresOptions options;
@@ -131,7 +134,7 @@ SUREFOOT_INLINE Fit fit(const BoundSimulator& bound, const Hypothesis& start, co
   options.covariance = false;
   Eigen::VectorXd asked = z, there = first;  // the last point, whose residuals the Jacobian needs again
   const auto residuals = [&](const Eigen::VectorXd& x) -> const Eigen::VectorXd& {
-    if (x != asked) {
+    if (!std::equal(x.begin(), x.end(), asked.begin())) {
       there = functions.residuals(x);
       asked = x;
     }

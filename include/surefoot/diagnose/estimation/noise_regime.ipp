@@ -1,15 +1,17 @@
 // Definitions of surefoot/diagnose/estimation/noise_regime.hpp.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/core/vec.hpp"
+#include "surefoot/diagnose/estimation/exponentials.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
 #include "surefoot/diagnose/estimation/noise_regime.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
@@ -45,9 +47,9 @@ SUREFOOT_INLINE Eigen::MatrixXd step_correlations(const BoundSimulator& bound, c
     for (Eigen::Index k = 0; k < outputs; ++k) {
       const Eigen::VectorXd off = errors_of_steps(bound, r, trajectory, k);
       for (Eigen::Index lag = 1; lag <= 3; ++lag) {
-        products(k, lag - 1) += off.tail(off.size() - lag).dot(off.head(off.size() - lag));
+        products(k, lag - 1) += surefoot::detail::dot(off.data() + lag, off.data(), off.size() - lag);
       }
-      squares[k] += off.squaredNorm();
+      squares[k] += surefoot::detail::sum_of_squares(off);
     }
   }
   for (Eigen::Index k = 0; k < outputs; ++k) {
@@ -133,7 +135,7 @@ SUREFOOT_INLINE FinalResiduals final_residuals(const BoundSimulator& bound, std:
 
 /// For the logarithms of the four variances.
 SUREFOOT_INLINE Eigen::MatrixXd covariance_of(const FinalResiduals& s, const Eigen::VectorXd& logarithms) {
-  const Eigen::ArrayXd v = logarithms.array().exp();
+  const Eigen::VectorXd v = exponentials(logarithms);
   Eigen::MatrixXd sum(s.by_position.rows(), s.by_position.cols());
   for (Eigen::Index j = 0; j < sum.cols(); ++j) {
     for (Eigen::Index i = 0; i < sum.rows(); ++i) {
@@ -144,6 +146,37 @@ SUREFOOT_INLINE Eigen::MatrixXd covariance_of(const FinalResiduals& s, const Eig
   return sum;
 }
 
+/// log |c| + off^T c^-1 off, for a covariance c: by L D L^T with pivots.
+SUREFOOT_INLINE double deviance(Eigen::MatrixXd c, const Eigen::VectorXd& off) {
+  const Eigen::Index n = off.size();
+  Eigen::VectorXd solved = off, scaled(n);
+  std::vector<Eigen::Index> pivots;
+  double log_determinant = 0;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    Eigen::Index pivot = k;
+    for (Eigen::Index i = k + 1; i < n; ++i) {
+      if (c(i, i) > c(pivot, pivot)) pivot = i;
+    }
+    pivots.push_back(pivot);
+    for (Eigen::Index i = 0; i < n; ++i) std::swap(c(k, i), c(pivot, i));
+    for (Eigen::Index i = 0; i < n; ++i) std::swap(c(i, k), c(i, pivot));
+    std::swap(solved[k], solved[pivot]);
+    for (Eigen::Index j = 0; j < k; ++j) scaled[j] = c(j, j) * c(k, j);
+    for (Eigen::Index i = k; i < n; ++i) {
+      double sum = 0;
+      for (Eigen::Index j = 0; j < k; ++j) sum += c(i, j) * scaled[j];
+      c(i, k) -= sum;
+    }
+    for (Eigen::Index i = k + 1; i < n && c(k, k) != 0; ++i) c(i, k) /= c(k, k);
+    log_determinant += std::log(std::max(c(k, k), 1e-30));
+  }
+  surefoot::detail::solve_lower(c, solved, surefoot::detail::DiagonalOf::ones);
+  for (Eigen::Index i = 0; i < n; ++i) solved[i] = c(i, i) != 0 ? solved[i] / c(i, i) : 0;
+  surefoot::detail::solve_lower_transposed(c, solved, surefoot::detail::DiagonalOf::ones);
+  for (Eigen::Index k = n; k-- > 0;) std::swap(solved[k], solved[pivots[static_cast<std::size_t>(k)]]);
+  return log_determinant + surefoot::detail::dot(off.data(), solved.data(), n);
+}
+
 /// Logarithms of the four variances with the highest likelihood, by a coordinate search.
 SUREFOOT_INLINE Eigen::VectorXd most_likely_variances(const std::vector<FinalResiduals>& sequences,
                                                       const std::vector<std::size_t>& recordings) {
@@ -151,12 +184,7 @@ SUREFOOT_INLINE Eigen::VectorXd most_likely_variances(const std::vector<FinalRes
     double sum = 0;
     for (const std::size_t r : recordings) {
       const FinalResiduals& s = sequences[r];
-      if (s.off.size() == 0 || !s.off.allFinite()) continue;
-      const Eigen::LDLT<Eigen::MatrixXd> ldlt(covariance_of(s, logarithms));
-      const Eigen::VectorXd solved = ldlt.solve(s.off);
-      double log_determinant = 0;
-      for (Eigen::Index i = 0; i < solved.size(); ++i) log_determinant += std::log(std::max(ldlt.vectorD()[i], 1e-30));
-      sum += log_determinant + s.off.dot(solved);
+      if (s.off.size() > 0 && all_finite(s.off)) sum += deviance(covariance_of(s, logarithms), s.off);
     }
     return sum;
   };
@@ -199,7 +227,7 @@ SUREFOOT_INLINE std::vector<Eigen::MatrixXd> final_pose_whitening(const BoundSim
     Eigen::MatrixXd factor = covariance_of(sequences[r], best);
     surefoot::detail::factorise_in_place(factor);
     whitening[r] = Eigen::MatrixXd::Identity(count, count);
-    factor.triangularView<Eigen::Lower>().solveInPlace(whitening[r]);
+    surefoot::detail::solve_lower(factor, whitening[r]);
   }
   return whitening;
 }

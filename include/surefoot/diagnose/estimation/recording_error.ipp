@@ -10,6 +10,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -18,7 +19,7 @@ SUREFOOT_INLINE double recording_error(const BoundSimulator& bound, std::size_t 
   const std::vector<Cell> cells = cells_of(bound.recordings[r]);
   Eigen::VectorXd off = raw_residuals(bound, r, trajectory, cells);
   for (std::size_t i = 0; i < cells.size(); ++i) off[static_cast<Eigen::Index>(i)] /= scale[cells[i].output];
-  return off.size() > 0 ? std::sqrt(off.squaredNorm() / static_cast<double>(off.size())) : 0;
+  return off.size() > 0 ? std::sqrt(surefoot::detail::sum_of_squares(off) / static_cast<double>(off.size())) : 0;
 }
 
 SUREFOOT_INLINE double over_all(const std::vector<double>& errors, const std::vector<double>& counts) {

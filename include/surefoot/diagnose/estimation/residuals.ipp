@@ -12,6 +12,7 @@
 #include "surefoot/core/pose2.hpp"
 #include "surefoot/diagnose/estimation/hypothesis.hpp"
 #include "surefoot/diagnose/estimation/residuals.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -47,7 +48,7 @@ SUREFOOT_INLINE Eigen::VectorXd weighted_residuals(const BoundSimulator& bound, 
                                                    const Weighting& weighting) {
   Eigen::VectorXd residuals = raw_residuals(bound, r, trajectory, cells);
   if (!weighting.whitening.empty() && weighting.whitening[r].rows() == residuals.size()) {
-    return weighting.whitening[r] * residuals;
+    return surefoot::detail::product(weighting.whitening[r], residuals);
   }
   const double scale = weighting.scale.empty() ? 1 : weighting.scale[r];
   for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -15,18 +14,10 @@
 
 namespace surefoot::diagnosis {
 
-/// Row and column i times scale[i].
-SUREFOOT_INLINE Eigen::MatrixXd scaled_by(const Eigen::VectorXd& scale, const Eigen::MatrixXd& matrix) {
-  Eigen::MatrixXd result = matrix;
-  for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
-    for (Eigen::Index i = 0; i < matrix.rows(); ++i) result(i, j) = scale[i] * matrix(i, j) * scale[j];
-  }
-  return result;
-}
-
 SUREFOOT_INLINE StandardErrors standard_errors(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                                const FitProblem& problem, const Parallel& parallel) {
   constexpr Eigen::Index block_rows = 50, most_blocks = 8;  // of a recording: longer than residuals stay correlated
+  using surefoot::detail::product, surefoot::detail::scaled, surefoot::detail::transposed_product;
   constexpr double ridge = 1e-9;  // on the diagonal of ones: what the data do not determine stays finite
   const FitFunctions functions(bound, hypothesis, problem, parallel);
   const Eigen::VectorXd z = functions.start();
@@ -35,9 +26,10 @@ SUREFOOT_INLINE StandardErrors standard_errors(const BoundSimulator& bound, cons
   if (count == 0) return result;
   const Eigen::VectorXd residuals = functions.residuals(z);
   const Eigen::MatrixXd jacobian = functions.jacobian(z, residuals);
-  Eigen::MatrixXd hessian = jacobian.transpose() * jacobian, gradients = Eigen::MatrixXd::Zero(count, count);
-  Eigen::VectorXd scale = hessian.diagonal();
-  for (double& value : scale) value = value > 0 ? 1 / std::sqrt(value) : 0.0;
+  const Eigen::MatrixXd hessian = transposed_product(jacobian, jacobian);
+  Eigen::MatrixXd gradients = Eigen::MatrixXd::Zero(count, count);
+  Eigen::VectorXd scale(count);
+  for (Eigen::Index i = 0; i < count; ++i) scale[i] = hessian(i, i) > 0 ? 1 / std::sqrt(hessian(i, i)) : 0.0;
   double blocks = 0;
   for (std::size_t i = 0; i + 1 < functions.begin().size(); ++i) {
     const Eigen::Index from = functions.begin()[i], length = functions.begin()[i + 1] - from;
@@ -50,7 +42,7 @@ SUREFOOT_INLINE StandardErrors standard_errors(const BoundSimulator& bound, cons
       for (Eigen::Index k = 0; k < count; ++k) {
         for (Eigen::Index i = 0; i < off.size(); ++i) rows(i, k) = jacobian(a + i, k);
       }
-      Eigen::VectorXd gradient = std::as_const(rows).transpose() * off;
+      Eigen::VectorXd gradient = transposed_product(rows, off);
       for (Eigen::Index k = 0; k < count; ++k) gradient[k] *= scale[k];
       for (Eigen::Index j = 0; j < count; ++j) {
         for (Eigen::Index i = 0; i < count; ++i) gradients(i, j) += gradient[i] * gradient[j];
@@ -58,18 +50,17 @@ SUREFOOT_INLINE StandardErrors standard_errors(const BoundSimulator& bound, cons
       ++blocks;
     }
   }
-  Eigen::MatrixXd scaled = scaled_by(scale, hessian);
-  for (Eigen::Index i = 0; i < count; ++i) scaled(i, i) += ridge;
-  const Eigen::MatrixXd inverse = surefoot::detail::invert_symmetric(scaled);
-  const Eigen::MatrixXd half = inverse * gradients;
-  Eigen::MatrixXd covariance = half * inverse;
+  Eigen::MatrixXd information = scaled(scale, hessian);
+  for (Eigen::Index i = 0; i < count; ++i) information(i, i) += ridge;
+  const Eigen::MatrixXd inverse = surefoot::detail::invert_symmetric(information);
+  Eigen::MatrixXd covariance = product(product(inverse, gradients), inverse);
   covariance *= blocks / std::max(1.0, blocks - 1);
-  covariance = scaled_by(scale, covariance);
+  covariance = scaled(scale, covariance);
   result.deviation.resize(count);
-  result.correlation = scaled_by(scale, inverse);
-  Eigen::VectorXd norm = result.correlation.diagonal();
-  for (double& value : norm) value = 1 / std::sqrt(std::max(value, 1e-300));
-  result.correlation = scaled_by(norm, result.correlation);
+  result.correlation = scaled(scale, inverse);
+  Eigen::VectorXd norm(count);
+  for (Eigen::Index i = 0; i < count; ++i) norm[i] = 1 / std::sqrt(std::max(result.correlation(i, i), 1e-300));
+  result.correlation = scaled(norm, result.correlation);
   Hypothesis copy = hypothesis;
   for (Eigen::Index i = 0; i < count; ++i) {
     const Variable& variable = result.variables[static_cast<std::size_t>(i)];

@@ -10,6 +10,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/hypothesis.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -20,7 +21,7 @@ SUREFOOT_INLINE Eigen::VectorXd output_deviations(const BoundSimulator& bound,
   for (Eigen::Index k = 0; k < deviations.size(); ++k) {
     double sum = 0, squares = 0, count = 0;
     for (const std::size_t r : recordings) {
-      for (const double value : bound.recordings[r].outputs.row(k)) {
+      for (const double value : surefoot::detail::row_of(bound.recordings[r].outputs, k)) {
         if (!std::isfinite(value)) continue;
         sum += value;
         squares += value * value;
@@ -47,7 +48,7 @@ SUREFOOT_INLINE Eigen::MatrixXd row_rates(const Eigen::VectorXd& time, const Eig
 /// Raises each peak to the largest absolute value of its row.
 SUREFOOT_INLINE void raise_peaks(std::vector<double>& peaks, const Eigen::MatrixXd& values) {
   for (std::size_t k = 0; k < peaks.size(); ++k) {
-    for (const double value : values.row(static_cast<Eigen::Index>(k))) {
+    for (const double value : surefoot::detail::row_of(values, static_cast<Eigen::Index>(k))) {
       if (std::isfinite(value)) peaks[k] = std::max(peaks[k], std::abs(value));
     }
   }
@@ -57,7 +58,7 @@ SUREFOOT_INLINE void raise_peaks(std::vector<double>& peaks, const Eigen::Matrix
 SUREFOOT_INLINE void add_squares(std::vector<double>& sums, const Eigen::MatrixXd& values, double weight,
                                  bool about_mean) {
   for (std::size_t k = 0; k < sums.size(); ++k) {
-    const auto line = values.row(static_cast<Eigen::Index>(k));
+    const Eigen::VectorXd line = surefoot::detail::row_of(values, static_cast<Eigen::Index>(k));
     const double size = about_mean ? standard_deviation(line) : root_mean_square(line);
     sums[k] += weight * size * size;
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -82,7 +83,7 @@ SUREFOOT_INLINE FeatureTable make_features(const BoundSimulator& bound, const st
         const auto found = recording.constants.find(table.names[k]);
         one.push_back(found == recording.constants.end() ? 0 : found->second);
       }
-      rows.push_back(one);
+      rows.push_back(std::move(one));
       table.recording.push_back(i);
       table.row.push_back(row);
     }

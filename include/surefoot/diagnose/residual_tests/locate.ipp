@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -43,14 +44,15 @@ SUREFOOT_INLINE Eigen::VectorXd mismatch_energy(const BoundSimulator& bound, con
 SUREFOOT_INLINE std::vector<std::vector<double>> deciles(const FeatureTable& table) {
   std::vector<std::vector<double>> result;
   for (Eigen::Index f = 0; f < table.values.rows(); ++f) {
-    std::vector<double> sorted(table.values.row(f).begin(), table.values.row(f).end());
+    std::vector<double> sorted;
+    for (Eigen::Index j = 0; j < table.values.cols(); ++j) sorted.push_back(table.values(f, j));
     std::sort(sorted.begin(), sorted.end());
     std::vector<double> cuts;
     for (int k = 1; k < 10; ++k) {
       const double cut = sorted[sorted.size() * static_cast<std::size_t>(k) / 10];
       if (cut > sorted.front() && (cuts.empty() || cut > cuts.back())) cuts.push_back(cut);
     }
-    result.push_back(cuts);
+    result.push_back(std::move(cuts));
   }
   return result;
 }
@@ -145,7 +147,7 @@ SUREFOOT_INLINE std::vector<MismatchRegion> find_region(const FeatureTable& tabl
     Eigen::Index at = 0;
     for (const std::size_t block : order) {
       const auto length = static_cast<Eigen::Index>(begin[block + 1] - begin[block]);
-      dealt.segment(at, length) = energy.segment(static_cast<Eigen::Index>(begin[block]), length);
+      std::copy_n(energy.data() + begin[block], length, dealt.data() + at);
       at += length;
     }
     if (best_condition(table, cuts, dealt, std::vector<bool>(samples, true)).score >= first_score) ++above;

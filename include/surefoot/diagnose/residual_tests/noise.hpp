@@ -28,7 +28,12 @@ struct NoiseCriteria {
 };
 
 inline NoiseSeries part_of(const NoiseSeries& whole, Eigen::Index from, Eigen::Index length) {
-  return {whole.time.segment(from, length), whole.value.segment(from, length), whole.speed.segment(from, length)};
+  const auto part = [&](const Eigen::VectorXd& all) {
+    Eigen::VectorXd some(length);
+    std::copy_n(all.data() + from, length, some.data());
+    return some;
+  };
+  return {part(whole.time), part(whole.value), part(whole.speed)};
 }
 
 /// Few series are cut, so that some can be held out.

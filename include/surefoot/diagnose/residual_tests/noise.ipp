@@ -17,6 +17,7 @@
 #include "surefoot/diagnose/residual_tests/noise.hpp"
 #include "surefoot/diagnose/residual_tests/noise_model.hpp"
 #include "surefoot/diagnose/text.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -50,7 +51,7 @@ SUREFOOT_INLINE std::pair<std::vector<double>, double> heldout_likelihood(const 
       const Eigen::Index count = blocks_of(each.size());
       for (Eigen::Index b = 0; b < count; ++b) {
         const Eigen::Index from = each.size() * b / count, to = each.size() * (b + 1) / count;
-        blocks.push_back(each.segment(from, to - from).sum());
+        blocks.push_back(Eigen::Map<const Eigen::VectorXd>(each.data() + from, to - from).sum());
       }
       samples += static_cast<double>(each.size());
     }
@@ -89,7 +90,7 @@ SUREFOOT_INLINE NoiseFit best_memory(const std::vector<NoiseSeries>& series, con
 SUREFOOT_INLINE double typical_speed(const std::vector<NoiseSeries>& series) {
   double sum = 0, count = 0;
   for (const NoiseSeries& one : series) {
-    sum += one.speed.squaredNorm();
+    sum += surefoot::detail::sum_of_squares(one.speed);
     count += static_cast<double>(one.speed.size());
   }
   return count > 0 ? std::sqrt(sum / count) : 0;
@@ -174,11 +175,14 @@ SUREFOOT_INLINE NoiseSeries noise_series(const BoundSimulator& bound, std::size_
     values.push_back(value);
     speeds.push_back(speed(cells[i].row));
   }
-  const auto vector = [](const std::vector<double>& v) -> Eigen::VectorXd {
-    return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
+  const auto vector = [](const std::vector<double>& v) {
+    Eigen::VectorXd result(static_cast<Eigen::Index>(v.size()));
+    std::copy(v.begin(), v.end(), result.data());
+    return result;
   };
   NoiseSeries series{vector(times), vector(values), vector(speeds)};
-  if (series.value.size() > 0) series.value.array() -= series.value.mean();
+  const double mean = series.value.size() > 0 ? series.value.mean() : 0;
+  for (double& value : series.value) value -= mean;
   return series;
 }
 
@@ -186,7 +190,7 @@ SUREFOOT_INLINE double equal_readings(const BoundSimulator& bound, const std::ve
                                       Eigen::Index output) {
   double equal = 0, count = 0;
   for (const std::size_t r : recordings) {
-    const auto y = bound.recordings[r].outputs.row(output);
+    const Eigen::VectorXd y = surefoot::detail::row_of(bound.recordings[r].outputs, output);
     for (Eigen::Index i = 1; i < y.size(); ++i) {
       if (!std::isfinite(y[i]) || !std::isfinite(y[i - 1])) continue;
       equal += y[i] == y[i - 1] ? 1 : 0;

@@ -14,6 +14,8 @@
 #include <limits>
 #include <vector>
 
+#include "surefoot/optimize/linear_algebra.hpp"
+
 namespace surefoot::diagnosis {
 
 /// Residuals of one output in one recording, where it was measured.
@@ -59,8 +61,8 @@ class NoiseCoordinates {
     double values = 0, speeds = 0;
     for (const NoiseSeries& one : series) {
       for (Eigen::Index i = 1; i < one.time.size(); ++i) gaps.push_back(one.time[i] - one.time[i - 1]);
-      values += one.value.squaredNorm();
-      speeds += one.speed.squaredNorm();
+      values += surefoot::detail::sum_of_squares(one.value);
+      speeds += surefoot::detail::sum_of_squares(one.speed);
       count_ += static_cast<double>(one.value.size());
     }
     const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);

@@ -69,7 +69,7 @@ SUREFOOT_INLINE double climb(const NoiseCoordinates& coordinates, const std::vec
         };
         if (!try_at(moved(width))) try_at(moved(-width));
       }
-      if (z == before) break;
+      if (std::equal(z.begin(), z.end(), before.begin())) break;
       Eigen::VectorXd beyond = z;
       for (Eigen::Index k = 0; k < z.size(); ++k) beyond[k] = 2 * z[k] - before[k];
       try_at(beyond);  // coordinates hang together

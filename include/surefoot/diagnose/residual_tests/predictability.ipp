@@ -13,6 +13,7 @@
 #include "surefoot/diagnose/residual_tests/forest_correction.hpp"
 #include "surefoot/diagnose/residual_tests/predictability.hpp"
 #include "surefoot/forest/dataset.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -38,7 +39,10 @@ SUREFOOT_INLINE std::vector<Eigen::MatrixXd> left_unpredicted(const std::vector<
     }
     const int min_leaf = std::max(5, static_cast<int>(count / 200));
     const ResidualForest forest = train_forest(known, min_leaf, serially(), seed + f);
-    for (Eigen::Index j = 0; j < left[f].cols(); ++j) left[f].col(j) -= forest.predict(tables[f].values.col(j));
+    for (Eigen::Index j = 0; j < left[f].cols(); ++j) {
+      const Eigen::VectorXd expected = forest.predict(surefoot::detail::column_of(tables[f].values, j));
+      for (Eigen::Index k = 0; k < expected.size(); ++k) left[f](k, j) -= expected[k];
+    }
   });
   return left;
 }
@@ -49,8 +53,8 @@ SUREFOOT_INLINE Comparison most_predicted(const std::vector<Eigen::MatrixXd>& re
   std::vector<BlockLosses> before(static_cast<std::size_t>(outputs)), after = before;
   for (std::size_t f = 0; f < residuals.size(); ++f) {
     for (Eigen::Index k = 0; k < outputs; ++k) {
-      append_losses(before[static_cast<std::size_t>(k)], residuals[f].row(k), limit);
-      append_losses(after[static_cast<std::size_t>(k)], left[f].row(k), limit);
+      append_losses(before[static_cast<std::size_t>(k)], surefoot::detail::row_of(residuals[f], k), limit);
+      append_losses(after[static_cast<std::size_t>(k)], surefoot::detail::row_of(left[f], k), limit);
     }
   }
   Comparison best;

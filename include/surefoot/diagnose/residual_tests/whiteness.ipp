@@ -11,6 +11,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
 #include "surefoot/diagnose/residual_tests/whiteness.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -30,7 +31,7 @@ SUREFOOT_INLINE Eigen::VectorXd lagged_products(const std::vector<Eigen::VectorX
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(to - from + 1);
   for (const Eigen::VectorXd& one : series) {
     for (Eigen::Index lag = from; lag <= std::min(to, one.size() - 1); ++lag) {
-      sums[lag - from] += one.head(one.size() - lag).dot(one.tail(one.size() - lag));
+      sums[lag - from] += surefoot::detail::dot(one.data(), one.data() + lag, one.size() - lag);
     }
   }
   return sums;
@@ -68,7 +69,7 @@ SUREFOOT_INLINE WhitenessTest test_whiteness(const BoundSimulator& bound, const 
     for (double& value : series) {
       value = std::isfinite(value) ? std::clamp(value, -5 * result.rms, 5 * result.rms) : 0.0;
     }
-    squares += series.squaredNorm();
+    squares += surefoot::detail::sum_of_squares(series);
   }
   if (!(squares > 0)) return result;
   Eigen::VectorXd correlation = lagged_products(all, from, to);
@@ -87,13 +88,16 @@ SUREFOOT_INLINE WhitenessTest test_whiteness(const BoundSimulator& bound, const 
     }
     Eigen::VectorXd null = lagged_products(turned, from, to);
     null /= squares;
-    nulls.push_back(null.squaredNorm());
+    nulls.push_back(surefoot::detail::sum_of_squares(null));
     mean += nulls.back() / draws;
   }
   for (const double null : nulls) variance += (null - mean) * (null - mean) / (draws - 1);
-  result.p_value = chi_square_tail(correlation.squaredNorm(), mean, variance);
-  const double excess = std::max(0.0, correlation.squaredNorm() - mean) / static_cast<double>(correlation.size());
-  result.share = std::min(std::sqrt(2 * excess), correlation.cwiseAbs().maxCoeff());  // of a sine: half its square
+  const double correlated = surefoot::detail::sum_of_squares(correlation);
+  result.p_value = chi_square_tail(correlated, mean, variance);
+  const double excess = std::max(0.0, correlated - mean) / static_cast<double>(correlation.size());
+  double largest = 0;
+  for (const double value : correlation) largest = std::max(largest, std::abs(value));
+  result.share = std::min(std::sqrt(2 * excess), largest);  // of a sine: half its square
   return result;
 }
 
@@ -101,7 +105,7 @@ SUREFOOT_INLINE double fast_noise(const BoundSimulator& bound, const std::vector
                                   Eigen::Index output) {
   std::vector<double> third;
   for (const std::size_t r : recordings) {
-    const auto y = bound.recordings[r].outputs.row(output);
+    const Eigen::VectorXd y = surefoot::detail::row_of(bound.recordings[r].outputs, output);
     for (Eigen::Index i = 0; i + 3 < y.size(); ++i) {
       const double d = y[i + 3] - 3 * y[i + 2] + 3 * y[i + 1] - y[i];
       if (std::isfinite(d)) third.push_back(std::abs(d));

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/hypothesis.hpp"
 #include "surefoot/diagnose/selection/candidates.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -26,16 +26,17 @@ SUREFOOT_INLINE std::vector<bool> distinct_inputs(const BoundSimulator& bound, c
     if (!trajectories[i].finite) continue;
     Eigen::MatrixXd efforts, signals;
     bound.probe(bound, recordings[i], hypothesis.parameters, trajectories[i].states, efforts, signals);
+    const Eigen::MatrixXd& driven = bound.recordings[recordings[i]].inputs;
     Eigen::MatrixXd all(products.rows(), signals.cols());
-    all << bound.recordings[recordings[i]].inputs, signals;
-    for (double& value : std::span(all.data(), static_cast<std::size_t>(all.size())))
-      value = std::isfinite(value) ? value : 0.0;
-    const Eigen::MatrixXd turned = all.transpose();
-    products += all * turned;
-    for (std::size_t k = 0; k < count; ++k) {
-      const auto line = all.row(static_cast<Eigen::Index>(k));
-      changes[k] = changes[k] || line.maxCoeff() > line.minCoeff();
+    for (Eigen::Index column = 0; column < all.cols(); ++column) {
+      for (Eigen::Index k = 0; k < all.rows(); ++k) {
+        const double value = k < driven.rows() ? driven(k, column) : signals(k - driven.rows(), column);
+        all(k, column) = std::isfinite(value) ? value : 0.0;
+        if (all(k, column) != all.data()[k]) changes[static_cast<std::size_t>(k)] = true;
+      }
     }
+    const Eigen::MatrixXd squares = surefoot::detail::product(all, surefoot::detail::transposed(all));
+    for (Eigen::Index k = 0; k < squares.size(); ++k) products.data()[k] += squares.data()[k];
   }
   std::vector<bool> distinct(count, false);
   for (std::size_t k = 0; k < count; ++k) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -11,20 +10,24 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/estimation/starting_values.hpp"
 #include "surefoot/diagnose/selection/candidates.hpp"
 #include "surefoot/diagnose/selection/propose.hpp"
+#include "surefoot/optimize/householder.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
+using surefoot::detail::product, surefoot::detail::transposed_product, surefoot::detail::sum_of_squares;
+
 SUREFOOT_INLINE Eigen::VectorXd OpenResiduals::beyond_parameters(const Eigen::VectorXd& change) const {
   if (basis.cols() == 0) return change;
-  const Eigen::VectorXd along = basis.transpose() * change;
+  const Eigen::VectorXd along = product(basis, transposed_product(basis, change));
   Eigen::VectorXd beyond = change;
-  beyond.noalias() -= basis * along;
+  for (Eigen::Index i = 0; i < beyond.size(); ++i) beyond[i] -= along[i];
   return beyond;
 }
 
@@ -35,14 +38,11 @@ SUREFOOT_INLINE OpenResiduals open_residuals(const BoundSimulator& bound, const 
   const double limit = problem.weighting.robust;
   OpenResiduals result;
   result.residuals = functions.residuals(z);
-  if (z.size() > 0) {
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(functions.jacobian(z, result.residuals));
-    result.basis = qr.householderQ() * Eigen::MatrixXd::Identity(result.residuals.size(), qr.rank());
-  }
+  if (z.size() > 0) result.basis = surefoot::detail::orthonormal_basis(functions.jacobian(z, result.residuals));
   Eigen::VectorXd clipped = result.residuals;
   for (double& value : clipped) value = std::isfinite(value) ? std::clamp(value, -limit, limit) : 0.0;
   result.open = result.beyond_parameters(clipped);
-  result.energy = std::max(result.open.squaredNorm(), never_zero);
+  result.energy = std::max(sum_of_squares(result.open), never_zero);
   return result;
 }
 
@@ -69,7 +69,7 @@ SUREFOOT_INLINE Eigen::MatrixXd signatures(const BoundSimulator& bound, const Hy
     }
     const FitFunctions changed(bound, with, problem, serially());
     const Eigen::VectorXd after = changed.residuals(changed.start());
-    if (!after.allFinite()) return {};
+    if (!surefoot::all_finite(after)) return {};
     for (Eigen::Index i = 0; i < residuals.size(); ++i) result(i, m) = after[i] - residuals[i];
   }
   return result;
@@ -87,17 +87,18 @@ SUREFOOT_INLINE Proposal predict_gain(const BoundSimulator& bound, const OpenRes
   Eigen::MatrixXd distinct(signatures.rows(), count);
   double all = 0;
   for (Eigen::Index m = 0; m < count; ++m) {
-    const Eigen::VectorXd signature = signatures.col(m);
-    all += signature.squaredNorm();
-    distinct.col(m) = open.beyond_parameters(signature);
+    const Eigen::VectorXd signature = surefoot::detail::column_of(signatures, m);
+    const Eigen::VectorXd beyond = open.beyond_parameters(signature);
+    all += sum_of_squares(signature);
+    for (Eigen::Index i = 0; i < beyond.size(); ++i) distinct(i, m) = beyond[i];
   }
-  const double left = distinct.squaredNorm();
+  const double left = surefoot::detail::dot(distinct.data(), distinct.data(), distinct.size());
   proposal.distinct = all > 0 ? std::sqrt(left / all) : 0;
   if (!(left > criteria.negligible_signature * open.energy)) return proposal;
   proposal.visible = std::sqrt(criteria.visible_share * open.energy / left);
-  Eigen::MatrixXd gram = std::as_const(distinct).transpose() * distinct;
+  Eigen::MatrixXd gram = transposed_product(distinct, distinct);
   for (Eigen::Index m = 0; m < count; ++m) gram(m, m) += criteria.ridge * left;
-  Eigen::VectorXd against = std::as_const(distinct).transpose() * open.open;
+  Eigen::VectorXd against = transposed_product(distinct, open.open);
   for (double& value : against) value = -value;
   Eigen::VectorXd share = surefoot::detail::solve_symmetric(gram, against);
   const std::vector<Eigen::Index> strengths = strengths_of(*candidate.effect);
@@ -117,9 +118,9 @@ SUREFOOT_INLINE Proposal predict_gain(const BoundSimulator& bound, const OpenRes
     share[m] = std::clamp(share[m], std::min(a, b), std::max(a, b));
     proposal.start[k] = share[m] * start[k];
   }
-  Eigen::VectorXd rest = distinct * share;
+  Eigen::VectorXd rest = product(distinct, share);
   for (Eigen::Index i = 0; i < rest.size(); ++i) rest[i] += open.open[i];
-  proposal.gain = 1 - rest.squaredNorm() / open.energy;
+  proposal.gain = 1 - sum_of_squares(rest) / open.energy;
   return proposal;
 }
 

@@ -12,6 +12,7 @@
 
 #include "surefoot/diagnose/simulation/simulation_run.hpp"
 #include "surefoot/diagnose/simulation/structure.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -64,9 +65,9 @@ class SimulatorPool {
   std::vector<std::vector<S>> idle_;
 };
 
-double root_mean_square(const Eigen::Ref<const Eigen::RowVectorXd>& values);
+double root_mean_square(const Eigen::VectorXd& values);
 
-double standard_deviation(const Eigen::Ref<const Eigen::RowVectorXd>& values);
+double standard_deviation(const Eigen::VectorXd& values);
 
 /// The nominal values of all parameters.
 Eigen::VectorXd nominal_parameters(const SimulatorInfo& info);
@@ -101,8 +102,8 @@ BoundSimulator bind_simulator(const S& simulator, std::vector<Recording> recordi
     Eigen::VectorXd effort;
     std::vector<double> signal;
     for (Eigen::Index row = 0; row < states.cols(); ++row) {
-      run.probe(converted<typename S::State>(states.col(row)), row, effort, signal);
-      efforts.col(row) = effort;
+      run.probe(converted<typename S::State>(surefoot::detail::column_of(states, row)), row, effort, signal);
+      write(effort, efforts, row);
       for (std::size_t k = 0; k < signal.size(); ++k) signals(static_cast<Eigen::Index>(k), row) = signal[k];
     }
     pool->give_back(i, std::move(s));

@@ -20,7 +20,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE double root_mean_square(const Eigen::Ref<const Eigen::RowVectorXd>& values) {
+SUREFOOT_INLINE double root_mean_square(const Eigen::VectorXd& values) {
   double sum = 0;
   Eigen::Index count = 0;
   for (const double value : values) {
@@ -31,7 +31,7 @@ SUREFOOT_INLINE double root_mean_square(const Eigen::Ref<const Eigen::RowVectorX
   return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0;
 }
 
-SUREFOOT_INLINE double standard_deviation(const Eigen::Ref<const Eigen::RowVectorXd>& values) {
+SUREFOOT_INLINE double standard_deviation(const Eigen::VectorXd& values) {
   double sum = 0, squares = 0;
   Eigen::Index count = 0;
   for (const double value : values) {

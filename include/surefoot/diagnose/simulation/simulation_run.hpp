@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/simulation/integrate.hpp"
 #include "surefoot/diagnose/simulation/step_updates.hpp"
 
@@ -66,13 +67,14 @@ class SimulationRun {
       advance_row(now, row);
     }
     for (const EffectSlot& slot : m_.slots.sensors) {
-      Eigen::VectorXd readings = result.outputs.row(slot.at);
-      slot.effect->sensor(
-          {{recording_.time.data(), static_cast<std::size_t>(rows)}, {readings.data(), static_cast<std::size_t>(rows)}},
-          slot.p);
-      result.outputs.row(slot.at) = readings;
+      std::vector<double> readings;
+      for (Eigen::Index row = 0; row < rows; ++row) readings.push_back(result.outputs(slot.at, row));
+      slot.effect->sensor({{recording_.time.data(), static_cast<std::size_t>(rows)}, readings}, slot.p);
+      for (Eigen::Index row = 0; row < rows; ++row) {
+        result.outputs(slot.at, row) = readings[static_cast<std::size_t>(row)];
+      }
     }
-    result.finite = result.outputs.allFinite();
+    result.finite = surefoot::all_finite(result.outputs);
     return result;
   }
 
@@ -84,8 +86,11 @@ class SimulationRun {
       signals[static_cast<std::size_t>(i)] = value;
       return value;
     });
-    efforts = f;
-    if constexpr (is_ode<S>) efforts.array() *= effort(m_, x, u).array();
+    efforts = converted<Eigen::VectorXd>(f);
+    if constexpr (is_ode<S>) {
+      const State e = effort(m_, x, u);
+      for (Eigen::Index i = 0; i < efforts.size(); ++i) efforts[i] *= e[i];
+    }
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -96,7 +97,7 @@ SUREFOOT_INLINE Alternatives find_alternatives(const Selection& selection, const
       result.ties.push_back(names_of(other.hypothesis));
       result.indistinguishable.push_back(other);
     }
-    result.list.push_back(alternative);
+    result.list.push_back(std::move(alternative));
   }
   return result;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -34,7 +35,7 @@ SUREFOOT_INLINE std::vector<CalibratedParameter> calibrated_parameters(const Bou
       one.at_bound =
           value <= info.low + near * (variable.logarithmic ? value / info.high : 1) || value >= info.high - near;
     }
-    result.push_back(one);
+    result.push_back(std::move(one));
   }
   return result;
 }
@@ -75,7 +76,7 @@ SUREFOOT_INLINE FoundEffect describe(const BoundSimulator& bound, const Hypothes
       one.low = value - half;
       one.high = value + half;
     }
-    found.parameters.push_back(one);
+    found.parameters.push_back(std::move(one));
   }
   found.sentence = fill_sentence(attached.effect->sentence, attached.place, found.parameters);
   return found;

@@ -18,6 +18,7 @@
 #include "surefoot/diagnose/residual_tests/forest_correction.hpp"
 #include "surefoot/diagnose/residual_tests/whiteness.hpp"
 #include "surefoot/diagnose/verdict/evaluate.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -99,7 +100,8 @@ SUREFOOT_INLINE std::vector<ChannelMismatch> mismatch_by_output(const Estimation
     double count = 0;
     for (std::size_t i = 0; i < held_out.size(); ++i) {
       for (std::size_t m = 0; m < all.size(); ++m) {
-        sums[m] += series_of(bound, held_out[i], all[m]->runs.whole_held_out[i], output).squaredNorm();
+        const SimulatedRun& run = all[m]->runs.whole_held_out[i];
+        sums[m] += surefoot::detail::sum_of_squares(series_of(bound, held_out[i], run, output));
       }
       for (const Cell& cell : cells_of(bound.recordings[held_out[i]])) count += cell.output == output ? 1 : 0;
     }
@@ -110,7 +112,7 @@ SUREFOOT_INLINE std::vector<ChannelMismatch> mismatch_by_output(const Estimation
     const double stated = bound.info.outputs[k].noise;
     channel.noise = stated > 0 ? stated : std::min(fast_noise(bound, setup.split.training, output), channel.rmse_after);
     channel.p_value = models.calibrated.by_output[k].p_value;
-    result.push_back(channel);
+    result.push_back(std::move(channel));
   }
   return result;
 }

@@ -56,8 +56,8 @@ SUREFOOT_INLINE Hypothesis nominal_with_known(const BoundSimulator& bound, const
   Hypothesis hypothesis = nominal_hypothesis(bound);
   for (const NamedEffect& named : options.known) {
     hypothesis.effects.push_back(attach(bound.info, named, effects));
-    hypothesis.values.emplace_back(
-        Eigen::Map<const Eigen::VectorXd>(named.values.data(), static_cast<Eigen::Index>(named.values.size())));
+    hypothesis.values.emplace_back(static_cast<Eigen::Index>(named.values.size()));
+    std::copy(named.values.begin(), named.values.end(), hypothesis.values.back().data());
   }
   return hypothesis;
 }
@@ -180,11 +180,11 @@ SUREFOOT_INLINE void describe_models(const EstimationSetup& setup, const FittedM
   for (std::size_t e = 0; e < chosen.effects.size(); ++e) {
     FoundEffect found = describe(bound, chosen, e, &errors);
     if (e < known) {
-      diagnosis.known_effects.push_back(found);
+      diagnosis.known_effects.push_back(std::move(found));
       continue;
     }
     found.evidence = evidence_for(selection, e - known, run.seed);
-    diagnosis.effects.push_back(found);
+    diagnosis.effects.push_back(std::move(found));
   }
 }
 

@@ -12,6 +12,7 @@
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
 #include "surefoot/diagnose/residual_tests/whiteness.hpp"
 #include "surefoot/diagnose/verdict/prepare.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -26,9 +27,10 @@ SUREFOOT_INLINE std::vector<Recording> cut_recordings(const BoundSimulator& boun
       const auto count = static_cast<Eigen::Index>(parts), k = static_cast<Eigen::Index>(part);
       const Eigen::Index from = whole.rows() * k / count, to = whole.rows() * (k + 1) / count;
       if (to - from < criteria.part_rows) continue;
-      Eigen::VectorXd initial = states.col(from), scale(initial.size());
+      Eigen::VectorXd initial = surefoot::detail::column_of(states, from), scale(initial.size());
       for (Eigen::Index i = 0; i < initial.size(); ++i) {
-        scale[i] = std::max(criteria.initial_share * root_mean_square(states.row(i)), criteria.least_initial);
+        const double typical = root_mean_square(surefoot::detail::row_of(states, i));
+        scale[i] = std::max(criteria.initial_share * typical, criteria.least_initial);
         const int output = bound.structure.output_of[static_cast<std::size_t>(i)];
         if (output < 0) continue;
         const double measured = whole.outputs(output, from);

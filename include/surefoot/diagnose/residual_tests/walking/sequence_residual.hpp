@@ -30,9 +30,9 @@ struct WalkedStep {
 
 /// Typical sizes of what steps are compared by.
 struct StepScales {
-  Eigen::VectorXd input;                           // of each input
-  Eigen::Vector3d step = Eigen::Vector3d::Zero();  // of a step forward, to the side and of its turn [m, m, rad]
-  double extent = 0;                               // farthest that x or y gets from 0 [m]
+  Eigen::VectorXd input;             // of each input
+  Eigen::Vector3d step = {0, 0, 0};  // of a step forward, to the side and of its turn [m, m, rad]
+  double extent = 0;                 // farthest that x or y gets from 0 [m]
 };
 
 StepScales step_scales(const BoundSimulator& bound, const Hypothesis& hypothesis,
@@ -59,7 +59,7 @@ inline constexpr double noise_variances[] = {0.01, 0.03, 0.1, 0.3, 1.0};
 
 /// Twice the logarithm of how much likelier residuals are with the process than as noise alone, with the best sizes of
 /// both. `turned` are the residuals in the eigenvectors of the covariance, `values` its eigenvalues.
-double process_evidence(const Eigen::ArrayXd& values, const Eigen::ArrayXd& turned);
+double process_evidence(const Eigen::VectorXd& values, const Eigen::VectorXd& turned);
 
 /// Predicts held-out residuals from the others; the size of the process and of the noise by maximum likelihood.
 Eigen::VectorXd predict_held_out(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& residuals,

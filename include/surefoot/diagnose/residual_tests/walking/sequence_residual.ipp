@@ -14,8 +14,10 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
+#include "surefoot/diagnose/estimation/exponentials.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
 #include "surefoot/diagnose/residual_tests/walking/sequence_residual.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 #include "surefoot/optimize/symmetric_eigen.hpp"
 
 namespace surefoot::diagnosis {
@@ -73,9 +75,14 @@ SUREFOOT_INLINE Eigen::MatrixXd lever_of_step(const BoundSimulator& bound, const
     const auto reads = [&](int state) {
       return bound.structure.output_of[static_cast<std::size_t>(state)] == static_cast<int>(cells[i].output);
     };
-    if (reads(planar.x)) lever.row(row) << c, -s, -y;
-    if (reads(planar.y)) lever.row(row) << s, c, x;
-    if (reads(planar.heading)) lever.row(row) << 0, 0, 1;
+    const auto moves = [&](double forward, double lateral, double turn) {
+      lever(row, 0) = forward;
+      lever(row, 1) = lateral;
+      lever(row, 2) = turn;
+    };
+    if (reads(planar.x)) moves(c, -s, -y);
+    if (reads(planar.y)) moves(s, c, x);
+    if (reads(planar.heading)) moves(0, 0, 1);
   }
   return lever;
 }
@@ -111,9 +118,11 @@ SUREFOOT_INLINE Eigen::MatrixXd sequence_covariance(const std::vector<std::vecto
       Eigen::MatrixXd block = Eigen::MatrixXd::Zero(begin[a + 1] - begin[a], begin[b + 1] - begin[b]);
       for (const WalkedStep& one : sequences[a]) {
         Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(block.cols(), 3);
+        Eigen::VectorXd apart(one.features.size());
         for (const WalkedStep& other : sequences[b]) {
-          const double near = std::exp(-0.5 * (one.features - other.features).squaredNorm());
-          if (near > 1e-4) sum += near * other.lever;
+          for (Eigen::Index k = 0; k < apart.size(); ++k) apart[k] = one.features[k] - other.features[k];
+          const double near = std::exp(-0.5 * surefoot::detail::sum_of_squares(apart));
+          for (Eigen::Index k = 0; k < sum.size() && near > 1e-4; ++k) sum.data()[k] += near * other.lever.data()[k];
         }
         add_shared_change(block, one.lever, variance, sum);
       }
@@ -128,9 +137,9 @@ SUREFOOT_INLINE Eigen::MatrixXd sequence_covariance(const std::vector<std::vecto
   return covariance;
 }
 
-SUREFOOT_INLINE double process_evidence(const Eigen::ArrayXd& values, const Eigen::ArrayXd& turned) {
+SUREFOOT_INLINE double process_evidence(const Eigen::VectorXd& values, const Eigen::VectorXd& turned) {
   const auto n = static_cast<double>(turned.size());
-  Eigen::ArrayXd squares(turned.size()), variance(turned.size()), ratio(turned.size());
+  Eigen::VectorXd squares(turned.size()), variance(turned.size()), ratio(turned.size());
   for (Eigen::Index i = 0; i < squares.size(); ++i) squares[i] = turned[i] * turned[i];
   double best = 0;
   for (const double size : process_sizes) {
@@ -141,10 +150,25 @@ SUREFOOT_INLINE double process_evidence(const Eigen::ArrayXd& values, const Eige
       }
       const double scale = std::max(ratio.mean(), 1e-12);
       const double null = std::log(std::max(squares.mean(), 1e-12));
-      best = std::max(best, n * (null - std::log(scale)) - variance.log().sum());
+      best = std::max(best, n * (null - std::log(scale)) - logarithms(variance).sum());
     }
   }
   return best;
+}
+
+/// factor a x; summed by as many columns at a time as Eigen takes: all if they are few, else 16, or 4 if they are long.
+SUREFOOT_INLINE Eigen::VectorXd scaled_product(double factor, const Eigen::MatrixXd& a, const Eigen::VectorXd& x) {
+  constexpr Eigen::Index few = 128, long_rows = 4000;  // columns; rows of a column of 32 kB
+  const Eigen::Index block = a.cols() < few ? std::max<Eigen::Index>(1, a.cols()) : a.rows() < long_rows ? 16 : 4;
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(a.rows());
+  for (Eigen::Index begin = 0; begin < a.cols(); begin += block) {
+    Eigen::VectorXd sums = Eigen::VectorXd::Zero(a.rows());
+    for (Eigen::Index j = begin; j < std::min(begin + block, a.cols()); ++j) {
+      for (Eigen::Index i = 0; i < a.rows(); ++i) sums[i] += a(i, j) * x[j];
+    }
+    for (Eigen::Index i = 0; i < a.rows(); ++i) result[i] += sums[i] * factor;
+  }
+  return result;
 }
 
 SUREFOOT_INLINE Eigen::VectorXd predict_held_out(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& residuals,
@@ -159,9 +183,8 @@ SUREFOOT_INLINE Eigen::VectorXd predict_held_out(const Eigen::MatrixXd& covarian
     for (Eigen::Index i = 0; i < count; ++i) among(i, j) = covariance(known[static_cast<std::size_t>(i)], column);
   }
   const surefoot::detail::SymmetricEigen eigen = surefoot::detail::eigen_of_symmetric(among);
-  const Eigen::VectorXd turned = eigen.vectors.transpose() * y;
-  Eigen::ArrayXd variance(count), ratio(count);
-  Eigen::VectorXd share(count);
+  const Eigen::VectorXd turned = surefoot::detail::transposed_product(eigen.vectors, y);
+  Eigen::VectorXd variance(count), ratio(count), share(count);
   double least = std::numeric_limits<double>::infinity();
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(count);
   for (const double size : process_sizes) {
@@ -171,10 +194,10 @@ SUREFOOT_INLINE Eigen::VectorXd predict_held_out(const Eigen::MatrixXd& covarian
         ratio[i] = turned[i] * turned[i] / variance[i];
         share[i] = turned[i] / variance[i];
       }
-      const double cost = variance.log().sum() + ratio.sum();
+      const double cost = logarithms(variance).sum() + ratio.sum();
       if (cost >= least) continue;
       least = cost;
-      weights = size * (eigen.vectors * share);
+      weights = scaled_product(size, eigen.vectors, share);
     }
   }
   Eigen::VectorXd predicted = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held_out.size()));
@@ -192,11 +215,10 @@ SUREFOOT_INLINE std::vector<double> permuted_evidence(const Eigen::MatrixXd& cov
   const auto count = static_cast<Eigen::Index>(sequences), length = residuals.size() / count;
   if (length * count != residuals.size()) return {};
   const surefoot::detail::SymmetricEigen eigen = surefoot::detail::eigen_of_symmetric(covariance);
-  Eigen::ArrayXd values = eigen.values;
+  Eigen::VectorXd values = eigen.values;
   for (double& value : values) value = std::max(value, 0.0);
   const auto evidence = [&](const Eigen::VectorXd& shuffled) {
-    const Eigen::VectorXd turned = eigen.vectors.transpose() * shuffled;
-    return process_evidence(values, turned);
+    return process_evidence(values, surefoot::detail::transposed_product(eigen.vectors, shuffled));
   };
   std::vector<double> result{evidence(residuals)};
   Rng rng(1);
@@ -235,6 +257,17 @@ SUREFOOT_INLINE StepScales step_scales(const BoundSimulator& bound, const Hypoth
   return scales;
 }
 
+/// a b; one sum after the other, which for three columns is as Eigen takes them.
+SUREFOOT_INLINE Eigen::MatrixXd product_by_columns(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(a.rows(), b.cols());
+  for (Eigen::Index j = 0; j < b.cols(); ++j) {
+    for (Eigen::Index k = 0; k < a.cols(); ++k) {
+      for (Eigen::Index i = 0; i < a.rows(); ++i) result(i, j) += a(i, k) * b(k, j);
+    }
+  }
+  return result;
+}
+
 SUREFOOT_INLINE bool SequenceTest::read_off(const KernelChoice& kernel, SequenceData& data) const {
   const PlanarInfo& planar = *bound.info.planar;
   const auto& whitening = problem.weighting.whitening;
@@ -251,16 +284,18 @@ SUREFOOT_INLINE bool SequenceTest::read_off(const KernelChoice& kernel, Sequence
     }
     off[i] = kernel.headings_only ? raw_residuals(bound, r, runs[i], cells)
                                   : weighted_residuals(bound, r, runs[i], cells, problem.weighting);
-    size += off[i].squaredNorm();
+    size += surefoot::detail::sum_of_squares(off[i]);
     for (Eigen::Index step = 0; step + 1 < runs[i].states.cols(); ++step) {
       Eigen::MatrixXd lever = lever_of_step(bound, runs[i], cells, step);
       if (!kernel.headings_only && r < whitening.size() && whitening[r].cols() == lever.rows()) {
-        const Eigen::MatrixXd white = whitening[r] * lever;
-        lever = white;
+        lever = product_by_columns(whitening[r], lever);
       }
       if (kernel.feature == StepFeature::slip) {
         const Eigen::Vector3d moved = moved_in_step(planar, runs[i], step);
-        for (Eigen::Index k = 0; k < 3; ++k) lever.col(k) *= moved[k] / scales.step[k];
+        for (Eigen::Index k = 0; k < 3; ++k) {
+          const double share = moved[k] / scales.step[k];
+          for (Eigen::Index i = 0; i < lever.rows(); ++i) lever(i, k) *= share;
+        }
       }
       sequences[i].push_back({features_of_step(bound, r, runs[i], step, kernel.feature, scales), std::move(lever)});
     }

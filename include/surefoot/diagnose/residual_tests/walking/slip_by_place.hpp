@@ -19,8 +19,8 @@ namespace surefoot::diagnosis {
 
 /// Steps of a walk of which the poses before and after were measured.
 struct MeasuredSteps {
-  Eigen::Matrix2Xd place;                // where the step began
-  Eigen::Matrix3Xd simulated, residual;  // simulated displacement, and simulated minus measured, in the body's frame
+  Eigen::MatrixXd place;                // where the step began: x, y
+  Eigen::MatrixXd simulated, residual;  // simulated displacement, and simulated minus measured, in the body's frame
 };
 
 /// Each step is simulated from the measured pose before it. Nothing if the simulator is not planar or an output does
@@ -32,10 +32,10 @@ std::optional<MeasuredSteps> measured_steps(const BoundSimulator& bound, const s
 double sign_flip_p_value(const std::vector<double>& terms);
 
 /// Residuals of a fold's steps without what a forest, trained on the other folds, predicts of them from their place.
-Eigen::Matrix3Xd left_by_slip(const std::vector<MeasuredSteps>& by_fold, std::size_t fold, std::uint64_t seed);
+Eigen::MatrixXd left_by_slip(const std::vector<MeasuredSteps>& by_fold, std::size_t fold, std::uint64_t seed);
 
 /// The gain for the direction of the body that shows it best.
-Comparison best_direction(const std::vector<MeasuredSteps>& by_fold, const std::vector<Eigen::Matrix3Xd>& left);
+Comparison best_direction(const std::vector<MeasuredSteps>& by_fold, const std::vector<Eigen::MatrixXd>& left);
 
 /// The gain, on folds not used, of predicting the errors of steps by such a factor over no prediction, for the
 /// direction that shows it best; the p-value, by random signs, pays for that choice. Few steps at one place are enough.

@@ -17,6 +17,7 @@
 #include "surefoot/diagnose/estimation/noise_regime.hpp"
 #include "surefoot/diagnose/residual_tests/forest_correction.hpp"
 #include "surefoot/diagnose/residual_tests/walking/slip_by_place.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -71,8 +72,8 @@ SUREFOOT_INLINE double sign_flip_p_value(const std::vector<double>& terms) {
   return static_cast<double>(as_large) / (draws + 1);
 }
 
-SUREFOOT_INLINE Eigen::Matrix3Xd left_by_slip(const std::vector<MeasuredSteps>& by_fold, std::size_t fold,
-                                              std::uint64_t seed) {
+SUREFOOT_INLINE Eigen::MatrixXd left_by_slip(const std::vector<MeasuredSteps>& by_fold, std::size_t fold,
+                                             std::uint64_t seed) {
   Eigen::Index total = 0, at = 0;
   for (std::size_t g = 0; g < by_fold.size(); ++g) total += g == fold ? 0 : by_fold[g].place.cols();
   Dataset<Eigen::Dynamic, Eigen::Dynamic> known;
@@ -92,9 +93,9 @@ SUREFOOT_INLINE Eigen::Matrix3Xd left_by_slip(const std::vector<MeasuredSteps>& 
   const int min_leaf = std::max(10, static_cast<int>(total / 100));
   const ResidualForest forest = train_forest(known, min_leaf, serially(), seed + fold);
   const MeasuredSteps& held_out = by_fold[fold];
-  Eigen::Matrix3Xd left = held_out.residual;
+  Eigen::MatrixXd left = held_out.residual;
   for (Eigen::Index j = 0; j < left.cols(); ++j) {
-    const Eigen::VectorXd means = forest.predict(held_out.place.col(j));
+    const Eigen::VectorXd means = forest.predict(surefoot::detail::column_of(held_out.place, j));
     for (Eigen::Index k = 0; k < 3; ++k) {
       left(k, j) -= means[k] / std::max(means[3 + k], 0.05) * held_out.simulated(k, j);
     }
@@ -102,22 +103,42 @@ SUREFOOT_INLINE Eigen::Matrix3Xd left_by_slip(const std::vector<MeasuredSteps>& 
   return left;
 }
 
+SUREFOOT_INLINE double squares_of_row(const Eigen::MatrixXd& a, Eigen::Index row) {
+  double sum = 0;
+  for (Eigen::Index j = 0; j < a.cols(); ++j) sum += a(row, j) * a(row, j);
+  return sum;
+}
+
+/// The same for each of three rows, the first two by four columns at a time: as Eigen sums over the rows of a matrix.
+SUREFOOT_INLINE void add_squares_of_rows(const Eigen::MatrixXd& a, Eigen::Vector3d& sums) {
+  for (Eigen::Index k = 0; k < 2 && a.cols() > 0; ++k) {
+    const auto square = [&](Eigen::Index j) { return a(k, j) * a(k, j); };
+    double sum = square(0);
+    Eigen::Index j = 1;
+    for (; j < (a.cols() - 1) / 4 * 4; j += 4) sum += square(j) + square(j + 1) + (square(j + 2) + square(j + 3));
+    for (; j < a.cols(); ++j) sum += square(j);
+    sums[k] += sum;
+  }
+  sums[2] += squares_of_row(a, 2);
+}
+
 SUREFOOT_INLINE Comparison best_direction(const std::vector<MeasuredSteps>& by_fold,
-                                          const std::vector<Eigen::Matrix3Xd>& left) {
+                                          const std::vector<Eigen::MatrixXd>& left) {
   Comparison best;
   const Eigen::Index stretch = memory_of(NoiseKind::process);
   for (Eigen::Index k = 0; k < 3; ++k) {
     double before = 0, after = 0;
     std::vector<double> agreement;  // of what was predicted with what was left, by stretches of steps
     for (std::size_t f = 0; f < by_fold.size(); ++f) {
-      before += by_fold[f].residual.row(k).squaredNorm();
-      after += left[f].row(k).squaredNorm();
+      before += squares_of_row(by_fold[f].residual, k);
+      after += squares_of_row(left[f], k);
       Eigen::VectorXd agreed(left[f].cols());
       for (Eigen::Index j = 0; j < agreed.size(); ++j) {
         agreed[j] = by_fold[f].residual(k, j) * (by_fold[f].residual(k, j) - left[f](k, j));
       }
       for (Eigen::Index from = 0; from < agreed.size(); from += stretch) {
-        agreement.push_back(agreed.segment(from, std::min(stretch, agreed.size() - from)).sum());
+        const Eigen::Index count = std::min(stretch, agreed.size() - from);
+        agreement.push_back(Eigen::Map<const Eigen::VectorXd>(agreed.data() + from, count).sum());
       }
     }
     const double gain = before > 0 ? 1 - std::sqrt(after / before) : 0;
@@ -133,14 +154,14 @@ SUREFOOT_INLINE Comparison slip_by_place(const BoundSimulator& bound, const Hypo
                                          const FitProblem& problem, const std::vector<std::vector<std::size_t>>& folds,
                                          const Parallel& parallel, std::uint64_t seed) {
   std::vector<MeasuredSteps> by_fold;
-  Eigen::Array3d step_square = Eigen::Array3d::Zero(), error_square = step_square;
+  Eigen::Vector3d step_square(0, 0, 0), error_square = step_square;
   double count = 0;
   for (const auto& fold : folds) {
     const auto runs = simulate_all(bound, hypothesis, fold, problem.integration, parallel);
     auto steps = measured_steps(bound, fold, runs);
     if (!steps) return {};
-    step_square += steps->simulated.array().square().rowwise().sum();
-    error_square += steps->residual.array().square().rowwise().sum();
+    add_squares_of_rows(steps->simulated, step_square);
+    add_squares_of_rows(steps->residual, error_square);
     count += static_cast<double>(steps->place.cols());
     by_fold.push_back(std::move(*steps));
   }
@@ -156,7 +177,7 @@ SUREFOOT_INLINE Comparison slip_by_place(const BoundSimulator& bound, const Hypo
       }
     }
   }
-  std::vector<Eigen::Matrix3Xd> left(by_fold.size());
+  std::vector<Eigen::MatrixXd> left(by_fold.size());
   parallel(by_fold.size(), [&](std::size_t fold) { left[fold] = left_by_slip(by_fold, fold, seed); });
   return best_direction(by_fold, left);
 }
