@@ -2,11 +2,12 @@
 // models share. Cost of each decomposition: of the order of n^3.
 //
 // The sums are taken in the order of Eigen 3.4's own decompositions, so that the results are equal to the last bit to
-// those of the releases that used them, for up to 128 unknowns; Eigen's, which make a type of every expression, cost
-// the compiler seconds.
+// those of the releases that used them, for up to 128 unknowns (31 for the Cholesky factor). Eigen's, which make a type
+// of every expression, cost the compiler seconds.
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "surefoot/core/compiled.hpp"
 
@@ -39,6 +40,18 @@ Eigen::VectorXd transposed_product(const Eigen::MatrixXd& a, const Eigen::Vector
 
 /// diagonal a diagonal, for a diagonal matrix.
 Eigen::MatrixXd scaled(const Eigen::VectorXd& diagonal, const Eigen::MatrixXd& a);
+
+/// P a P^T = L D L^T: D on the diagonal, L below it, its diagonal of ones not stored; P swaps row k with row swaps[k],
+/// from the first k on.
+struct PivotedFactor {
+  Eigen::MatrixXd lower;
+  std::vector<Eigen::Index> swaps;
+};
+
+PivotedFactor factorise_with_pivots(const Eigen::MatrixXd& a);
+
+/// Replaces x by the solution of a y = x, for a factorised `a`.
+void solve_factorised(const PivotedFactor& factor, Eigen::VectorXd& x);
 
 /// Solutions of a x = b for symmetric `a` (L D L^T with pivots): one per column of b.
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);

@@ -77,20 +77,10 @@ SUREFOOT_INLINE bool is_small_product(Eigen::Index rows, Eigen::Index depth) {
   return rows == 1 || 2 * rows + depth < blocked_from;
 }
 
-/// Adds a b to `result`: the kernel behind Eigen's product, without a type per expression.
-SUREFOOT_INLINE void add_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, Eigen::MatrixXd& result) {
-  using namespace Eigen::internal;
-  constexpr int by_columns = Eigen::ColMajor, any = Eigen::Dynamic;
-  gemm_blocking_space<by_columns, double, double, any, any, any> blocking(a.rows(), b.cols(), a.cols(), 1, true);
-  general_matrix_matrix_product<Eigen::Index, double, by_columns, false, double, by_columns, false, by_columns, 1>::run(
-      a.rows(), b.cols(), a.cols(), a.data(), a.rows(), b.data(), b.rows(), result.data(), 1, result.rows(), 1.0,
-      blocking, nullptr);
-}
-
 SUREFOOT_INLINE Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(a.rows(), b.cols());
   if (!is_small_product(a.rows(), a.cols())) {
-    add_product(a, b, result);
+    result.noalias() += a * b;
     return result;
   }
   for (Eigen::Index j = 0; j < b.cols(); ++j) {
@@ -248,13 +238,6 @@ SUREFOOT_INLINE void solve_lower_transposed(const Eigen::MatrixXd& lower, Eigen:
   }
 }
 
-/// P a P^T = L D L^T: D on the diagonal, L below it, its diagonal of ones not stored; P swaps row k with row swaps[k],
-/// from the first k on.
-struct PivotedFactor {
-  Eigen::MatrixXd lower;
-  std::vector<Eigen::Index> swaps;
-};
-
 /// Swaps row and column k with row and column `pivot` > k of a matrix of which only the lower triangle is kept.
 SUREFOOT_INLINE void swap_symmetric(Eigen::MatrixXd& a, Eigen::Index k, Eigen::Index pivot) {
   for (Eigen::Index j = 0; j < k; ++j) std::swap(a(k, j), a(pivot, j));
@@ -296,7 +279,7 @@ SUREFOOT_INLINE PivotedFactor factorise_with_pivots(const Eigen::MatrixXd& matri
 
 /// Solves for a vector, or for the columns of a matrix; where D is 0, so is the solution of its equation.
 template <class VectorOrMatrix>
-void solve_factorised(const PivotedFactor& factor, VectorOrMatrix& x) {
+void solve_by_factor(const PivotedFactor& factor, VectorOrMatrix& x) {
   const Eigen::Index n = x.rows();
   const auto swap_rows = [&](Eigen::Index k) {
     const Eigen::Index other = factor.swaps[static_cast<std::size_t>(k)];
@@ -313,63 +296,34 @@ void solve_factorised(const PivotedFactor& factor, VectorOrMatrix& x) {
   for (Eigen::Index k = n; k-- > 0;) swap_rows(k);
 }
 
+SUREFOOT_INLINE void solve_factorised(const PivotedFactor& factor, Eigen::VectorXd& x) { solve_by_factor(factor, x); }
+
 SUREFOOT_INLINE Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
   Eigen::VectorXd x = b;
-  solve_factorised(factorise_with_pivots(a), x);
+  solve_by_factor(factorise_with_pivots(a), x);
   return x;
 }
 
 SUREFOOT_INLINE Eigen::MatrixXd invert_symmetric(const Eigen::MatrixXd& a) {
   Eigen::MatrixXd x = Eigen::MatrixXd::Identity(a.rows(), a.cols());
-  solve_factorised(factorise_with_pivots(a), x);
+  solve_by_factor(factorise_with_pivots(a), x);
   return x;
 }
 
-/// The Cholesky factor of rows and columns begin to end - 1 of a matrix.
-SUREFOOT_INLINE bool factorise_block(Eigen::MatrixXd& a, Eigen::Index begin, Eigen::Index end) {
-  for (Eigen::Index k = begin; k < end; ++k) {
+SUREFOOT_INLINE bool factorise_in_place(Eigen::MatrixXd& a) {
+  const Eigen::Index n = a.rows();
+  for (Eigen::Index k = 0; k < n; ++k) {
     double squares = 0;
-    for (Eigen::Index j = begin; j < k; ++j) squares += a(k, j) * a(k, j);
+    for (Eigen::Index j = 0; j < k; ++j) squares += a(k, j) * a(k, j);
     double pivot = a(k, k) - squares;
     if (pivot <= 0) return false;
     pivot = std::sqrt(pivot);
     a(k, k) = pivot;
-    for (Eigen::Index i = k + 1; i < end; ++i) {
+    for (Eigen::Index i = k + 1; i < n; ++i) {
       double sum = 0;
-      for (Eigen::Index j = begin; j < k; ++j) sum += a(i, j) * a(k, j);
+      for (Eigen::Index j = 0; j < k; ++j) sum += a(i, j) * a(k, j);
       a(i, k) = (a(i, k) - sum) / pivot;
     }
-  }
-  return true;
-}
-
-/// Rows and columns `end` and on of a matrix, less what the factor of the rows and columns before them makes of them.
-SUREFOOT_INLINE void eliminate_block(Eigen::MatrixXd& a, Eigen::Index begin, Eigen::Index end) {
-  using namespace Eigen::internal;  // the kernels behind solveInPlace() and rankUpdate(), without a type per expression
-  using Eigen::Index;
-  const Index stride = a.rows(), block = end - begin, rest = a.rows() - end;
-  double* const below = a.data() + begin * stride + end;
-  gemm_blocking_space<Eigen::ColMajor, double, double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Dynamic, 4> solving(
-      rest, block, block, 1, false);
-  triangular_solve_matrix<double, Index, Eigen::OnTheRight, Eigen::Upper, false, Eigen::RowMajor, Eigen::ColMajor,
-                          1>::run(block, rest, &a(begin, begin), stride, below, 1, stride, solving);
-  gemm_blocking_space<Eigen::ColMajor, double, double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Dynamic> update(
-      rest, rest, block, 1, false);
-  general_matrix_matrix_triangular_product<Index, double, Eigen::ColMajor, false, double, Eigen::RowMajor, false,
-                                           Eigen::ColMajor, 1, Eigen::Lower>::run(rest, block, below, stride, below,
-                                                                                  stride, &a(end, end), 1, stride, -1.0,
-                                                                                  update);
-}
-
-SUREFOOT_INLINE bool factorise_in_place(Eigen::MatrixXd& a) {
-  constexpr Eigen::Index small = 32;  // from so many unknowns on by blocks
-  const Eigen::Index n = a.rows();
-  if (n < small) return factorise_block(a, 0, n);
-  const Eigen::Index block = std::clamp<Eigen::Index>(n / 8 / 16 * 16, 8, 128);
-  for (Eigen::Index begin = 0; begin < n; begin += block) {
-    const Eigen::Index end = std::min(begin + block, n);
-    if (!factorise_block(a, begin, end)) return false;
-    if (end < n) eliminate_block(a, begin, end);
   }
   return true;
 }

@@ -146,35 +146,14 @@ SUREFOOT_INLINE Eigen::MatrixXd covariance_of(const FinalResiduals& s, const Eig
   return sum;
 }
 
-/// log |c| + off^T c^-1 off, for a covariance c: by L D L^T with pivots.
-SUREFOOT_INLINE double deviance(Eigen::MatrixXd c, const Eigen::VectorXd& off) {
-  const Eigen::Index n = off.size();
-  Eigen::VectorXd solved = off, scaled(n);
-  std::vector<Eigen::Index> pivots;
-  double log_determinant = 0;
-  for (Eigen::Index k = 0; k < n; ++k) {
-    Eigen::Index pivot = k;
-    for (Eigen::Index i = k + 1; i < n; ++i) {
-      if (c(i, i) > c(pivot, pivot)) pivot = i;
-    }
-    pivots.push_back(pivot);
-    for (Eigen::Index i = 0; i < n; ++i) std::swap(c(k, i), c(pivot, i));
-    for (Eigen::Index i = 0; i < n; ++i) std::swap(c(i, k), c(i, pivot));
-    std::swap(solved[k], solved[pivot]);
-    for (Eigen::Index j = 0; j < k; ++j) scaled[j] = c(j, j) * c(k, j);
-    for (Eigen::Index i = k; i < n; ++i) {
-      double sum = 0;
-      for (Eigen::Index j = 0; j < k; ++j) sum += c(i, j) * scaled[j];
-      c(i, k) -= sum;
-    }
-    for (Eigen::Index i = k + 1; i < n && c(k, k) != 0; ++i) c(i, k) /= c(k, k);
-    log_determinant += std::log(std::max(c(k, k), 1e-30));
-  }
-  surefoot::detail::solve_lower(c, solved, surefoot::detail::DiagonalOf::ones);
-  for (Eigen::Index i = 0; i < n; ++i) solved[i] = c(i, i) != 0 ? solved[i] / c(i, i) : 0;
-  surefoot::detail::solve_lower_transposed(c, solved, surefoot::detail::DiagonalOf::ones);
-  for (Eigen::Index k = n; k-- > 0;) std::swap(solved[k], solved[pivots[static_cast<std::size_t>(k)]]);
-  return log_determinant + surefoot::detail::dot(off.data(), solved.data(), n);
+/// log |c| + off^T c^-1 off, for a covariance c.
+SUREFOOT_INLINE double deviance(const Eigen::MatrixXd& c, const Eigen::VectorXd& off) {
+  const auto factor = surefoot::detail::factorise_with_pivots(c);
+  Eigen::VectorXd solved = off, diagonal(off.size());
+  surefoot::detail::solve_factorised(factor, solved);
+  constexpr double least = 1e-30;  // of D, whose logarithm is taken
+  for (Eigen::Index k = 0; k < off.size(); ++k) diagonal[k] = std::max(factor.lower(k, k), least);
+  return logarithms(diagonal).sum() + surefoot::detail::dot(off.data(), solved.data(), off.size());
 }
 
 /// Logarithms of the four variances with the highest likelihood, by a coordinate search.
