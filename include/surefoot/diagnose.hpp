@@ -1,4 +1,4 @@
-// The face of surefoot/diagnose, and core: diagnosis of what a simulator leaves out.
+// The face of surefoot/diagnose: diagnosis of what a simulator leaves out.
 #pragma once
 
 #include "surefoot/core.hpp"

@@ -135,7 +135,7 @@ SUREFOOT_INLINE void write_file_atomically(const std::string& path, std::span<co
   }
   std::error_code error;
   if (std::FILE* file = std::fopen(aside.c_str(), "wb"); file != nullptr) {
-    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+    const bool written = bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
     if (std::fclose(file) == 0 && written) {
       error = detail::flush_to_disk(aside);
       if (!error) error = detail::rename_file(aside, path);
