@@ -126,8 +126,11 @@ SUREFOOT_INLINE Eigen::MatrixXd transposed(const Eigen::MatrixXd& a) {
 }
 
 SUREFOOT_INLINE Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  if (!is_small_product(a.cols(), a.rows())) return product(transposed(a), b);
-  Eigen::MatrixXd result(a.cols(), b.cols());
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(a.cols(), b.cols());
+  if (!is_small_product(a.cols(), a.rows())) {
+    result.noalias() += a.transpose() * b;
+    return result;
+  }
   for (Eigen::Index j = 0; j < b.cols(); ++j) {
     for (Eigen::Index i = 0; i < a.cols(); ++i) {
       result(i, j) = dot(a.data() + i * a.rows(), b.data() + j * b.rows(), a.rows());
