@@ -26,14 +26,14 @@ double norm(const Eigen::VectorXd& a);
 double sum_of_squares(const Eigen::VectorXd& a);
 double column_norm(const Eigen::MatrixXd& a, Eigen::Index column);
 
-/// a b, with as many rows as columns, and a x.
+/// a b and a x.
 Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 Eigen::VectorXd product(const Eigen::MatrixXd& a, const Eigen::VectorXd& x);
 
 /// a + lower x, of the lower triangle of a matrix.
 Eigen::VectorXd add_lower_product(Eigen::VectorXd a, const Eigen::MatrixXd& lower, const Eigen::VectorXd& x);
 
-/// a^T, a^T b, with as many rows as columns, and a^T x.
+/// a^T, a^T b and a^T x.
 Eigen::MatrixXd transposed(const Eigen::MatrixXd& a);
 Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 Eigen::VectorXd transposed_product(const Eigen::MatrixXd& a, const Eigen::VectorXd& x);

@@ -72,14 +72,14 @@ SUREFOOT_INLINE double column_norm(const Eigen::MatrixXd& a, Eigen::Index column
 }
 
 /// Whether Eigen takes the sums of a product one by one, not by blocks.
-SUREFOOT_INLINE bool is_small_product(Eigen::Index rows, Eigen::Index depth) {
+SUREFOOT_INLINE bool is_small_product(Eigen::Index rows, Eigen::Index columns, Eigen::Index depth) {
   constexpr Eigen::Index blocked_from = 20;  // rows, columns and depth together
-  return rows == 1 || 2 * rows + depth < blocked_from;
+  return rows == 1 || rows + columns + depth < blocked_from;
 }
 
 SUREFOOT_INLINE Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(a.rows(), b.cols());
-  if (!is_small_product(a.rows(), a.cols())) {
+  if (!is_small_product(a.rows(), b.cols(), a.cols())) {
     result.noalias() += a * b;
     return result;
   }
@@ -127,7 +127,7 @@ SUREFOOT_INLINE Eigen::MatrixXd transposed(const Eigen::MatrixXd& a) {
 
 SUREFOOT_INLINE Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(a.cols(), b.cols());
-  if (!is_small_product(a.cols(), a.rows())) {
+  if (!is_small_product(a.cols(), b.cols(), a.rows())) {
     result.noalias() += a.transpose() * b;
     return result;
   }

@@ -32,7 +32,7 @@ SUREFOOT_INLINE std::vector<bool> distinct_inputs(const BoundSimulator& bound, c
       for (Eigen::Index k = 0; k < all.rows(); ++k) {
         const double value = k < driven.rows() ? driven(k, column) : signals(k - driven.rows(), column);
         all(k, column) = std::isfinite(value) ? value : 0.0;
-        if (all(k, column) != all.data()[k]) changes[static_cast<std::size_t>(k)] = true;
+        if (all(k, column) != all(k, 0)) changes[static_cast<std::size_t>(k)] = true;
       }
     }
     const Eigen::MatrixXd squares = surefoot::detail::product(all, surefoot::detail::transposed(all));
