@@ -8,6 +8,10 @@
 
 namespace sigmaban {
 
+// In files of their own: each instantiates all of RFPI.
+extern template void train(const Approach&, const TrainOptions&, const surefoot::MpiExecutor&);
+extern template void train(const CalibratedApproach&, const TrainOptions&, const surefoot::MpiExecutor&);
+
 void add_training(CLI::App& program, surefoot::MpiSession& session) {
   const auto make_executor = [&session](const TrainOptions& options) {
     session.when_lost([checkpoint = options.checkpoint()] {
