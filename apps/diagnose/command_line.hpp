@@ -16,7 +16,7 @@ struct CommandLine {
   std::vector<std::filesystem::path> recordings;
   std::vector<std::string> test;  // recordings kept for the test
   std::vector<std::string> effects;
-  double test_share = 0.3;
+  double test_share = 0;
   int max_effects = 4;
   double budget = 0;  // [s], 0: none
   std::uint64_t seed = 1;

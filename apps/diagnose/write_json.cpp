@@ -89,7 +89,21 @@ Json alternatives_json(const Diagnosis& diagnosis) {
     }
     list.push_back({{"effects", effects},
                     {"heldout_rmse", finite_or_null(alternative.cross_validated_rmse)},
+                    {"probability", finite_or_null(alternative.probability)},
                     {"indistinguishable", alternative.indistinguishable}});
+  }
+  return list;
+}
+
+// The chosen structure and all others, with their probabilities.
+Json structures_json(const Diagnosis& diagnosis) {
+  Json chosen = Json::array(), list = Json::array();
+  for (const auto& effect : diagnosis.effects) {
+    chosen.push_back({{"name", effect.name}, {"attached_to", effect.attached_to}});
+  }
+  list.push_back({{"effects", chosen}, {"probability", finite_or_null(diagnosis.probability)}});
+  for (const Json& other : alternatives_json(diagnosis)) {
+    list.push_back({{"effects", other["effects"]}, {"probability", other["probability"]}});
   }
   return list;
 }
@@ -97,8 +111,10 @@ Json alternatives_json(const Diagnosis& diagnosis) {
 Json fit_json(const Diagnosis& diagnosis) {
   Json recordings = Json::array();
   for (const auto& one : diagnosis.per_recording) {
-    recordings.push_back(
-        {{"recording", one.recording}, {"before", finite_or_null(one.before)}, {"after", finite_or_null(one.after)}});
+    recordings.push_back({{"recording", one.recording},
+                          {"before", finite_or_null(one.before)},
+                          {"after", finite_or_null(one.after)},
+                          {"beyond_noise", one.beyond_noise}});
   }
   return {{"train",
            {{"rmse_before", finite_or_null(diagnosis.training_before)},
@@ -163,6 +179,8 @@ std::string verdict_text(surefoot::Verdict verdict) {
       return "parameters-only";
     case surefoot::Verdict::missing_physics:
       return "missing-physics";
+    case surefoot::Verdict::unfinished:
+      return "search-not-finished";
     case surefoot::Verdict::unexplained:
       break;
   }
@@ -176,6 +194,9 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
       {"complete", diagnosis.complete},
       {"verdict", verdict_text(diagnosis.verdict)},
       {"sentence", diagnosis.sentence},
+      {"probability", finite_or_null(diagnosis.probability)},
+      {"noise_ratio", finite_or_null(diagnosis.noise_ratio)},
+      {"structures", structures_json(diagnosis)},
       {"recordings", {{"fit", diagnosis.fit}, {"select", diagnosis.select}, {"test", diagnosis.held_out}}},
       {"parameters", parameters_json(diagnosis.parameters)},
       {"augmented_parameters", parameters_json(diagnosis.augmented_parameters)},

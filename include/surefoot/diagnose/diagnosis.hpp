@@ -16,7 +16,8 @@ enum class Verdict : std::uint8_t {
   adequate,         // no significant mismatch, even with the nominal parameters
   parameters_only,  // calibration removes it
   missing_physics,  // named effects remove it
-  unexplained       // a significant mismatch remains that no effect models
+  unexplained,      // a significant mismatch remains that no effect models
+  unfinished        // the search ended before its time: stopped, or out of its budget
 };
 
 /// An estimate with its 95 % interval.
@@ -55,7 +56,7 @@ struct Evidence {
   double gain = 0;  // share of the cross-validated error that goes with this effect (1 - after / before)
   double gain_stderr = 0;
   double p_value = 1;
-  double confidence = 0;  // share of bootstrap repetitions that choose it
+  double confidence = 0;  // posterior probability of it: of all structures that it is part of
 };
 
 struct FoundEffect {
@@ -68,7 +69,8 @@ struct FoundEffect {
 /// Effects that might have been chosen instead.
 struct Alternative {
   std::vector<std::pair<std::string, std::string>> effects;  // name, attached to
-  double cross_validated_rmse = 0;                           // in units of the weighting
+  double cross_validated_rmse = 0;                           // in units as in RecordingFit
+  double probability = 0;                                    // posterior, of this structure among all that were tried
   bool indistinguishable = false;                            // these recordings cannot tell them from the chosen ones
 };
 
@@ -76,6 +78,8 @@ struct RecordingFit {
   std::string recording;
   double before = 0,
          after = 0;  // error in units of the noise, or of the output's standard deviation where that is unknown
+  double independent = 0;     // count of independent errors: of all, those beyond their autocorrelation
+  bool beyond_noise = false;  // significantly further off than noise explains
 };
 
 /// One held-out recording for pictures: rows x outputs, and the times.
@@ -133,12 +137,14 @@ struct Diagnosis {
   std::vector<FoundEffect> known_effects;  // that the model had before, with parameters of the augmented fit
   std::vector<Alternative> alternatives;
   std::vector<DetectionLimit> limits;
+  double probability = 1;  // posterior, of the effects that are named, or that there is none
   std::string next_experiment;
   double training_before = 0, training_after = 0;  // errors, in units as in RecordingFit
   double held_out_before = 0, held_out_after = 0;
   double held_out_forest = std::numeric_limits<double>::quiet_NaN();  // a forest on residuals instead of effects
   ForestResidual forest_residual;
   double noise_floor = std::numeric_limits<double>::quiet_NaN();
+  double noise_ratio = std::numeric_limits<double>::quiet_NaN();  // held_out_after / noise_floor; NaN: cannot be told
   double gain_low = 0, gain_high = 0;  // 95 % interval of held_out_after / held_out_before over recordings
   std::vector<RecordingFit> per_recording;
   std::vector<Curve> curves;

@@ -15,7 +15,7 @@ namespace surefoot {
 
 struct DiagnoseOptions {
   std::vector<std::string> held_out = {};  // names of recordings that are held out; empty: a random share
-  double held_out_share = 0.3;             // [0..1] of the recordings, if none is named; never all, and at least one
+  double held_out_share = 0;  // [0..1] of the recordings, if none is named; 0: each is held out once (cross-fitting)
   std::vector<std::string> effects = {};   // names of effects to consider; empty: all
   std::vector<Effect> more_effects = {};   // of the user's own
   std::vector<NamedEffect> known = {};     // part of the model already; their parameters are calibrated with the others

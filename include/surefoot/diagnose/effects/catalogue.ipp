@@ -46,6 +46,7 @@ namespace surefoot {
 SUREFOOT_INLINE std::vector<Effect> velocity_effects() {
   return {effects::viscous_friction(),
           effects::coulomb_friction(),
+          effects::coulomb_friction_presliding(),
           effects::stribeck_friction(),
           effects::load_dependent_friction(),
           effects::load_dependent_friction_under_load(),

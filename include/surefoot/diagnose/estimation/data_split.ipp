@@ -32,7 +32,8 @@ SUREFOOT_INLINE RecordingSplit split_recordings(const std::vector<Recording>& re
       throw DiagnoseError("the held-out recording '" + name + "' is not among the recordings");
     split.held_out.push_back(static_cast<std::size_t>(found - recordings.begin()));
   }
-  if (held_out.empty()) {
+  split.cross_fitted = held_out.empty() && !(share > 0);
+  if (held_out.empty() && share > 0) {
     const auto wanted = static_cast<std::size_t>(std::lround(share * static_cast<double>(recordings.size())));
     const std::size_t count = std::clamp<std::size_t>(wanted, 1, recordings.size() - 1);
     split.held_out.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
@@ -48,6 +49,7 @@ SUREFOOT_INLINE RecordingSplit split_recordings(const std::vector<Recording>& re
     split.folds[i % split.folds.size()].push_back(split.training[i]);
   for (auto& fold : split.folds) std::sort(fold.begin(), fold.end());
   std::sort(split.training.begin(), split.training.end());
+  if (split.cross_fitted) split.held_out = split.training;
   return split;
 }
 

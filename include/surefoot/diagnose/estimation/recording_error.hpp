@@ -34,6 +34,11 @@ std::vector<double> recording_errors(const BoundSimulator& bound, const std::vec
 double error_over_all(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
                       const std::vector<SimulatedRun>& runs);
 
+/// At most `count` recordings, from the one that a model misses most to the one that it misses least, in even steps; in
+/// whatever order they come.
+std::vector<std::size_t> some_by_error(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                       const std::vector<SimulatedRun>& runs, std::size_t count);
+
 }  // namespace surefoot::diagnosis
 
 #ifndef SUREFOOT_COMPILED

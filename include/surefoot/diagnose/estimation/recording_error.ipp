@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
@@ -9,6 +10,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
+#include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
 
@@ -63,6 +65,23 @@ SUREFOOT_INLINE std::vector<double> recording_errors(const BoundSimulator& bound
 SUREFOOT_INLINE double error_over_all(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
                                       const std::vector<SimulatedRun>& runs) {
   return over_all(recording_errors(bound, recordings, runs, error_scale(bound)), cell_counts(bound, recordings));
+}
+
+SUREFOOT_INLINE std::vector<std::size_t> some_by_error(const BoundSimulator& bound,
+                                                       const std::vector<std::size_t>& recordings,
+                                                       const std::vector<SimulatedRun>& runs, std::size_t count) {
+  if (recordings.size() <= count) return recordings;
+  const std::vector<double> errors = recording_errors(bound, recordings, runs, error_scale(bound));
+  std::vector<std::size_t> order(recordings.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  sort_items(order, [&](std::size_t a, std::size_t b) { return errors[a] > errors[b]; });
+  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t rank = count > 1 ? i * (order.size() - 1) / (count - 1) : 0;
+    result.push_back(recordings[order[rank]]);
+  }
+  std::ranges::sort(result);
+  return result;
 }
 
 }  // namespace surefoot::diagnosis

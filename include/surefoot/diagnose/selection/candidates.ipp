@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/cross_validation.hpp"
 #include "surefoot/diagnose/estimation/hypothesis.hpp"
 #include "surefoot/diagnose/selection/candidates.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"

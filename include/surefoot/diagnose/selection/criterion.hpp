@@ -1,54 +1,47 @@
-// Criteria of the selection: which of several hypotheses is the most plausible, and whether a gain is to be believed.
+// Criterion of the selection: the posterior probability of whole structures.
+//
+// The density of a recording is a Student t density of its errors, whose scale is that of the recording and output
+// itself around the one of all; n errors with an autocorrelation time of m rows count as n / m. With the Occam factor of
+// the parameters this is Laplace's approximation of the marginal likelihood; the prior probability falls with each effect
+// by the number of candidates. Structures are weighted by these densities, summed over recordings that are drawn anew
+// (Bayesian bootstrap, as in pseudo-BMA+; Yao, Vehtari, Simpson & Gelman, "Using stacking to average Bayesian predictive
+// distributions", Bayesian Analysis 13(3), 2018): what a few recordings alone decide stays uncertain.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
-#include <optional>
+#include <limits>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "surefoot/diagnose/estimation/cross_validation.hpp"
+#include "surefoot/diagnose/estimation/marginal_likelihood.hpp"
 
 namespace surefoot::diagnosis {
 
-/// When an effect is believed, dropped or replaced. A gain is a share of the root mean square error, cross-validated; a
-/// t is a gain in its standard errors.
+/// The meaning of "probable". Densities are in nat.
 struct SelectionCriteria {
   int max_effects = 4;  // to combine; more of them can rarely be told apart
 
-  // An effect is believed:
-  double min_gain = 0.03;                 // smaller gains are within what a slightly wrong form of an effect takes away
-  double min_t = 2.5;                     // one-sided 0.6 %
-  double significance = 0.02;             // after correction for the number of candidates (Bonferroni)
-  double large_gain = 0.1;                // is believed without that correction: it may come from few recordings
-  double large_gain_significance = 0.05;  // one-sided, of that test alone
-  double least_share = 0.03;              // of the error without effects, that an effect must take away
-  double decisive_gain = 0.5;             // or of the error that is left, however small that is
-  double tests_per_pair = 15;             // a pair pays for all pairs of six proposals, by candidate
+  // Prior probability of a structure:
+  double form_cost = 1;       // [nat] of each parameter and of a memory: longer formulas are rarer
+  double bound_cost = 50;     // [nat] of a parameter at its bound, of a size that makes no sense: never chosen
+  double bound_share = 0.01;  // of its range, nearer to which a parameter counts as at its bound
 
-  // Of several that are believed, the simplest that is not clearly worse than the best:
-  double tie_gain = 0.01;         // the best gains no more than this: a tie
-  double tie_t = 1.5;             // or no more than this, against a hypothesis with fewer parameters
-  double tie_gain_share = 0.985;  // or has no more than this share of the best one's gain
+  // Predictive density:
+  double degrees = 12;        // of freedom of the prior of a recording's own scale: it differs by about a fifth
+  double least_error = 1e-3;  // of the output's standard deviation: smaller errors are those of the integration
+  double form_error = 0.02;   // of the error without effects: the form of an effect is never quite that of the machine
 
-  // An effect among others is dropped again:
-  double idle_gain = 0.015;  // half of min_gain: it was worth that much when it was chosen
-  double idle_t = 1.5;       // one-sided 7 %: it may well be chance
-
-  // An effect is replaced by another one:
-  double replace_gain = 0.03;    // as much as an effect must gain
-  double replace_t = 2;          // one-sided 2 %: the first choice was the best at its time
-  double replace_share = 0.015;  // of the error without effects: of a small rest nobody sees the difference
-
-  // Parameters:
-  double determined_deviations = 2;  // standard errors that a parameter lies from zero: about 95 %
+  // Decision:
+  double named_odds = 20;  // against the model without effects, from which on an effect is named: 5 % to be wrong
+  double tie_odds = 8;     // of the best structure against another one, below which they cannot be told apart
+  std::uint32_t rounds = 400;  // of the bootstrap over recordings: shares are off by 2.5 % at most
+  std::uint64_t seed = 1;      // of the same: always the same draws
 
   // Residuals hold what noise does not:
-  double structure_significance = 0.02;  // as for effects; the verdict asks for more, see VerdictCriteria
-  double structure_share = 0.03;         // of their mean square: less is not worth a parameter
+  double structure_significance = 0.02;
+  double structure_share = 0.03;  // of their mean square: less is not worth a parameter
 
   // Proposals that get no fit:
   double least_distinct = 0.01;  // share of a signature beyond the model's parameters: below, they do it
@@ -64,10 +57,10 @@ struct SearchEffort {
   std::size_t shortlist = 14;                // proposals that get a fit
   std::size_t max_shortlist = 50;            // of small problems
   double shortlist_rows = 6000;              // of the recordings, up to which the list is longer in proportion
-  std::size_t finalists = 4;                 // fits that are cross-validated
-  std::size_t max_finalists = 9;             // with near ties
-  double near_tie = 1.05;                    // loss against the best one's: fits this close may change places
-  std::size_t reserve = 4;                   // fits beyond the finalists that are finished
+  std::size_t rows = 4000;                   // of the recordings that the search looks at; what it finds is fitted to all
+  std::size_t finalists = 6;                 // fits that are finished and evaluated
+  std::size_t beam = 2;                      // structures that are each extended by a further effect
+  double hopeless = 15;                      // [nat] behind the best one: not extended, not fitted again
   std::size_t screening = 5;                 // recordings that proposals are made from
   std::size_t screening_final_poses = 1000;  // the same where each has a pose only
   int first_iterations = 3;                  // of a fit, before the weakest are given up
@@ -76,35 +69,30 @@ struct SearchEffort {
   std::size_t more_starts = 2;               // for effects that have no strength
   std::size_t scattered_points = 12;         // for the model's parameters beside the first effect
   std::size_t paired = 6;                    // proposals that pairs are made of
-  std::size_t pair_reserve = 4;              // fits of pairs that are finished
-  std::size_t pair_finalists = 2;
-  std::size_t compared_shortlist = 8;  // for what may stand in an effect's place
-  std::size_t compared_finalists = 3;  // fits of these that are finished
-  int fold_iterations = 6;             // of the fit to each fold, which starts from the fit to all
-  double fold_tolerance = 1e-3;        // relative decrease of its loss at which it ends
+  std::size_t pair_finalists = 5;            // fits of pairs that are finished and evaluated
+  std::size_t compared_shortlist = 8;        // for what may stand in an effect's place
+  std::size_t compared_finalists = 3;        // fits of these that are finished and evaluated
 };
 
-/// A hypothesis with its cross-validated losses.
+/// A fitted hypothesis with its errors.
 struct EvaluatedHypothesis {
   Hypothesis hypothesis;
-  double loss = 0;  // on the recordings of the fit
-  BlockLosses cross_validated;
-  Comparison gain;  // against its parent
+  double loss = std::numeric_limits<double>::infinity();  // on the recordings of the fit
+  ErrorSquares errors;
+  double log_prior = 0;  // of the structure, and the Occam factor of its parameters [nat]
 
   /// Parameters of all effects.
-  std::size_t parameter_count() const {
-    std::size_t count = 0;
-    for (const Eigen::VectorXd& values : hypothesis.values) count += static_cast<std::size_t>(values.size());
-    return count;
-  }
+  std::size_t parameter_count() const;
 };
 
 /// The subject of a search, and how to go about it.
 struct SearchProblem {
-  FitProblem fit;                               // all recordings but those held out
-  std::vector<std::vector<std::size_t>> folds;  // of the same recordings
-  std::vector<std::size_t> screened;            // the part of them that screens proposals
+  FitProblem fit;                     // all recordings but those held out
+  Weighting scale;                    // in units of which errors are compared; the same for all hypotheses
+  Eigen::VectorXd least;              // as in ErrorSquares, for all hypotheses
+  std::vector<std::size_t> screened;  // recordings that screen proposals
   std::size_t known = 0;  // effects that are part of the model already: the first ones, never removed
+  std::size_t candidates = 1;  // effects and places that may be tried
   /// Whether the residuals of a hypothesis still hold what noise does not; where not, only strong proposals get a fit.
   std::function<bool(const Hypothesis&)> structured = [](const Hypothesis&) { return true; };
   std::function<void(const std::string&, double)> on_progress = [](const std::string&, double) {};
@@ -113,39 +101,34 @@ struct SearchProblem {
   SearchEffort effort = {};
 };
 
-/// Cross-validates a fit.
+/// Measures a fit on each of its recordings.
 EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, const Fit& fitted, const SearchProblem& problem,
                                  const Parallel& parallel);
 
-/// Fewer parameters, or as many with effects that stand earlier in the catalogue (which begins with the simplest).
-bool simpler(const Hypothesis& a, const Hypothesis& b);
+/// Mean squares by output below which differences between structures mean nothing: errors of the integration, and of the
+/// form of effects, against the model without any.
+Eigen::VectorXd least_squares_compared(const ErrorSquares& without_effects, const SelectionCriteria& criteria);
 
-/// The simplest of those that are not clearly worse than the best.
-std::size_t most_plausible(const std::vector<EvaluatedHypothesis>& evaluated, const SelectionCriteria& criteria = {});
+/// Log of the prior probability of the effects beyond the first `known` [nat], but for a constant.
+double log_prior(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t known, std::size_t candidates,
+                 const SelectionCriteria& criteria);
 
-/// Whether a gain is to be believed after `tests` of them. `parent` is the error before, as a share of the error
-/// without effects.
-bool accepted(const Comparison& gain, double tests, double parent, const SelectionCriteria& criteria);
+/// Log density of each recording [nat], but for a constant that is the same for all hypotheses with the same
+/// reference: the best of those to be compared.
+std::vector<double> log_densities(const ErrorSquares& errors, const ErrorSquares& reference,
+                                  const SelectionCriteria& criteria);
 
-/// The most plausible of those whose gain is to be believed, if there is one.
-std::optional<std::size_t> most_plausible_accepted(const std::vector<EvaluatedHypothesis>& evaluated, double tests,
-                                                   double parent, const SelectionCriteria& criteria);
+/// The one with the largest sum of log densities and log prior, in units that make all comparable: a good reference.
+std::size_t best_of(const std::vector<EvaluatedHypothesis>& evaluated, const SelectionCriteria& criteria);
 
-/// An effect that adds nothing among others.
-inline bool idle(const Comparison& worth, const SelectionCriteria& criteria) {
-  return worth.gain < criteria.idle_gain || worth.t < criteria.idle_t;
-}
+/// Log of the posterior odds of `a` against `b` [nat], all recordings taken as they are.
+double log_odds(const EvaluatedHypothesis& a, const EvaluatedHypothesis& b, const SelectionCriteria& criteria);
 
-/// Whether what leads by this much takes an effect's place; `error` is that of the choice, as a share of the error
-/// without effects.
-inline bool replaces(const Comparison& lead, double error, const SelectionCriteria& criteria) {
-  return lead.t > criteria.replace_t && lead.gain > criteria.replace_gain && lead.gain * error > criteria.replace_share;
-}
+/// Posterior probabilities, which add up to 1. Cost: rounds * recordings * hypotheses.
+std::vector<double> probabilities(const std::vector<EvaluatedHypothesis>& evaluated, const SelectionCriteria& criteria);
 
-/// Whether each effect beyond the first `known` has a parameter that recordings tell from zero: one of its strengths
-/// or, where it has none, its first.
-bool determined(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t known, const FitProblem& problem,
-                const Parallel& parallel, const SelectionCriteria& criteria = {});
+/// The same effects at the same places, perhaps in another form or order.
+bool same_structure(const Hypothesis& a, const Hypothesis& b);
 
 }  // namespace surefoot::diagnosis
 

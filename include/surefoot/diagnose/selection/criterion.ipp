@@ -1,99 +1,154 @@
 // Definitions of surefoot/diagnose/selection/criterion.hpp.
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
-#include <optional>
+#include <limits>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
-#include "surefoot/diagnose/estimation/cross_validation.hpp"
-#include "surefoot/diagnose/estimation/standard_errors.hpp"
+#include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
 
 namespace surefoot::diagnosis {
 
+SUREFOOT_INLINE std::size_t EvaluatedHypothesis::parameter_count() const {
+  std::size_t count = 0;
+  for (const Eigen::VectorXd& values : hypothesis.values) count += static_cast<std::size_t>(values.size());
+  return count;
+}
+
 SUREFOOT_INLINE EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, const Fit& fitted,
                                                  const SearchProblem& problem, const Parallel& parallel) {
-  EvaluatedHypothesis result{fitted.hypothesis, fitted.loss, {}, {}};
-  FitProblem quick = problem.fit;
-  quick.max_iterations = problem.effort.fold_iterations;
-  quick.tolerance = problem.effort.fold_tolerance;
-  result.cross_validated = cross_validate(bound, fitted.hypothesis, quick, problem.folds, parallel).losses;
+  EvaluatedHypothesis result{
+      fitted.hypothesis, fitted.loss,
+      error_squares(bound, fitted.hypothesis, problem.fit.recordings, problem.fit.integration, problem.scale, parallel),
+      log_prior(bound, fitted.hypothesis, problem.known, problem.candidates, problem.criteria) +
+          log_occam_factor(bound, fitted.hypothesis, problem.fit, parallel)};
+  result.errors.least = problem.least;
   return result;
 }
 
-SUREFOOT_INLINE bool simpler(const Hypothesis& a, const Hypothesis& b) {
-  const auto measure = [](const Hypothesis& h) {
-    std::pair<std::size_t, int> sum{0, 0};
-    for (std::size_t e = 0; e < h.effects.size(); ++e) {
-      sum.first += static_cast<std::size_t>(h.values[e].size());
-      sum.second += h.effects[e].rank;
-    }
-    return sum;
-  };
-  return measure(a) < measure(b);
+SUREFOOT_INLINE double log_prior(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t known,
+                                 std::size_t candidates, const SelectionCriteria& criteria) {
+  double sum = 0;
+  for (std::size_t e = known; e < hypothesis.effects.size(); ++e) {
+    const Effect& effect = *hypothesis.effects[e].effect;
+    const std::size_t length = effect.parameters.size() + (effect.hidden_states > 0 ? 1 : 0);
+    sum -= std::log(static_cast<double>(std::max<std::size_t>(1, candidates)));
+    sum -= criteria.form_cost * static_cast<double>(length);
+  }
+  for (const Variable& variable : variables_of(bound, hypothesis, {})) {
+    if (variable.kind != Variable::Kind::effect || variable.index < known) continue;
+    Hypothesis copy = hypothesis;
+    const double low = to_search(variable, variable.low), high = to_search(variable, variable.high);
+    const double share = (to_search(variable, value_of(copy, variable)) - low) / (high - low);
+    const bool natural = variable.low == 0 && share < 0.5;  // a strength near zero is told by the densities
+    if (!natural && (share < criteria.bound_share || share > 1 - criteria.bound_share)) sum -= criteria.bound_cost;
+  }
+  return sum;
 }
 
-SUREFOOT_INLINE std::size_t most_plausible(const std::vector<EvaluatedHypothesis>& evaluated,
-                                           const SelectionCriteria& criteria) {
+/// Mean squares over all recordings, by output.
+SUREFOOT_INLINE Eigen::VectorXd pooled(const ErrorSquares& errors) {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(errors.counts.cols());
+  for (Eigen::Index k = 0; k < result.size(); ++k) {
+    double sum = 0, count = 0;
+    for (Eigen::Index r = 0; r < errors.counts.rows(); ++r) {
+      sum += errors.mean_squares(r, k) * errors.counts(r, k);
+      count += errors.counts(r, k);
+    }
+    if (count > 0) result[k] = sum / count;
+  }
+  return result;
+}
+
+SUREFOOT_INLINE Eigen::VectorXd least_squares_compared(const ErrorSquares& without_effects,
+                                                       const SelectionCriteria& criteria) {
+  Eigen::VectorXd least = pooled(without_effects);
+  for (double& value : least) {
+    value = criteria.least_error * criteria.least_error + criteria.form_error * criteria.form_error * value;
+  }
+  return least;
+}
+
+SUREFOOT_INLINE std::vector<double> log_densities(const ErrorSquares& errors, const ErrorSquares& reference,
+                                                  const SelectionCriteria& criteria) {
+  const Eigen::VectorXd scale = pooled(reference);
+  std::vector<double> result(static_cast<std::size_t>(errors.counts.rows()), 0.0);
+  for (Eigen::Index r = 0; r < errors.counts.rows(); ++r) {
+    for (Eigen::Index k = 0; k < errors.counts.cols(); ++k) {
+      const double cells = errors.counts(r, k);
+      if (!(cells > 0)) continue;
+      const double n = std::max(1.0, cells / reference.memory[k]), nu = criteria.degrees;
+      const double least = reference.least.size() > 0 ? reference.least[k] : std::numeric_limits<double>::min();
+      const double square = (errors.mean_squares(r, k) + least) / (scale[k] + least);
+      result[static_cast<std::size_t>(r)] -= 0.5 * (n + nu) * std::log1p(n * square / nu);
+    }
+  }
+  return result;
+}
+
+SUREFOOT_INLINE std::size_t best_of(const std::vector<EvaluatedHypothesis>& evaluated,
+                                    const SelectionCriteria& criteria) {
   std::size_t best = 0;
   for (std::size_t i = 1; i < evaluated.size(); ++i) {
-    if (evaluated[i].cross_validated.total() < evaluated[best].cross_validated.total()) best = i;
+    if (log_odds(evaluated[i], evaluated[best], criteria) > 0) best = i;
   }
-  std::size_t choice = best;
-  for (std::size_t i = 0; i < evaluated.size(); ++i) {
-    if (i == best || !simpler(evaluated[i].hypothesis, evaluated[choice].hypothesis)) continue;
-    const Comparison lead = compare_losses(evaluated[i].cross_validated, evaluated[best].cross_validated);
-    const bool fewer = evaluated[i].parameter_count() < evaluated[choice].parameter_count();
-    const double gain = evaluated[i].gain.gain;
-    const bool all_but = gain >= criteria.tie_gain_share * evaluated[best].gain.gain && gain > 0;
-    if (lead.gain < criteria.tie_gain || (fewer && lead.t < criteria.tie_t) || all_but) choice = i;
-  }
-  return choice;
+  return best;
 }
 
-SUREFOOT_INLINE bool accepted(const Comparison& gain, double tests, double parent, const SelectionCriteria& criteria) {
-  if (gain.gain * parent < criteria.least_share && gain.gain < criteria.decisive_gain) return false;
-  const bool significant = gain.p_value * std::max(1.0, tests) <= criteria.significance;
-  return gain.gain >= criteria.min_gain && gain.t >= criteria.min_t &&
-         (significant || (gain.gain >= criteria.large_gain && gain.p_value <= criteria.large_gain_significance));
-}
-
-SUREFOOT_INLINE std::optional<std::size_t> most_plausible_accepted(const std::vector<EvaluatedHypothesis>& evaluated,
-                                                                   double tests, double parent,
-                                                                   const SelectionCriteria& criteria) {
-  std::vector<EvaluatedHypothesis> believed;
-  std::vector<std::size_t> place;
-  for (std::size_t i = 0; i < evaluated.size(); ++i) {
-    if (!accepted(evaluated[i].gain, tests, parent, criteria)) continue;
-    believed.push_back(evaluated[i]);
-    place.push_back(i);
-  }
-  if (believed.empty()) return std::nullopt;
-  return place[most_plausible(believed, criteria)];
-}
-
-SUREFOOT_INLINE bool determined(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t known,
-                                const FitProblem& problem, const Parallel& parallel,
+SUREFOOT_INLINE double log_odds(const EvaluatedHypothesis& a, const EvaluatedHypothesis& b,
                                 const SelectionCriteria& criteria) {
-  const StandardErrors errors = standard_errors(bound, hypothesis, problem, parallel);
-  std::vector<bool> seen(hypothesis.effects.size(), false);
-  for (std::size_t i = 0; i < errors.variables.size(); ++i) {
-    const Variable& variable = errors.variables[i];
-    if (variable.kind != Variable::Kind::effect) continue;
-    const auto& parameters = hypothesis.effects[variable.index].effect->parameters;
-    const bool any_strength = std::ranges::any_of(parameters, &EffectParameter::strength);
-    if (any_strength ? !parameters[variable.item].strength : variable.item > 0) continue;
-    const double value = hypothesis.values[variable.index][static_cast<Eigen::Index>(variable.item)];
-    if (std::abs(value) > criteria.determined_deviations * errors.deviation[static_cast<Eigen::Index>(i)])
-      seen[variable.index] = true;
+  const bool a_is_closer = a.errors.rms() < b.errors.rms();
+  const ErrorSquares& reference = a_is_closer ? a.errors : b.errors;
+  const auto of_a = log_densities(a.errors, reference, criteria), of_b = log_densities(b.errors, reference, criteria);
+  double sum = a.log_prior - b.log_prior;
+  for (std::size_t r = 0; r < of_a.size(); ++r) sum += of_a[r] - of_b[r];
+  return sum;
+}
+
+SUREFOOT_INLINE std::vector<double> probabilities(const std::vector<EvaluatedHypothesis>& evaluated,
+                                                  const SelectionCriteria& criteria) {
+  std::vector<double> result(evaluated.size(), 0.0);
+  if (evaluated.empty()) return result;
+  const ErrorSquares& reference = evaluated[best_of(evaluated, criteria)].errors;
+  std::vector<std::vector<double>> densities;
+  for (const EvaluatedHypothesis& one : evaluated) densities.push_back(log_densities(one.errors, reference, criteria));
+  const std::size_t recordings = densities.front().size();
+  Rng rng(criteria.seed, 0xb4a9u);
+  std::vector<double> weight(recordings), score(evaluated.size());
+  for (std::uint32_t round = 0; round < criteria.rounds; ++round) {
+    double sum = 0;
+    for (double& one : weight) sum += one = -std::log(1 - rng.uniform());  // Dirichlet(1, ..., 1)
+    for (std::size_t h = 0; h < evaluated.size(); ++h) {
+      score[h] = evaluated[h].log_prior;
+      for (std::size_t r = 0; r < recordings; ++r) {
+        score[h] += weight[r] / sum * static_cast<double>(recordings) * densities[h][r];
+      }
+    }
+    const double most = *std::max_element(score.begin(), score.end());
+    double total = 0;
+    for (double& one : score) total += one = std::exp(one - most);
+    for (std::size_t h = 0; h < evaluated.size(); ++h) result[h] += score[h] / total / criteria.rounds;
   }
-  return std::all_of(seen.begin() + static_cast<std::ptrdiff_t>(known), seen.end(), [](bool one) { return one; });
+  return result;
+}
+
+SUREFOOT_INLINE bool same_structure(const Hypothesis& a, const Hypothesis& b) {
+  const auto structure = [](const Hypothesis& hypothesis) {
+    std::multiset<std::string> labels;
+    for (const AttachedEffect& effect : hypothesis.effects) {
+      labels.insert(effect.label() + "/" + std::to_string(static_cast<int>(effect.effect->place)));
+    }
+    return labels;
+  };
+  return structure(a) == structure(b);
 }
 
 }  // namespace surefoot::diagnosis

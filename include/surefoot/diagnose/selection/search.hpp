@@ -1,6 +1,7 @@
-// Selection of effects by a floating forward-backward search (Pudil, Novovicova & Kittler, "Floating search methods in
-// feature selection", 1994) with cross-validation. Effects mask each other: proposals are ranked anew after every step,
-// and pairs are tried where no single effect is worth its parameters. Each fit starts from that of its parent.
+// Selection of effects by a beam search: the best structures found so far are each extended by a further effect, or by a
+// pair where no single one is worth its parameters; then effects of the best are taken away and replaced in turn. Every
+// structure that was fitted is ranked in the end (see criterion.hpp), whatever way led to it. Each fit starts from that
+// of its parent; weights follow what the best one so far leaves.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "surefoot/diagnose/estimation/calibrate.hpp"
+#include "surefoot/diagnose/estimation/cross_validation.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
 #include "surefoot/diagnose/selection/propose.hpp"
 
@@ -16,9 +18,12 @@ namespace surefoot::diagnosis {
 struct Selection {
   EvaluatedHypothesis nominal;  // without effects
   EvaluatedHypothesis chosen;
+  double probability = 1;                         // posterior, of the chosen structure
   std::vector<Comparison> evidence;               // by chosen effect: against the choice without it
-  std::vector<EvaluatedHypothesis> alternatives;  // one effect replaced, or none chosen: the best that was refused
-  std::size_t candidates = 0;                     // how many were tried
+  std::vector<EvaluatedHypothesis> alternatives;  // all other structures that were evaluated, the most probable first
+  std::vector<double> alternative_probabilities;  // of these
+  std::size_t candidates = 0;                     // how many effects and places were tried
+  FitProblem fit;                                 // as the choice was fitted in the end
 };
 
 /// Fits a parent with some proposals added, on the recordings for screening, from several starts; not ok if none of
@@ -31,11 +36,6 @@ std::vector<Fit> fit_children(const BoundSimulator& bound, const Hypothesis& par
                               const std::vector<std::vector<Proposal>>& additions, const SearchProblem& problem,
                               std::size_t keep, const Parallel& parallel);
 
-/// Cross-validates the first `keep` fits and what ties with them; those with undetermined parameters are left out.
-std::vector<EvaluatedHypothesis> evaluate_all(const BoundSimulator& bound, const std::vector<Fit>& fits,
-                                              const EvaluatedHypothesis& parent, const SearchProblem& problem,
-                                              std::size_t keep, const Parallel& parallel);
-
 /// The best proposals beside `base`. Unless its residuals are `structured` only strong ones.
 std::vector<Proposal> shortlisted(const BoundSimulator& bound, const Hypothesis& base, const SearchProblem& problem,
                                   const std::vector<AttachedEffect>& candidates, std::size_t count, bool structured,
@@ -43,52 +43,60 @@ std::vector<Proposal> shortlisted(const BoundSimulator& bound, const Hypothesis&
 
 Hypothesis without_effect(const Hypothesis& whole, std::size_t effect);
 
-/// One round: the effects that would come next after `parent`, cross-validated; best fit first.
-std::vector<EvaluatedHypothesis> next_effects(const BoundSimulator& bound, const EvaluatedHypothesis& parent,
-                                              const SearchProblem& problem,
-                                              const std::vector<AttachedEffect>& candidates, bool structured,
-                                              const Parallel& parallel);
-
-/// The same for pairs of the best proposals.
-std::vector<EvaluatedHypothesis> next_pairs(const BoundSimulator& bound, const EvaluatedHypothesis& parent,
-                                            const SearchProblem& problem, const std::vector<AttachedEffect>& candidates,
-                                            const Parallel& parallel);
-
 /// A search under way.
 struct Search {
   const BoundSimulator& bound;
-  const SearchProblem& problem;
+  SearchProblem problem;
   const std::vector<AttachedEffect>& candidates;
   const Parallel& parallel;
 
   std::size_t effects(const EvaluatedHypothesis& one) const { return one.hypothesis.effects.size() - problem.known; }
-  /// Error of a hypothesis as a share of the error without effects.
-  double share(const EvaluatedHypothesis& one, const EvaluatedHypothesis& nominal) const {
-    return one.cross_validated.rms() / std::max(nominal.cross_validated.rms(), never_zero);
-  }
-  double tests() const { return static_cast<double>(candidates.size()); }
   EvaluatedHypothesis without(const EvaluatedHypothesis& whole, std::size_t effect) const;
 };
 
-/// Whatever is no longer worth its parameters goes.
-void drop_idle_effects(const Search& search, EvaluatedHypothesis& chosen);
+/// The effects that would come next after `parent`, evaluated.
+std::vector<EvaluatedHypothesis> next_effects(const Search& search, const EvaluatedHypothesis& parent,
+                                              std::size_t shortlist, std::size_t finalists, bool structured);
 
-/// Adds effects until none is worth its parameters.
-void add_effects(const Search& search, Selection& selection);
+/// The same for pairs of the best proposals.
+std::vector<EvaluatedHypothesis> next_pairs(const Search& search, const EvaluatedHypothesis& parent);
 
-/// One effect that leaves something open may have hidden two that do better.
-void try_pair_instead(const Search& search, Selection& selection);
+/// Puts a hypothesis into the pool, in the place of one of the same structure if it is better; true if it went in.
+bool keep_best_form(std::vector<EvaluatedHypothesis>& pool, const EvaluatedHypothesis& one,
+                    const SelectionCriteria& criteria);
 
-/// What else might stand in the place of one effect beside the `rest`.
-std::vector<EvaluatedHypothesis> rivals_of(const Search& search, const EvaluatedHypothesis& rest,
-                                           const AttachedEffect& effect);
+/// The most plausible ones, best first, and none that is `hopeless` behind the best [nat].
+std::vector<EvaluatedHypothesis> best_structures(std::vector<EvaluatedHypothesis> pool, std::size_t count,
+                                                 double hopeless, const SelectionCriteria& criteria);
 
-/// Each effect against what else might stand in its place; true if one was replaced. Fills in evidence and
-/// alternatives.
-bool compare_with_others(const Search& search, Selection& selection, bool replace);
+/// Weights residuals of further fits by what a hypothesis leaves of each output and recording, and screens proposals on
+/// the recordings that show this best.
+void reweight(Search& search, const EvaluatedHypothesis& best);
+
+/// Extends the best structures of a pool, as long as that makes the best one better.
+void grow(Search& search, std::vector<EvaluatedHypothesis>& pool);
+
+/// The best structures, and the model without effects, fitted and evaluated with the present weights and recordings.
+std::vector<EvaluatedHypothesis> fitted_again(const Search& search, const std::vector<EvaluatedHypothesis>& pool);
+
+/// The same within a pool.
+void refit_best(const Search& search, std::vector<EvaluatedHypothesis>& pool);
+
+/// Takes each effect of the best structure away, and puts others in its place.
+void swap_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool);
+
+/// What the errors gain, with its standard error over recordings; the p-value is that of the odds.
+Comparison gain_of(const ErrorSquares& before, const ErrorSquares& after, double log_odds);
+
+/// The most probable structure, if it is to be named, and all others in their order.
+Selection ranked(const Search& search, const std::vector<EvaluatedHypothesis>& pool);
+
+/// Recordings that the search looks at: of many only some, which differ in how far the calibrated model misses them.
+std::vector<std::size_t> informative(const BoundSimulator& bound, const Hypothesis& calibrated,
+                                     const SearchProblem& problem, const Parallel& parallel);
 
 /// The whole search, from a fitted hypothesis without effects.
-Selection select_effects(const BoundSimulator& bound, const Fit& calibrated, const SearchProblem& problem,
+Selection select_effects(const BoundSimulator& bound, const Fit& calibrated, SearchProblem problem,
                          const std::vector<AttachedEffect>& candidates, const Parallel& parallel);
 
 }  // namespace surefoot::diagnosis

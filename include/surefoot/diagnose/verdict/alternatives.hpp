@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,34 +10,11 @@
 
 namespace surefoot::diagnosis {
 
-/// When two hypotheses are held to be equally good. Gains are shares of the cross-validated root mean square error.
-struct AlternativeCriteria {
-  double clear_gain = 0.1;              // the choice is ahead by this much: told apart, however unsure the gain is
-  double clear_t = 2;                   // or by this many standard errors of the gain,
-  double negligible_gain = 0.01;        // unless it is this small
-  double equal_share = 0.97;            // of the choice's gain: the rest may be due to the form of either effect
-  std::uint32_t rounds = 400;           // of the bootstrap: a share is then off by 2.5 % at most (one standard error)
-  double extra_parameter_ratio = 0.99;  // of errors: a hypothesis with more parameters has to be better by 1 %
-};
-
-/// Share of bootstrap repetitions (over blocks) in which `chosen` beats the parent and every alternative.
-double bootstrap_confidence(const EvaluatedHypothesis& chosen, const BlockLosses& parent,
-                            const std::vector<EvaluatedHypothesis>& others, std::uint64_t seed,
-                            const AlternativeCriteria& criteria = {});
-
 /// Evidence for one of the chosen effects, the first that is not known being number 0.
-Evidence evidence_for(const Selection& selection, std::size_t effect, std::uint64_t seed,
-                      const AlternativeCriteria& criteria = {});
+Evidence evidence_for(const Selection& selection, std::size_t effect);
 
-/// Whether an alternative is as good as the choice: `lead` is what the choice gains over it, the gains are those over
-/// the model without effects.
-bool indistinguishable(const Comparison& lead, double chosen_gain, double other_gain,
-                       const AlternativeCriteria& criteria);
-
-/// Effects with the same names at the same places, perhaps in another form.
-bool same_names(const Hypothesis& hypothesis, const Hypothesis& chosen);
-
-std::string names_of(const Hypothesis& hypothesis);
+/// Effects with their places, in plain text.
+std::string names_of(const Hypothesis& hypothesis, std::size_t known = 0);
 
 /// All that might have been chosen instead, best first.
 struct Alternatives {
@@ -47,7 +23,7 @@ struct Alternatives {
   std::vector<EvaluatedHypothesis> indistinguishable;  // the same
 };
 
-Alternatives find_alternatives(const Selection& selection, const AlternativeCriteria& criteria = {});
+Alternatives find_alternatives(const Selection& selection, const SelectionCriteria& criteria = {});
 
 }  // namespace surefoot::diagnosis
 

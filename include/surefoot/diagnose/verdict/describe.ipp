@@ -99,35 +99,94 @@ SUREFOOT_INLINE std::string rejection_sentence() {
          "dropped";
 }
 
+/// The last effect of a hypothesis that another one does not have; if it has all, the last.
+SUREFOOT_INLINE const Effect& effect_beyond(const Hypothesis& hypothesis, const Hypothesis& other) {
+  for (std::size_t e = hypothesis.effects.size(); e > 0; --e) {
+    const AttachedEffect& mine = hypothesis.effects[e - 1];
+    const bool shared = std::ranges::any_of(other.effects, [&](const AttachedEffect& theirs) {
+      return theirs.effect->name == mine.effect->name && theirs.place == mine.place;
+    });
+    if (!shared) return *mine.effect;
+  }
+  return *hypothesis.effects.back().effect;
+}
+
 SUREFOOT_INLINE std::string next_experiment(const Hypothesis& chosen, const Hypothesis& other) {
-  const Effect& mine = *chosen.effects.back().effect;
-  const Effect& theirs = *other.effects.back().effect;
+  const Effect &mine = effect_beyond(chosen, other), &theirs = effect_beyond(other, chosen);
+  if (mine.name == theirs.name) return mine.experiment;
   std::string text = mine.experiment + ": separates " + mine.name + " from " + theirs.name;
   if (!theirs.experiment.empty() && theirs.experiment != mine.experiment) text += "; or " + theirs.experiment;
   return text;
 }
 
+/// "1.04 times the noise".
+SUREFOOT_INLINE std::string against_noise(const Diagnosis& diagnosis) {
+  if (!std::isfinite(diagnosis.noise_ratio)) return "";
+  return in_digits(diagnosis.noise_ratio) + " times the noise";
+}
+
+/// Recordings that are further off than noise explains, in a sentence of their own.
+SUREFOOT_INLINE std::string beyond_noise_sentence(const Diagnosis& diagnosis) {
+  constexpr std::size_t most = 3;  // names that are told
+  std::vector<std::string> names;
+  for (const RecordingFit& one : diagnosis.per_recording) {
+    if (one.beyond_noise) names.push_back(one.recording);
+  }
+  if (names.empty()) return "";
+  const std::size_t count = names.size();
+  if (count > most) names.resize(most);
+  return " " + std::to_string(count) + " of " + std::to_string(diagnosis.per_recording.size()) +
+         " held-out recordings are further off than noise explains: " + in_list(names) +
+         (count > most ? ", ..." : "") + ".";
+}
+
+/// By how much the error on held-out recordings falls, and in how many of them.
+SUREFOOT_INLINE std::string gain_sentence(const Diagnosis& diagnosis) {
+  std::size_t better = 0;
+  for (const RecordingFit& one : diagnosis.per_recording) better += one.after < one.before ? 1 : 0;
+  const std::string noise = against_noise(diagnosis);
+  return " With that, the error on held-out recordings falls by " +
+         in_digits(100 * (1 - diagnosis.held_out_after / std::max(diagnosis.held_out_before, never_zero))) + " %" +
+         (noise.empty() ? "" : ", to " + noise) + "; " + std::to_string(better) + " of " +
+         std::to_string(diagnosis.per_recording.size()) + " agree.";
+}
+
+SUREFOOT_INLINE std::string clean_sentence(const Diagnosis& diagnosis, const std::string& parameters) {
+  const std::string noise = against_noise(diagnosis);
+  return "Nothing is missing: with " + parameters + " parameters the model agrees with the recordings" +
+         (noise.empty() ? "." : ", to " + noise + ".");
+}
+
 SUREFOOT_INLINE std::string verdict_sentence(const Diagnosis& diagnosis, const std::vector<std::string>& ties) {
+  constexpr std::size_t most_ties = 3;  // that are told in the sentence; the report has all
   std::vector<std::string> effects;
   for (const FoundEffect& effect : diagnosis.effects) effects.push_back(effect.sentence);
+  std::string tied;
+  if (!ties.empty()) {
+    std::vector<std::string> told(ties.begin(), ties.begin() + static_cast<std::ptrdiff_t>(std::min(most_ties, ties.size())));
+    tied = " These recordings cannot tell it from: " + told.front();
+    for (std::size_t i = 1; i < told.size(); ++i) tied += "; or " + told[i];
+    tied += ties.size() > told.size() ? "; and others." : ".";
+  }
   std::string text;
   switch (diagnosis.verdict) {
     case Verdict::adequate:
-      return "Nothing is missing: with its nominal parameters the model agrees with the recordings.";
+      return clean_sentence(diagnosis, "its nominal");
     case Verdict::parameters_only:
-      return "Nothing is missing: with calibrated parameters the model agrees with the recordings.";
+      return clean_sentence(diagnosis, "calibrated");
     case Verdict::missing_physics:
-      text = "Left out of the model: " + in_list(effects) + ". With that, the error on held-out recordings falls by " +
-             in_digits(100 * (1 - diagnosis.held_out_after / std::max(diagnosis.held_out_before, never_zero))) + " %.";
-      if (!ties.empty()) text += " These recordings cannot tell it from " + in_list(ties) + ".";
-      return text;
+      return "Left out of the model: " + in_list(effects) + "." + gain_sentence(diagnosis) + tied;
+    case Verdict::unfinished:
+      return "The search was not finished, so that nothing is concluded" +
+             (effects.empty() ? "." : "; the best so far: " + in_list(effects) + "." + gain_sentence(diagnosis));
     case Verdict::unexplained:
       break;
   }
   text = "The model leaves something out that no known effect explains";
-  if (!effects.empty()) text += "; a part of it: " + in_list(effects);
+  if (!effects.empty()) return text + "; a part of it: " + in_list(effects) + "." + gain_sentence(diagnosis) + tied;
   if (!diagnosis.regions.empty()) text += "; it shows where " + diagnosis.regions.front().rule;
-  return text + ".";
+  const std::string noise = against_noise(diagnosis);
+  return text + (noise.empty() ? "." : ". Its error is " + noise + ".") + beyond_noise_sentence(diagnosis);
 }
 
 }  // namespace surefoot::diagnosis

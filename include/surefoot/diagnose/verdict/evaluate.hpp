@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@ struct EvaluationCriteria {
   std::uint32_t tail = 10;        // rounds beyond each end of its 95 % interval (2.5 %)
   double min_forest_gain = 0.03;  // share of the cross-validated error: as much as an effect must gain
   double min_forest_t = 2.5;      // in standard errors, as for an effect
+  std::size_t curves = 8;         // recordings whose curves are kept: more are not looked at
 };
 
 /// 95 % interval of the ratio of two root mean square errors, over recordings (bootstrap); `counts`: cells of each.
@@ -28,22 +30,31 @@ std::pair<double, double> ratio_interval(const std::vector<double>& before, cons
 bool forest_helps(const Comparison& cross_validated, double held_out_before, double held_out_after,
                   const EvaluationCriteria& criteria = {});
 
-/// Error of the held-out recordings with a forest on the residuals of the calibrated model instead of effects.
-double forest_error(const EstimationSetup& setup, const FittedModel& calibrated, const Parallel& parallel,
-                    std::uint64_t seed);
+/// Error of the held-out recordings with what a forest expects of the residuals taken off: one that has not seen them.
+double corrected_error(const EstimationSetup& setup, const FittedModel& model, const Parallel& parallel,
+                       std::uint64_t seed);
 
 /// A forest beside the effects. `held_out_before`: error of the held-out recordings without it.
 ForestResidual offer_forest(const EstimationSetup& setup, const FittedModel& chosen, double held_out_before,
                             const Parallel& parallel, std::uint64_t seed, const EvaluationCriteria& criteria = {});
+
+/// Standard deviation of the noise of one output: as stated; or, where it is not, the part of the `residuals` that no
+/// lag predicts, and at least what differs from row to row. Never more than the `error` of the model.
+double output_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings, Eigen::Index output,
+                    const WhitenessTest& residuals, double error);
 
 std::vector<ChannelMismatch> mismatch_by_output(const EstimationSetup& setup, const FittedModels& models);
 
 /// Error that noise alone leaves, in units of `scale` (by output).
 double noise_floor(const std::vector<ChannelMismatch>& outputs, const Eigen::VectorXd& scale);
 
-/// Fills in errors, curves and forests of a diagnosis that has its verdict.
-void evaluate(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis, const Parallel& parallel,
-              std::uint64_t seed, const EvaluationCriteria& criteria = {});
+/// Fills in errors and curves.
+void evaluate_errors(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
+                     std::uint64_t seed, const EvaluationCriteria& criteria = {});
+
+/// Fills in what forests do, of a diagnosis that has its verdict.
+void offer_forests(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
+                   const Parallel& parallel, std::uint64_t seed, const EvaluationCriteria& criteria = {});
 
 }  // namespace surefoot::diagnosis
 

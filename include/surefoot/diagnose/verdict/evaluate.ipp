@@ -14,6 +14,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/estimation/marginal_likelihood.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/residual_tests/forest_correction.hpp"
 #include "surefoot/diagnose/residual_tests/whiteness.hpp"
@@ -47,22 +48,31 @@ SUREFOOT_INLINE bool forest_helps(const Comparison& cross_validated, double held
          held_out_after < held_out_before;
 }
 
-/// Error of the held-out recordings with what a forest expects taken off.
-SUREFOOT_INLINE double corrected_error(const EstimationSetup& setup, const FittedModel& model,
-                                       const ResidualModel& forest) {
-  const auto& held_out = setup.split.held_out;
-  std::vector<SimulatedRun> runs;
-  for (std::size_t i = 0; i < held_out.size(); ++i) {
-    runs.push_back(corrected(setup.bound, held_out[i], model.runs.whole_held_out[i], forest));
+SUREFOOT_INLINE double corrected_error(const EstimationSetup& setup, const FittedModel& model, const Parallel& parallel,
+                                       std::uint64_t seed) {
+  const auto& [training, held_out, folds, cross_fitted] = setup.split;
+  std::vector<SimulatedRun> runs(held_out.size());
+  const auto correct = [&](const std::vector<std::size_t>& learned_from, const std::vector<std::size_t>& corrected_ones) {
+    std::vector<SimulatedRun> learned;
+    for (const std::size_t r : learned_from) {
+      const auto place = std::ranges::find(training, r) - training.begin();
+      learned.push_back(model.runs.whole_training[static_cast<std::size_t>(place)]);
+    }
+    const ResidualModel forest = train_residual_model(setup.bound, learned_from, learned, parallel, seed);
+    for (const std::size_t r : corrected_ones) {
+      const auto place = static_cast<std::size_t>(std::ranges::find(held_out, r) - held_out.begin());
+      runs[place] = corrected(setup.bound, r, model.runs.whole_held_out[place], forest);
+    }
+  };
+  if (!cross_fitted) correct(training, held_out);
+  for (std::size_t k = 0; cross_fitted && k < folds.size(); ++k) {
+    std::vector<std::size_t> others;
+    for (const std::size_t r : training) {
+      if (std::ranges::find(folds[k], r) == folds[k].end()) others.push_back(r);
+    }
+    correct(others, folds[k]);
   }
   return error_over_all(setup.bound, held_out, runs);
-}
-
-SUREFOOT_INLINE double forest_error(const EstimationSetup& setup, const FittedModel& calibrated,
-                                    const Parallel& parallel, std::uint64_t seed) {
-  return corrected_error(
-      setup, calibrated,
-      train_residual_model(setup.bound, setup.split.training, calibrated.runs.whole_training, parallel, seed));
 }
 
 SUREFOOT_INLINE ForestResidual offer_forest(const EstimationSetup& setup, const FittedModel& chosen,
@@ -80,9 +90,19 @@ SUREFOOT_INLINE ForestResidual offer_forest(const EstimationSetup& setup, const 
   offer.gain_stderr = unseen.stderr_;
   offer.model = train_residual_model(setup.bound, training, runs, parallel, seed);
   offer.held_out_before = held_out_before;
-  offer.held_out_after = corrected_error(setup, chosen, offer.model);
+  offer.held_out_after = corrected_error(setup, chosen, parallel, seed);
   offer.kept = forest_helps(unseen, offer.held_out_before, offer.held_out_after, criteria);
   return offer;
+}
+
+SUREFOOT_INLINE double output_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                    Eigen::Index output, const WhitenessTest& residuals, double error) {
+  constexpr double significance = 0.01;  // of structure in the residuals
+  const double stated = bound.info.outputs[static_cast<std::size_t>(output)].noise;
+  if (stated > 0) return stated;
+  const double structured = residuals.p_value < significance ? std::min(1.0, residuals.share) : 0;
+  const double unpredictable = residuals.rms * std::sqrt(1 - structured);
+  return std::min(std::max(fast_noise(bound, recordings, output), unpredictable), error);
 }
 
 SUREFOOT_INLINE std::vector<ChannelMismatch> mismatch_by_output(const EstimationSetup& setup,
@@ -109,8 +129,7 @@ SUREFOOT_INLINE std::vector<ChannelMismatch> mismatch_by_output(const Estimation
     channel.rmse_nominal = std::sqrt(sums[0] / count);
     channel.rmse_calibrated = std::sqrt(sums[1] / count);
     channel.rmse_after = std::sqrt(sums[2] / count);
-    const double stated = bound.info.outputs[k].noise;
-    channel.noise = stated > 0 ? stated : std::min(fast_noise(bound, setup.split.training, output), channel.rmse_after);
+    channel.noise = output_noise(bound, setup.split.training, output, models.chosen.by_output[k], channel.rmse_after);
     channel.p_value = models.calibrated.by_output[k].p_value;
     result.push_back(std::move(channel));
   }
@@ -126,9 +145,34 @@ SUREFOOT_INLINE double noise_floor(const std::vector<ChannelMismatch>& outputs, 
   return std::sqrt(squares);
 }
 
-/// Errors of the training and the held-out recordings, and curves of the latter.
-SUREFOOT_INLINE void evaluate_recordings(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
-                                         std::uint64_t seed, const EvaluationCriteria& criteria) {
+/// Values of the held-out errors of a recording that are independent of each other.
+SUREFOOT_INLINE double independent_errors(const BoundSimulator& bound, std::size_t r, const SimulatedRun& run) {
+  double count = 0;
+  for (std::size_t k = 0; k < bound.info.outputs.size(); ++k) {
+    const Eigen::VectorXd series = series_of(bound, r, run, static_cast<Eigen::Index>(k));
+    double measured = 0;
+    for (const double value : series) measured += value != 0 ? 1 : 0;
+    count += measured / autocorrelation_time({series});
+  }
+  return count;
+}
+
+/// Recordings whose curves are kept for pictures: all if they are few.
+SUREFOOT_INLINE void keep_curves(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
+                                 std::size_t most) {
+  const auto& held_out = setup.split.held_out;
+  for (std::size_t n = 0; n < std::min(most, held_out.size()); ++n) {
+    const std::size_t i = held_out.size() <= most ? n : n * held_out.size() / most;
+    const Recording& one = setup.bound.recordings[held_out[i]];
+    diagnosis.curves.push_back({one.name, one.time, one.inputs, one.outputs,
+                                models.nominal.runs.whole_held_out[i].outputs,
+                                models.calibrated.runs.whole_held_out[i].outputs,
+                                models.chosen.runs.whole_held_out[i].outputs});
+  }
+}
+
+SUREFOOT_INLINE void evaluate_errors(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
+                                     std::uint64_t seed, const EvaluationCriteria& criteria) {
   const BoundSimulator& bound = setup.bound;
   const auto& [nominal, calibrated, chosen] = models;
   const auto &held_out = setup.split.held_out, &training = setup.split.training;
@@ -136,31 +180,26 @@ SUREFOOT_INLINE void evaluate_recordings(const EstimationSetup& setup, const Fit
   const std::vector<double> before = recording_errors(bound, held_out, calibrated.runs.whole_held_out, scale);
   const std::vector<double> after = recording_errors(bound, held_out, chosen.runs.whole_held_out, scale);
   for (std::size_t i = 0; i < held_out.size(); ++i) {
-    const Recording& one = bound.recordings[held_out[i]];
-    diagnosis.per_recording.push_back({one.name, before[i], after[i]});
-    diagnosis.curves.push_back({one.name, one.time, one.inputs, one.outputs, nominal.runs.whole_held_out[i].outputs,
-                                calibrated.runs.whole_held_out[i].outputs, chosen.runs.whole_held_out[i].outputs});
+    diagnosis.per_recording.push_back({bound.recordings[held_out[i]].name, before[i], after[i],
+                                       independent_errors(bound, held_out[i], chosen.runs.whole_held_out[i])});
   }
+  keep_curves(setup, models, diagnosis, criteria.curves);
   const std::vector<double> counts = cell_counts(bound, held_out);
   diagnosis.held_out_before = over_all(before, counts);
   diagnosis.held_out_after = over_all(after, counts);
   diagnosis.training_before = error_over_all(bound, training, calibrated.runs.whole_training);
   diagnosis.training_after = error_over_all(bound, training, chosen.runs.whole_training);
   std::tie(diagnosis.gain_low, diagnosis.gain_high) = ratio_interval(before, after, counts, seed, criteria);
+  diagnosis.channels = mismatch_by_output(setup, models);
+  diagnosis.noise_floor = noise_floor(diagnosis.channels, scale);
 }
 
-SUREFOOT_INLINE void evaluate(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
-                              const Parallel& parallel, std::uint64_t seed, const EvaluationCriteria& criteria) {
-  evaluate_recordings(setup, models, diagnosis, seed, criteria);
-  if (setup.noise != NoiseKind::final_pose) {
-    diagnosis.held_out_forest = forest_error(setup, models.calibrated, parallel, seed);
-    if (diagnosis.verdict == Verdict::unexplained) {
-      diagnosis.forest_residual =
-          offer_forest(setup, models.chosen, diagnosis.held_out_after, parallel, seed, criteria);
-    }
-  }
-  diagnosis.channels = mismatch_by_output(setup, models);
-  diagnosis.noise_floor = noise_floor(diagnosis.channels, error_scale(setup.bound));
+SUREFOOT_INLINE void offer_forests(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
+                                   const Parallel& parallel, std::uint64_t seed, const EvaluationCriteria& criteria) {
+  if (setup.noise == NoiseKind::final_pose) return;
+  diagnosis.held_out_forest = corrected_error(setup, models.calibrated, parallel, seed);
+  if (diagnosis.verdict != Verdict::unexplained) return;
+  diagnosis.forest_residual = offer_forest(setup, models.chosen, diagnosis.held_out_after, parallel, seed, criteria);
 }
 
 }  // namespace surefoot::diagnosis

@@ -12,8 +12,11 @@ namespace surefoot::diagnosis {
 /// `calibration` compares the nominal with the calibrated model. Tests that take long are made only while nothing else
 /// says that something is left unexplained.
 VerdictEvidence gather_evidence(const EstimationSetup& setup, const FittedModels& models, const Comparison& calibration,
-                                const VerdictCriteria& verdict, const HeldOutCriteria& held_out,
-                                const Parallel& parallel, std::uint64_t seed);
+                                const VerdictCriteria& verdict, const Parallel& parallel, std::uint64_t seed);
+
+/// Adds what the errors of the held-out recordings say against the noise, to the evidence and to the diagnosis.
+void add_errors(const EstimationSetup& setup, Diagnosis& diagnosis, const VerdictCriteria& verdict,
+                VerdictEvidence& evidence);
 
 }  // namespace surefoot::diagnosis
 

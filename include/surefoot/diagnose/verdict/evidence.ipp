@@ -1,6 +1,8 @@
 // Definitions of surefoot/diagnose/verdict/evidence.hpp.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "surefoot/core/compiled.hpp"
@@ -13,8 +15,7 @@ namespace surefoot::diagnosis {
 
 SUREFOOT_INLINE VerdictEvidence gather_evidence(const EstimationSetup& setup, const FittedModels& models,
                                                 const Comparison& calibration, const VerdictCriteria& verdict,
-                                                const HeldOutCriteria& held_out, const Parallel& parallel,
-                                                std::uint64_t seed) {
+                                                const Parallel& parallel, std::uint64_t seed) {
   const auto& [nominal, calibrated, chosen] = models;
   const BoundSimulator& bound = setup.bound;
   const auto& folds = setup.split.folds;
@@ -31,12 +32,7 @@ SUREFOOT_INLINE VerdictEvidence gather_evidence(const EstimationSetup& setup, co
   evidence.structure_share = chosen.mismatch.share;
   const double before = calibrated.mismatch.energy;
   evidence.structure_energy = before > 0 ? chosen.mismatch.energy / before : 0;
-  if (setup.noise == NoiseKind::measurement) {
-    const HeldOutExcess excess = held_out_excess(setup, calibrated, chosen, held_out);
-    evidence.held_out_share = excess.share;
-    evidence.held_out_ratio = excess.ratio;
-    return evidence;
-  }
+  if (setup.noise == NoiseKind::measurement) return evidence;
   if (is_unexplained(evidence, verdict)) return evidence;
   const Comparison steps = residual_predictability(bound, chosen.hypothesis, setup.problem, folds, parallel, seed);
   evidence.prediction = {steps.gain, steps.p_value};
@@ -44,6 +40,21 @@ SUREFOOT_INLINE VerdictEvidence gather_evidence(const EstimationSetup& setup, co
   const Comparison places = slip_by_place(bound, chosen.hypothesis, setup.problem, folds, parallel, seed);
   evidence.by_place = {places.gain, places.p_value};
   return evidence;
+}
+
+SUREFOOT_INLINE void add_errors(const EstimationSetup& setup, Diagnosis& diagnosis, const VerdictCriteria& verdict,
+                                VerdictEvidence& evidence) {
+  evidence.search_finished = diagnosis.complete;
+  if (setup.noise != NoiseKind::measurement || !(diagnosis.noise_floor > 0)) return;  // noise adds up on the way
+  diagnosis.noise_ratio = diagnosis.held_out_after / diagnosis.noise_floor;
+  evidence.noise_ratio = diagnosis.noise_ratio;
+  for (RecordingFit& one : diagnosis.per_recording) {
+    const double ratio = one.after / diagnosis.noise_floor;
+    // the relative standard deviation of a mean square of n independent errors is sqrt(2 / n)
+    const double excess = (ratio * ratio - 1) / std::sqrt(2 / std::max(1.0, one.independent));
+    one.beyond_noise = ratio > verdict.largest_ratio && excess > verdict.recording_excess;
+    evidence.recordings_beyond_noise += one.beyond_noise ? 1 : 0;
+  }
 }
 
 }  // namespace surefoot::diagnosis

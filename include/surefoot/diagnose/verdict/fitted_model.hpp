@@ -36,8 +36,10 @@ struct FittedModels {
   FittedModel nominal, calibrated, chosen;
 };
 
-/// Estimates the initial states of the held-out recordings and simulates everything; the mismatch is not measured.
-FittedModel simulate_model(const EstimationSetup& setup, const Hypothesis& hypothesis, const Parallel& parallel);
+/// Simulates everything; the mismatch is not measured. Held-out recordings are simulated with their own initial states
+/// estimated and, where each is held out once, by the fit to the others, if there is anything to `refit`.
+FittedModel simulate_model(const EstimationSetup& setup, const Hypothesis& hypothesis, const Parallel& parallel,
+                           bool refit = false);
 
 /// The same with the mismatch.
 FittedModel fitted_model(const EstimationSetup& setup, const Hypothesis& hypothesis, const Parallel& parallel);

@@ -1,6 +1,8 @@
 // Definitions of surefoot/diagnose/verdict/fitted_model.hpp.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -9,17 +11,50 @@
 
 namespace surefoot::diagnosis {
 
+/// By held-out recording: the fit to all folds but its own.
+SUREFOOT_INLINE std::vector<Hypothesis> cross_fitted(const EstimationSetup& setup, const Hypothesis& hypothesis,
+                                                     bool refit, const Parallel& parallel) {
+  const auto& [training, held_out, folds, cross_fitted] = setup.split;
+  std::vector<Hypothesis> result(held_out.size(), hypothesis);
+  if (!refit) return result;
+  for (const std::vector<std::size_t>& fold : folds) {
+    FitProblem others = setup.problem;
+    others.recordings.clear();
+    for (const std::size_t r : training) {
+      if (std::ranges::find(fold, r) == fold.end()) others.recordings.push_back(r);
+    }
+    const Hypothesis fitted = with_estimated_initial_states(
+        setup.bound, fit(setup.bound, hypothesis, others, parallel).hypothesis, fold, setup.problem, parallel);
+    for (const std::size_t r : fold) {
+      result[static_cast<std::size_t>(std::ranges::find(held_out, r) - held_out.begin())] = fitted;
+    }
+  }
+  return result;
+}
+
 SUREFOOT_INLINE FittedModel simulate_model(const EstimationSetup& setup, const Hypothesis& hypothesis,
-                                           const Parallel& parallel) {
+                                           const Parallel& parallel, bool refit) {
   const BoundSimulator& bound = setup.bound;
   const auto &training = setup.split.training, &held_out = setup.split.held_out;
   FittedModel model;
-  model.hypothesis = with_estimated_initial_states(bound, hypothesis, held_out, setup.problem, parallel);
-  const auto simulated = [&](const std::vector<std::size_t>& recordings, const Integration& integration) {
-    return simulate_all(bound, model.hypothesis, recordings, integration, parallel);
+  model.hypothesis = hypothesis;
+  std::vector<Hypothesis> unseen;  // by held-out recording
+  if (setup.split.cross_fitted) {
+    unseen = cross_fitted(setup, hypothesis, refit, parallel);
+  } else {
+    model.hypothesis = with_estimated_initial_states(bound, hypothesis, held_out, setup.problem, parallel);
+    unseen.assign(held_out.size(), model.hypothesis);
+  }
+  const auto of_training = [&](const Integration& integration) {
+    return simulate_all(bound, model.hypothesis, training, integration, parallel);
   };
-  model.runs.training = simulated(training, bound.integration);
-  model.runs.held_out = simulated(held_out, bound.integration);
+  const auto of_held_out = [&](const Integration& integration) {
+    std::vector<SimulatedRun> runs(held_out.size());
+    parallel(held_out.size(), [&](std::size_t i) { runs[i] = simulate(bound, unseen[i], held_out[i], integration); });
+    return runs;
+  };
+  model.runs.training = of_training(bound.integration);
+  model.runs.held_out = of_held_out(bound.integration);
   if (bound.integration.restart == 0) {
     model.runs.whole_training = model.runs.training;
     model.runs.whole_held_out = model.runs.held_out;
@@ -27,14 +62,14 @@ SUREFOOT_INLINE FittedModel simulate_model(const EstimationSetup& setup, const H
   }
   Integration whole = bound.integration;
   whole.restart = 0;
-  model.runs.whole_training = simulated(training, whole);
-  model.runs.whole_held_out = simulated(held_out, whole);
+  model.runs.whole_training = of_training(whole);
+  model.runs.whole_held_out = of_held_out(whole);
   return model;
 }
 
 SUREFOOT_INLINE FittedModel fitted_model(const EstimationSetup& setup, const Hypothesis& hypothesis,
                                          const Parallel& parallel) {
-  FittedModel model = simulate_model(setup, hypothesis, parallel);
+  FittedModel model = simulate_model(setup, hypothesis, parallel, true);
   model.mismatch = measure_mismatch(setup.bound, setup.split.training, model.runs.training,
                                     setup.problem.weighting.sigma, setup.noise, &model.by_output);
   return model;

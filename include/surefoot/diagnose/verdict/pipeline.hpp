@@ -71,7 +71,7 @@ std::vector<AttachedEffect> candidate_effects(const EstimationSetup& setup, cons
                                               const RunContext& run);
 
 /// The subject of the search. It keeps a reference to the setup.
-SearchProblem search_problem(const EstimationSetup& setup, const RunContext& run);
+SearchProblem search_problem(const EstimationSetup& setup, const Calibration& calibration, const RunContext& run);
 
 /// Fills in parameters, effects and their evidence.
 void describe_models(const EstimationSetup& setup, const FittedModels& models, const Selection& selection,

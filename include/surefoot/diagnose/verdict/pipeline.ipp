@@ -15,6 +15,7 @@
 #include "surefoot/diagnose/effects/catalogue.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
+#include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/standard_errors.hpp"
 #include "surefoot/diagnose/residual_tests/noise.hpp"
 #include "surefoot/diagnose/screening.hpp"
@@ -101,6 +102,10 @@ SUREFOOT_INLINE Calibration calibrate_model(EstimationSetup& setup, const RunCon
   bound.integration.restart = noise == NoiseKind::process ? 1 : 0;
   if (noise == NoiseKind::measurement) free_measured_initial_states(bound, split.training);
   problem.integration = bound.integration;
+  if (!nominal.effects.empty()) {  // their bounds are multiples of these
+    bound.sizes = measure_sizes(bound, nominal, split.training,
+                                simulate_all(bound, nominal, split.training, bound.integration, parallel));
+  }
   Fit calibrated = calibrate(bound, nominal, problem, run.options.starts, run.seed, parallel);
   bound.integration = choose_integration(bound, calibrated.hypothesis, problem.weighting.sigma, bound.integration,
                                          split.training.front());
@@ -139,11 +144,12 @@ SUREFOOT_INLINE bool holds_structure(const EstimationSetup& setup, const Hypothe
   return mismatch.p_value < criteria.structure_significance && mismatch.share > criteria.structure_share;
 }
 
-SUREFOOT_INLINE SearchProblem search_problem(const EstimationSetup& setup, const RunContext& run) {
+SUREFOOT_INLINE SearchProblem search_problem(const EstimationSetup& setup, const Calibration& calibration,
+                                             const RunContext& run) {
   const auto& training = setup.split.training;
   SearchProblem problem;
   problem.fit = setup.problem;
-  problem.folds = setup.split.folds;
+  problem.scale = {.sigma = error_scale(setup.bound), .whitening = setup.problem.weighting.whitening};
   problem.known = run.options.known.size();
   problem.criteria.max_effects = run.options.max_effects;
   SearchEffort& effort = problem.effort;
@@ -152,7 +158,8 @@ SUREFOOT_INLINE SearchProblem search_problem(const EstimationSetup& setup, const
   const auto fewest = static_cast<double>(effort.shortlist), most = static_cast<double>(effort.max_shortlist);
   effort.shortlist = static_cast<std::size_t>(std::clamp(fewest * effort.shortlist_rows / rows, fewest, most));
   const bool final_poses = setup.noise == NoiseKind::final_pose;
-  problem.screened = some_of(training, final_poses ? effort.screening_final_poses : effort.screening);
+  problem.screened = some_by_error(setup.bound, training, calibration.training_runs,
+                                   final_poses ? effort.screening_final_poses : effort.screening);
   problem.on_progress = [run](const std::string& stage, double share) {
     run.progress(stage, progress_search + (progress_evaluation - progress_search) * share);
   };
@@ -183,13 +190,14 @@ SUREFOOT_INLINE void describe_models(const EstimationSetup& setup, const FittedM
       diagnosis.known_effects.push_back(std::move(found));
       continue;
     }
-    found.evidence = evidence_for(selection, e - known, run.seed);
+    found.evidence = evidence_for(selection, e - known);
     diagnosis.effects.push_back(std::move(found));
   }
 }
 
 SUREFOOT_INLINE std::vector<std::string> describe_alternatives(const Selection& selection, Diagnosis& diagnosis) {
   const Alternatives others = find_alternatives(selection);
+  diagnosis.probability = selection.probability;
   diagnosis.alternatives = others.list;
   if (!others.indistinguishable.empty()) {
     diagnosis.next_experiment =
@@ -219,23 +227,24 @@ SUREFOOT_INLINE void evaluate_selection(const EstimationSetup& setup, const Cali
                                         const std::vector<AttachedEffect>& candidates, const RunContext& run,
                                         Diagnosis& diagnosis) {
   const VerdictCriteria verdict;
-  const HeldOutCriteria held_out;
   const auto& training = setup.split.training;
   const FittedModel calibrated = fitted_model(setup, calibration.calibrated.hypothesis, run.parallel);
-  const CheckedChoice choice = check_on_held_out(setup, calibrated, selection, held_out, run.parallel);
+  const CheckedChoice choice = check_on_held_out(setup, calibrated, selection, HeldOutCriteria{}, run.parallel);
   const FittedModels models{simulate_model(setup, calibration.nominal, run.parallel), calibrated, choice.chosen};
   if (choice.rejected) diagnosis.remarks.push_back({"", rejection_sentence()});
 
-  const BlockLosses nominal =
-      block_losses(setup.bound, training, models.nominal.runs.training, setup.problem.weighting);
-  const Comparison calibration_gain = compare_losses(nominal, selection.nominal.cross_validated);
-  diagnosis.verdict =
-      decide(gather_evidence(setup, models, calibration_gain, verdict, held_out, run.parallel, run.seed), verdict);
+  evaluate_errors(setup, models, diagnosis, run.seed);
+  const ErrorSquares nominal =
+      error_squares(setup.bound, calibration.nominal, training, setup.bound.integration, problem.scale, run.parallel);
+  const Comparison calibration_gain = gain_of(nominal, selection.nominal.errors, 0);
+  VerdictEvidence evidence = gather_evidence(setup, models, calibration_gain, verdict, run.parallel, run.seed);
+  add_errors(setup, diagnosis, verdict, evidence);
+  diagnosis.verdict = decide(evidence, verdict);
 
   describe_models(setup, models, choice.selection, run, diagnosis);
   const std::vector<std::string> ties = describe_alternatives(choice.selection, diagnosis);
   std::tie(diagnosis.regions, diagnosis.intervals) = locate_mismatch(setup, calibrated, run.seed);
-  evaluate(setup, models, diagnosis, run.parallel, run.seed);
+  offer_forests(setup, models, diagnosis, run.parallel, run.seed);
   describe_limits(setup, models, problem, candidates, run, diagnosis);
   diagnosis.sentence = verdict_sentence(diagnosis, ties);
   if (diagnosis.verdict == Verdict::unexplained) return;  // what is left of it would pass for noise
@@ -259,10 +268,11 @@ SUREFOOT_INLINE Diagnosis run_pipeline(const BindSimulator& bind, const Simulato
 
   run.progress("calibrating", progress_calibration);
   const Calibration calibration = calibrate_model(setup, run);
-  const SearchProblem problem = search_problem(setup, run);
+  const SearchProblem problem = search_problem(setup, calibration, run);
   const std::vector<AttachedEffect> candidates = candidate_effects(setup, calibration, run);
   const Selection selection = select_effects(setup.bound, calibration.calibrated, problem, candidates, parallel);
-  diagnosis.complete = !stop.stop_requested();
+  diagnosis.complete = !run.search_has_ended();
+  setup.problem = selection.fit;
 
   run.progress("evaluating", progress_evaluation);
   evaluate_selection(setup, calibration, problem, selection, candidates, run, diagnosis);
