@@ -48,6 +48,13 @@ std::string verdict_part(const Diagnosis& d) {
          "unknown.</p>\n";
 }
 
+std::string log_faults_part(const Diagnosis& d) {
+  if (d.log_faults.empty()) return "";
+  std::string html = "<h2>Faults of the log</h2>\n<p>Not of the machine, but they would pass for missing physics:</p>\n<ul>\n";
+  for (const auto& fault : d.log_faults) html += element("li", fault_text(fault)) + "\n";
+  return html + "</ul>\n";
+}
+
 std::string where_part(const Diagnosis& d, const std::string& unit) {
   if (d.regions.empty() && d.channels.empty() && d.intervals.empty()) return "";
   std::string html = d.regions.empty() ? "<h2>How far the model is off</h2>\n" : "<h2>Where the model is off</h2>\n";
@@ -271,7 +278,7 @@ Report make_report(const Diagnosis& d, const surefoot::SimulatorInfo& info) {
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
       escaped(d.model) + ": " + escaped(headline(d.verdict)) + "</title>\n<style>" + report_style +
-      "</style>\n</head>\n<body>\n<main>\n" + verdict_part(d) +
+      "</style>\n</head>\n<body>\n<main>\n" + verdict_part(d) + log_faults_part(d) +
       where_part(d, info.kind == surefoot::SimulatorKind::ode ? " s" : "") + what_part(d) + limits_part(d) +
       curves_part(d, report.pictures) + ranking_part(d) + next_part(d) + forest_part(d.forest_residual) +
       parameters_part(d) + noise_part(d) + remarks_part(d) + "<footer>" +

@@ -13,6 +13,7 @@ std::string summary(const surefoot::Diagnosis& d, const std::filesystem::path& o
   std::ostringstream text;
   text << d.model << ": " << headline(d.verdict) << (d.complete ? "" : " (interrupted, so far)") << '\n';
   if (!d.sentence.empty()) text << "  " << d.sentence << '\n';
+  for (const auto& fault : d.log_faults) text << "  log     " << fault_text(fault) << '\n';
   if (!d.regions.empty()) {
     const auto& region = d.regions.front();
     text << "  where   " << region.rule << ": " << percent(region.share_of_excess) << " of the excess error in "

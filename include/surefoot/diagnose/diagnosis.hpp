@@ -90,6 +90,18 @@ struct Remark {
   std::string recording, text;
 };
 
+/// A fault of the log, not of the machine, that would pass for missing physics.
+struct LogFault {
+  std::string kind = {};       // sign_flipped, angle_unit, time_unit, columns_swapped, clock_offset, clock_skew, stuck_sensor,
+                          // clipped, dropped_samples or odd_recording
+  std::string recording = {};  // empty: all
+  std::string channel = {};    // input or output; empty: the time, or all of it
+  double size = 0;        // how much a clock is off, a factor, or how many rows
+  std::string unit = {};
+  std::string sentence = {}, cure = {};
+  bool repaired = false;
+};
+
 /// What the noise of an output is like beyond white and of constant size.
 struct NoiseFinding {
   std::string output, name;  // speed_dependent_noise or correlated_noise
@@ -121,6 +133,7 @@ struct Diagnosis {
   std::string sentence;
   std::vector<std::string> fit, select, held_out;  // names of recordings
   std::vector<Remark> remarks;
+  std::vector<LogFault> log_faults;
   std::vector<CalibratedParameter> parameters;  // of the model without effects
   std::vector<CalibratedParameter> augmented_parameters;
   std::vector<std::string> correlated;  // pairs of parameters the recordings hardly separate

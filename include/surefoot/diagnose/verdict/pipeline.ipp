@@ -16,6 +16,7 @@
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/standard_errors.hpp"
+#include "surefoot/diagnose/log_doctor/examine_log.hpp"
 #include "surefoot/diagnose/residual_tests/noise.hpp"
 #include "surefoot/diagnose/screening.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
@@ -60,6 +61,18 @@ SUREFOOT_INLINE Hypothesis nominal_with_known(const BoundSimulator& bound, const
     std::copy(named.values.begin(), named.values.end(), hypothesis.values.back().data());
   }
   return hypothesis;
+}
+
+SUREFOOT_INLINE std::vector<LogFault> examine_recordings(const BindSimulator& bind, std::vector<Recording>& recordings,
+                                                         const RunContext& run) {
+  const auto nominal = [&](const BoundSimulator& bound) { return nominal_with_known(bound, run.options); };
+  LogExamination examined = examine_log({bind, nominal, run.parallel}, recordings);
+  if (run.options.repair) {
+    recordings = std::move(examined.repaired);
+  } else {
+    for (LogFault& fault : examined.faults) fault.repaired = false;
+  }
+  return examined.faults;
 }
 
 SUREFOOT_INLINE std::vector<Recording> cut_few_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
@@ -253,6 +266,7 @@ SUREFOOT_INLINE Diagnosis run_pipeline(const BindSimulator& bind, const Simulato
 
   run.progress("screening", 0);
   diagnosis.remarks = screen_recordings(info, recordings);
+  diagnosis.log_faults = examine_recordings(bind, recordings, run);
   recordings = cut_few_recordings(bind, std::move(recordings), run);
   EstimationSetup setup = hold_out_recordings(bind, std::move(recordings), run);
   name_recordings(setup, diagnosis);
@@ -266,6 +280,7 @@ SUREFOOT_INLINE Diagnosis run_pipeline(const BindSimulator& bind, const Simulato
 
   run.progress("evaluating", progress_evaluation);
   evaluate_selection(setup, calibration, problem, selection, candidates, run, diagnosis);
+  diagnosis.sentence = caution(diagnosis.log_faults) + diagnosis.sentence;
   diagnosis.seconds = run.seconds();
   run.progress("done", 1, diagnosis.sentence);
   return diagnosis;

@@ -1,0 +1,167 @@
+// Definitions of surefoot/diagnose/log_doctor/clock_faults.hpp.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/log_doctor/clock_faults.hpp"
+#include "surefoot/diagnose/log_doctor/tails.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE bool has_clocks(const LogFit& fit, const LogDoctorCriteria& criteria) {
+  if (fit.bound.info.kind != SimulatorKind::ode || fit.bound.recordings.size() < 3) return false;
+  for (const Recording& recording : fit.bound.recordings) {
+    if (recording.rows() < static_cast<Eigen::Index>(criteria.fewest_rows)) return false;
+  }
+  return true;
+}
+
+/// Variances of estimates, each pooled with the median one: eight blocks alone tell a variance badly.
+SUREFOOT_INLINE std::vector<double> pooled_variances(const std::vector<ClockEstimate>& estimates) {
+  std::vector<double> variances;
+  for (const ClockEstimate& one : estimates) variances.push_back(one.variance);
+  const double middle = median_of(variances);
+  for (double& variance : variances) variance = std::max(variance, middle);
+  return variances;
+}
+
+SUREFOOT_INLINE double scatter_by_chance(const std::vector<ClockEstimate>& estimates,
+                                         const LogDoctorCriteria& criteria) {
+  const std::vector<double> variances = pooled_variances(estimates);
+  double weights = 0, mean = 0, sum = 0;
+  for (std::size_t r = 0; r < estimates.size(); ++r) {
+    if (!estimates[r].usable || !(variances[r] > 0)) return 1;
+    weights += 1 / variances[r];
+    mean += estimates[r].value / variances[r];
+  }
+  mean /= weights;
+  for (std::size_t r = 0; r < estimates.size(); ++r) {
+    sum += (estimates[r].value - mean) * (estimates[r].value - mean) / variances[r];
+  }
+  const auto count = static_cast<double>(estimates.size());
+  return f_tail(sum / (count - 1), count - 1, count * static_cast<double>(criteria.blocks - 1));
+}
+
+SUREFOOT_INLINE double outlier_by_chance(const std::vector<ClockEstimate>& estimates, std::size_t r) {
+  double mean = 0, squares = 0, count = 0;
+  for (std::size_t o = 0; o < estimates.size(); ++o) {
+    if (o == r || !estimates[o].usable) continue;
+    mean += estimates[o].value;
+    squares += estimates[o].value * estimates[o].value;
+    ++count;
+  }
+  if (!estimates[r].usable || count < 2) return 1;
+  mean /= count;
+  const double between = std::max(squares / count - mean * mean, 0.0) * count / (count - 1);
+  const double variance = between * (1 + 1 / count) + pooled_variances(estimates)[r];
+  return variance > 0 ? t_tail((estimates[r].value - mean) / std::sqrt(variance), count - 1) : 1;
+}
+
+SUREFOOT_INLINE double median_value(const std::vector<ClockEstimate>& estimates) {
+  std::vector<double> values;
+  for (const ClockEstimate& one : estimates) {
+    if (one.usable) values.push_back(one.value);
+  }
+  return median_of(values);
+}
+
+/// Profiles and estimates of all recordings.
+struct Clocks {
+  std::vector<ClockProfile> profiles;
+  std::vector<ClockEstimate> estimates;
+};
+
+SUREFOOT_INLINE Clocks measure_clocks(const LogFit& fit, LogFaultKind kind, const LogDoctorInputs& inputs) {
+  const std::size_t count = fit.bound.recordings.size();
+  Clocks clocks{std::vector<ClockProfile>(count), std::vector<ClockEstimate>(count)};
+  inputs.parallel(count, [&](std::size_t r) {
+    clocks.profiles[r] = clock_profile(fit, r, kind, inputs.criteria);
+    clocks.estimates[r] = clock_estimate(clocks.profiles[r]);
+  });
+  return clocks;
+}
+
+/// The one recording whose clock is off, and by how much its error falls.
+struct SingleClock {
+  LogFaultKind kind = LogFaultKind::offset;
+  std::size_t recording = 0;
+  double amount = 0, error = std::numeric_limits<double>::infinity();
+};
+
+SUREFOOT_INLINE void compare_single(const Clocks& clocks, LogFaultKind kind, const LogDoctorCriteria& criteria,
+                                    std::optional<SingleClock>& best) {
+  const double common = median_value(clocks.estimates), kinds = 3;
+  for (std::size_t r = 0; r < clocks.estimates.size(); ++r) {
+    const ClockEstimate& one = clocks.estimates[r];
+    if (!one.usable) continue;
+    const double chance = outlier_by_chance(clocks.estimates, r) * static_cast<double>(clocks.estimates.size()) * kinds;
+    const double ratio = error_at(clocks.profiles[r], common) / one.error;
+    if (std::getenv("DOCTOR_DEBUG")) std::fprintf(stderr, "clock %d rec %zu value %.5f sd %.5f common %.5f chance %.2g ratio %.3g err %.3g\n", (int)kind, r, one.value, std::sqrt(one.variance), common, chance, ratio, one.error);
+    if (!(chance < criteria.significance && ratio > criteria.decisive)) continue;
+    if (!best || one.error < best->error) best = SingleClock{kind, r, one.value - common, one.error};
+  }
+}
+
+SUREFOOT_INLINE std::vector<Recording> with_amounts(const LogFit& fit, LogFaultKind kind,
+                                                    const std::vector<double>& amounts) {
+  std::vector<Recording> recordings = fit.bound.recordings;
+  for (std::size_t r = 0; r < recordings.size(); ++r) {
+    if (amounts[r] != 0) recordings[r] = repaired(fit.bound, recordings[r], {.kind = kind, .amount = amounts[r]});
+  }
+  return recordings;
+}
+
+/// Offsets that differ between all recordings: they move the parameters, so that the model is calibrated without them
+/// before they count.
+SUREFOOT_INLINE std::optional<ClockFault> differing_offsets(const LogDoctorInputs& inputs, const LogFit& fit,
+                                                            const Clocks& clocks) {
+  const LogDoctorCriteria& criteria = inputs.criteria;
+  const double chance = scatter_by_chance(clocks.estimates, criteria);
+  if (std::getenv("DOCTOR_DEBUG")) std::fprintf(stderr, "scatter chance %.3g\n", chance);
+  if (!(chance < criteria.significance)) return std::nullopt;
+  ClockFault fault{LogFaultKind::offset, {}};
+  for (const ClockEstimate& one : clocks.estimates) {
+    fault.amounts.push_back(one.usable ? one.value - median_value(clocks.estimates) : 0);
+  }
+  LogFit cured = fit;
+  for (int round = 0; round < 2; ++round) {  // the second with parameters that the first offsets do not spoil
+    cured = fit_log(inputs, with_amounts(fit, fault.kind, fault.amounts), fit.hypothesis.parameters);
+    const Clocks left = measure_clocks(cured, fault.kind, inputs);
+    for (std::size_t r = 0; r < left.estimates.size() && round == 0; ++r) {
+      if (left.estimates[r].usable) fault.amounts[r] += left.estimates[r].value - median_value(left.estimates);
+    }
+  }
+  std::vector<double> gains;
+  for (std::size_t r = 0; r < fit.error.size(); ++r) gains.push_back(std::log(fit.error[r] / cured.error[r]));
+  if (std::getenv("DOCTOR_DEBUG")) std::fprintf(stderr, "offsets median ratio %.3g\n", std::exp(median_of(gains)));
+  if (!(median_of(gains) > std::log(criteria.decisive))) return std::nullopt;
+  return fault;
+}
+
+SUREFOOT_INLINE std::optional<ClockFault> find_clock_fault(const LogDoctorInputs& inputs, const LogFit& fit) {
+  if (!has_clocks(fit, inputs.criteria)) return std::nullopt;
+  std::optional<SingleClock> single;
+  const Clocks offsets = measure_clocks(fit, LogFaultKind::offset, inputs);
+  compare_single(offsets, LogFaultKind::offset, inputs.criteria, single);
+  for (const LogFaultKind kind : {LogFaultKind::output_skew, LogFaultKind::time_skew}) {
+    compare_single(measure_clocks(fit, kind, inputs), kind, inputs.criteria, single);
+  }
+  if (single) {
+    ClockFault fault{single->kind, std::vector<double>(fit.bound.recordings.size(), 0.0)};
+    fault.amounts[single->recording] = single->amount;
+    return fault;
+  }
+  return differing_offsets(inputs, fit, offsets);
+}
+
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,34 @@
+// Criteria of the log doctor: when a fault of a log is named.
+#pragma once
+
+#include <cstddef>
+
+namespace surefoot::diagnosis {
+
+struct LogDoctorCriteria {
+  // Named is what chance and the scatter between recordings explain with less than this probability, shared out among
+  // all tests of a log; and what halves the error, for missing physics makes small but significant differences too.
+  double significance = 1e-3;
+  double decisive = 4;          // least mean square error as logged over that after the repair
+  double poor_fit = 0.25;       // of the variance unexplained in the median recording: the whole log is in doubt
+  double most_of = 0.8;         // share of the recordings that a fault of the whole log must be seen in
+  std::size_t search_points = 8;   // of the search for parameters where the log is in doubt
+  std::size_t fewest_rows = 40;  // of a recording, for what concerns its clock or its sensors
+  std::size_t fit_rows = 10000;  // of the light calibration, over as many recordings as that gives
+  std::size_t few_fitted = 6;    // recordings at least
+  int fit_iterations = 6;        // of each of its rounds
+  int fit_rounds = 3;            // with each recording weighted by what is left of it
+
+  std::size_t blocks = 8;           // of a recording, left out in turn for the standard error of its clock
+  double most_shift = 40;           // rows that outputs may be early or late by
+  double most_skew = 0.05;          // of the time: clocks are worse only if they are broken
+  std::size_t skews = 11;           // clock rates that are tried
+
+  double gap = 10;                 // times the median interval: rows are missing
+  double gap_against_others = 3;   // times the longest interval of most recordings
+  std::size_t constant_rows = 10;  // equal readings in a row that are a stretch
+  double repeats = 0.02;           // share of rows that repeat the one before while the model moves on
+  double odd = 9;                  // times the mean square error of the worst other recording: three times its error
+};
+
+}  // namespace surefoot::diagnosis

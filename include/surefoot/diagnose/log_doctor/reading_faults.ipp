@@ -1,0 +1,232 @@
+// Definitions of surefoot/diagnose/log_doctor/reading_faults.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/log_doctor/reading_faults.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE double resolution_of(const std::vector<Recording>& recordings, Eigen::Index output) {
+  constexpr double rounding = 1e-9;  // of a reading: digits lost in a file are no step
+  double least = std::numeric_limits<double>::infinity();
+  for (const Recording& recording : recordings) {
+    for (Eigen::Index row = 1; row < recording.rows(); ++row) {
+      const double value = recording.outputs(output, row);
+      const double step = std::abs(value - recording.outputs(output, row - 1));
+      if (step > rounding * std::abs(value)) least = std::min(least, step);
+    }
+  }
+  return std::isfinite(least) ? least : 0;
+}
+
+/// How much the model moves over these rows: standard deviation, or what it expects of a step that begins at the
+/// reading.
+SUREFOOT_INLINE double missed_motion(const LogFit& fit, std::size_t r, Eigen::Index output, const RowRange& rows) {
+  const bool steps = fit.bound.integration.restart > 0;
+  double sum = 0, squares = 0, count = 0;
+  for (Eigen::Index row = rows.first; row < rows.second; ++row) {
+    const double value = steps ? fit.residuals[r](output, row) : fit.runs[r].outputs(output, row);
+    if (!std::isfinite(value)) continue;
+    sum += value;
+    squares += value * value;
+    ++count;
+  }
+  if (count < 2) return 0;
+  const double mean = steps ? 0 : sum / count;
+  return std::sqrt(std::max(0.0, squares / count - mean * mean));
+}
+
+SUREFOOT_INLINE bool goes_beyond(const LogFit& fit, std::size_t r, Eigen::Index output, const ConstantStretch& stretch) {
+  const Recording& recording = fit.bound.recordings[r];
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (Eigen::Index row = 0; row < recording.rows(); ++row) {
+    const double value = recording.outputs(output, row);
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (stretch.value != low && stretch.value != high) return false;
+  const double side = stretch.value == high ? 1 : -1;
+  Eigen::Index beyond = 0;
+  for (Eigen::Index row = stretch.rows.first; row < stretch.rows.second; ++row) {
+    if (side * (fit.runs[r].outputs(output, row) - stretch.value) > 0) ++beyond;
+  }
+  return 2 * beyond > stretch.rows.second - stretch.rows.first;
+}
+
+SUREFOOT_INLINE std::vector<ConstantStretch> constant_stretches(const LogFit& fit, std::size_t r, Eigen::Index output,
+                                                                double resolution, const LogDoctorCriteria& criteria) {
+  constexpr double steps_missed = 3;  // of the sensor's: less motion than that it may not show
+  const Recording& recording = fit.bound.recordings[r];
+  std::vector<ConstantStretch> stretches;
+  if (!fit.runs[r].finite) return stretches;
+  ConstantStretch now{{0, 0}, 0, std::numeric_limits<double>::quiet_NaN()};
+  const auto close = [&] {
+    if (now.readings < static_cast<Eigen::Index>(criteria.constant_rows)) return;
+    now.missed = missed_motion(fit, r, output, now.rows);
+    now.beyond = goes_beyond(fit, r, output, now);
+    if (now.missed > steps_missed * resolution) stretches.push_back(now);
+  };
+  for (Eigen::Index row = 0; row < recording.rows(); ++row) {
+    const double value = recording.outputs(output, row);
+    if (!std::isfinite(value)) continue;
+    if (value != now.value) {
+      close();
+      now = {{row, row}, 0, value};
+    }
+    now.rows.second = row + 1;
+    ++now.readings;
+  }
+  close();
+  return stretches;
+}
+
+/// Motion that is missed in all stretches: their squares, summed.
+SUREFOOT_INLINE double total_missed(const std::vector<ConstantStretch>& stretches) {
+  double sum = 0;
+  for (const ConstantStretch& one : stretches) sum += static_cast<double>(one.readings) * one.missed * one.missed;
+  return sum;
+}
+
+/// Whether a stretch ends with a jump: a machine that sticks moves on from where it was.
+SUREFOOT_INLINE bool ends_in_jump(const LogFit& fit, std::size_t r, Eigen::Index output, const RowRange& rows) {
+  constexpr double jump = 5;  // times the 95 % quantile of the steps in this recording
+  const Recording& recording = fit.bound.recordings[r];
+  std::vector<double> steps;
+  for (Eigen::Index row = 1; row < recording.rows(); ++row) {
+    const double step = std::abs(recording.outputs(output, row) - recording.outputs(output, row - 1));
+    if (std::isfinite(step) && (row < rows.first || row > rows.second)) steps.push_back(step);
+  }
+  if (steps.empty() || rows.second >= recording.rows()) return false;
+  const auto high = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() * 19 / 20);
+  std::nth_element(steps.begin(), high, steps.end());
+  return std::abs(recording.outputs(output, rows.second) - recording.outputs(output, rows.second - 1)) > jump * *high;
+}
+
+/// The stretches of one output and recording that no sensor and no machine explains: clipped or stuck.
+SUREFOOT_INLINE std::optional<FoundFault> constant_fault(const LogFit& fit, std::size_t r, Eigen::Index output,
+                                                         const std::vector<ConstantStretch>& stretches) {
+  LogRepair clipped{.kind = LogFaultKind::clipped, .channel = {false, output}};
+  LogRepair stuck{.kind = LogFaultKind::stuck, .channel = {false, output}};
+  double clipped_rows = 0, stuck_rows = 0;
+  for (const ConstantStretch& one : stretches) {
+    const bool jump = ends_in_jump(fit, r, output, one.rows);
+    if (one.beyond && !jump) {
+      clipped.rows.push_back(one.rows);
+      clipped_rows += static_cast<double>(one.readings);
+    } else if (jump || one.missed > fit.typical[output]) {
+      stuck.rows.push_back(one.rows);
+      stuck_rows += static_cast<double>(one.readings);
+    }
+  }
+  if (clipped.rows.empty() && stuck.rows.empty()) return std::nullopt;
+  return FoundFault{{clipped_rows > stuck_rows ? clipped : stuck}, r};
+}
+
+/// Rows that repeat the reading before although the model moves on by more than the sensor's steps, and all such rows.
+struct RepeatedRows {
+  std::vector<RowRange> rows;
+  double moving = 0;
+};
+
+SUREFOOT_INLINE RepeatedRows repeated_rows(const LogFit& fit, std::size_t r, Eigen::Index output, double resolution,
+                                           const LogDoctorCriteria& criteria) {
+  constexpr double steps = 2;  // of the sensor: by so much the model must move from row to row
+  const Recording& recording = fit.bound.recordings[r];
+  const Eigen::MatrixXd& simulated = fit.runs[r].outputs;
+  RepeatedRows result;
+  Eigen::Index equal = 0;
+  for (Eigen::Index row = 1; row < recording.rows(); ++row) {
+    const double value = recording.outputs(output, row), before = recording.outputs(output, row - 1);
+    if (!std::isfinite(value) || !std::isfinite(before)) continue;
+    equal = value == before ? equal + 1 : 0;
+    if (!(std::abs(simulated(output, row) - simulated(output, row - 1)) > steps * resolution)) continue;
+    if (equal >= static_cast<Eigen::Index>(criteria.constant_rows)) continue;  // a stretch
+    ++result.moving;
+    if (equal > 0) result.rows.emplace_back(row, row + 1);
+  }
+  return result;
+}
+
+SUREFOOT_INLINE std::vector<FoundFault> repeated_row_faults(const LogFit& fit, Eigen::Index output, double resolution,
+                                                            const LogDoctorCriteria& criteria) {
+  const std::size_t count = fit.bound.recordings.size();
+  std::vector<RepeatedRows> repeated(count);
+  for (std::size_t r = 0; r < count; ++r) {
+    if (fit.runs[r].finite) repeated[r] = repeated_rows(fit, r, output, resolution, criteria);
+  }
+  std::vector<FoundFault> found;
+  const double least_odds = std::log(static_cast<double>(count) / criteria.significance);
+  for (std::size_t r = 0; r < count; ++r) {
+    double hits = 1, moving = 2;  // of the others, with one more of each kind (Laplace)
+    for (std::size_t o = 0; o < count; ++o) {
+      if (o != r) hits += static_cast<double>(repeated[o].rows.size());
+      if (o != r) moving += repeated[o].moving;
+    }
+    const double p = hits / moving, n = repeated[r].moving, own = static_cast<double>(repeated[r].rows.size()) / n;
+    if (!(n > 0 && own > criteria.repeats && own > criteria.decisive * p)) continue;
+    const double odds = n * (own * std::log(own / p) + (own < 1 ? (1 - own) * std::log((1 - own) / (1 - p)) : 0));
+    if (odds < least_odds) continue;
+    found.push_back({{{.kind = LogFaultKind::repeated, .channel = {false, output}, .rows = repeated[r].rows}}, r});
+  }
+  return found;
+}
+
+SUREFOOT_INLINE std::vector<FoundFault> find_reading_faults(const LogFit& fit, const LogDoctorCriteria& criteria) {
+  std::vector<FoundFault> found;
+  const std::size_t count = fit.bound.recordings.size();
+  for (Eigen::Index output = 0; output < static_cast<Eigen::Index>(fit.bound.info.outputs.size()); ++output) {
+    const double resolution = resolution_of(fit.bound.recordings, output);
+    std::vector<std::vector<ConstantStretch>> stretches(count);
+    std::vector<double> missed(count);
+    for (std::size_t r = 0; r < count; ++r) {
+      stretches[r] = constant_stretches(fit, r, output, resolution, criteria);
+      missed[r] = total_missed(stretches[r]);
+    }
+    for (std::size_t r = 0; r < count; ++r) {
+      double others = 0;
+      for (std::size_t o = 0; o < count; ++o) others = std::max(others, o == r ? 0 : missed[o]);
+      if (!(missed[r] > criteria.decisive * criteria.decisive * others)) continue;
+      if (const auto fault = constant_fault(fit, r, output, stretches[r])) found.push_back(*fault);
+    }
+    if (fit.bound.info.kind != SimulatorKind::ode) continue;
+    for (const FoundFault& fault : repeated_row_faults(fit, output, resolution, criteria)) found.push_back(fault);
+  }
+  return found;
+}
+
+SUREFOOT_INLINE std::vector<FoundFault> find_gaps(const BoundSimulator& bound, const LogDoctorCriteria& criteria) {
+  std::vector<FoundFault> found;
+  if (bound.info.kind != SimulatorKind::ode) return found;
+  for (std::size_t r = 0; r < bound.recordings.size(); ++r) {
+    const Recording& recording = bound.recordings[r];
+    if (recording.rows() < static_cast<Eigen::Index>(criteria.fewest_rows)) continue;
+    std::vector<double> intervals;
+    for (Eigen::Index row = 1; row < recording.rows(); ++row) {
+      intervals.push_back(recording.time[row] - recording.time[row - 1]);
+    }
+    const double middle = median_of(intervals);
+    std::vector<double> sorted = intervals;
+    const auto high = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() * 19 / 20);
+    std::nth_element(sorted.begin(), high, sorted.end());
+    const double least = std::max(criteria.gap * middle, criteria.gap_against_others * *high);
+    LogRepair gaps{.kind = LogFaultKind::gap};
+    for (std::size_t i = 0; i < intervals.size(); ++i) {
+      if (intervals[i] > least) {
+        gaps.rows.emplace_back(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i) + 1);
+      }
+    }
+    if (!gaps.rows.empty()) found.push_back({{gaps}, r});
+  }
+  return found;
+}
+
+}  // namespace surefoot::diagnosis
