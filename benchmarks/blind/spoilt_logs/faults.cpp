@@ -33,8 +33,22 @@ void scale(std::vector<double>& column, double factor) {
   for (double& value : column) value *= factor;
 }
 
+// Standard deviation of the noise from row to row, from the median third difference.
+double noise_of(const std::vector<double>& y) {
+  std::vector<double> differences;
+  for (std::size_t i = 3; i < y.size(); ++i) {
+    const double third = std::abs(y[i] - 3 * y[i - 1] + 3 * y[i - 2] - y[i - 3]);
+    if (std::isfinite(third)) differences.push_back(third);
+  }
+  if (differences.empty()) return 0;
+  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::nth_element(differences.begin(), middle, differences.end());
+  return 1.4826 * *middle / std::sqrt(20.0);
+}
+
 // Readings of a column at other times, between rows; empty outside.
-std::vector<double> read_at(const Table& table, std::size_t column, const std::vector<double>& times) {
+std::vector<double> read_at(Random& random, const Table& table, std::size_t column, const std::vector<double>& times) {
+  const double noise = noise_of(table.columns[column]);
   const std::vector<double>&t = table.columns[0], &y = table.columns[column];
   std::vector<double> result;
   std::size_t i = 0;
@@ -42,7 +56,7 @@ std::vector<double> read_at(const Table& table, std::size_t column, const std::v
     while (i + 2 < t.size() && t[i + 1] < time) ++i;
     const double share = (time - t[i]) / (t[i + 1] - t[i]);
     if (time < t[0]) {
-      result.push_back(y[0]);  // the machine was at rest before
+      result.push_back(y[0] + random.normal(noise));  // the machine was at rest before
     } else {
       result.push_back(share > 1 ? nothing : share < 1e-9 ? y[i] : (1 - share) * y[i] + share * y[i + 1]);
     }
@@ -50,10 +64,9 @@ std::vector<double> read_at(const Table& table, std::size_t column, const std::v
   return result;
 }
 
-// Rounds like the readings were.
-void delay_outputs(const Log& log, Table& table, const std::vector<double>& times) {
+void delay_outputs(Random& random, const Log& log, Table& table, const std::vector<double>& times) {
   const Table before = table;
-  for (const std::size_t c : log.outputs) table.columns[c] = read_at(before, c, times);
+  for (const std::size_t c : log.outputs) table.columns[c] = read_at(random, before, c, times);
 }
 
 Spoilt of_one(const Log& log, const std::string& kind, std::size_t r, std::size_t column, double size = 0) {
@@ -103,7 +116,7 @@ Spoilt spoil_offset(Random& random, Log& log) {
     longest = std::max(longest, late);
     std::vector<double> times = table.columns[0];
     for (double& t : times) t -= late;
-    delay_outputs(log, table, times);
+    delay_outputs(random, log, table, times);
   }
   return {"clock_offset", "", "", {}, longest};
 }
@@ -118,7 +131,7 @@ Spoilt spoil_skew(Random& random, Log& log) {
   } else {
     std::vector<double> times = table.columns[0];
     for (double& t : times) t /= 1 + skew;
-    delay_outputs(log, table, times);
+    delay_outputs(random, log, table, times);
   }
   return of_one(log, "clock_skew", r, 0, skew);
 }

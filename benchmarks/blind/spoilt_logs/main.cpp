@@ -81,16 +81,20 @@ void draw(const fs::path& plants, const fs::path& out, std::uint64_t seed) {
   plants::Random random(seed);
   const std::vector<fs::path> cases = sorted(plants / "cases");
   Json truths = Json::array();
-  std::size_t next = 0;
+  std::map<std::string, int> drawn;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     if (i % 2 == 1) {
       truths.push_back(draw_one(random, cases, plants, i, "", out));
       continue;
     }
-    for (std::size_t tried = 0; tried < spoilt::kinds().size(); ++tried) {  // the next kind that this log can have
-      const Json truth = draw_one(random, cases, plants, i, spoilt::kinds()[next++ % spoilt::kinds().size()], out);
+    std::vector<std::string> kinds = spoilt::kinds();  // the rarest so far that this log can have
+    std::shuffle(kinds.begin(), kinds.end(), random.engine);
+    std::ranges::stable_sort(kinds, {}, [&](const std::string& kind) { return drawn[kind]; });
+    for (const std::string& kind : kinds) {
+      const Json truth = draw_one(random, cases, plants, i, kind, out);
       if (truth.is_null()) continue;
       truths.push_back(truth);
+      ++drawn[kind];
       break;
     }
   }

@@ -39,8 +39,11 @@ SUREFOOT_INLINE void add_squares(const LogFit& fit, const Recording& recording, 
 SUREFOOT_INLINE ClockProfile clock_profile(const LogFit& fit, std::size_t r, LogFaultKind kind,
                                            const LogDoctorCriteria& criteria) {
   const Recording& recording = fit.bound.recordings[r];
-  const bool offset = kind == LogFaultKind::offset;
-  const auto steps = offset ? static_cast<Eigen::Index>(2 * criteria.most_shift + 1) : static_cast<Eigen::Index>(criteria.skews);
+  const bool offset = kind == LogFaultKind::offset, simulated_again = kind == LogFaultKind::time_skew;
+  const double count = offset            ? 2 * criteria.most_shift + 1
+                       : simulated_again ? criteria.simulated_skews
+                                         : criteria.read_skews;
+  const auto steps = static_cast<Eigen::Index>(count);
   const double most = offset ? criteria.most_shift * median_interval(recording) : criteria.most_skew;
   ClockProfile profile;
   profile.squares.setZero(static_cast<Eigen::Index>(criteria.blocks), steps);
@@ -50,7 +53,7 @@ SUREFOOT_INLINE ClockProfile clock_profile(const LogFit& fit, std::size_t r, Log
     const double amount = most * (2 * static_cast<double>(a) / static_cast<double>(steps - 1) - 1);
     profile.amounts.push_back(amount);
     Eigen::VectorXd times = recording.time;
-    if (kind == LogFaultKind::time_skew) {
+    if (simulated_again) {
       const Recording other =
           repaired(fit.bound, recording, {.kind = kind, .amount = amount});
       const Resimulation resimulation = resimulate(fit, r, other);
@@ -117,9 +120,11 @@ SUREFOOT_INLINE double error_at(const ClockProfile& profile, double amount) {
   const std::vector<double> errors = errors_without(profile, -1);
   const double step = profile.amounts[1] - profile.amounts[0];
   const double place = std::clamp((amount - profile.amounts[0]) / step, 0.0, static_cast<double>(errors.size() - 1));
-  const auto below = std::min(static_cast<std::size_t>(place), errors.size() - 2);
-  const double share = place - static_cast<double>(below);
-  return (1 - share) * errors[below] + share * errors[below + 1];
+  const auto middle = std::clamp<std::size_t>(static_cast<std::size_t>(place + 0.5), 1, errors.size() - 2);
+  const double x = place - static_cast<double>(middle);  // on the parabola through the three nearest
+  const double rise = 0.5 * (errors[middle + 1] - errors[middle - 1]);
+  const double bend = 0.5 * (errors[middle + 1] + errors[middle - 1]) - errors[middle];
+  return errors[middle] + x * (rise + x * bend);
 }
 
 }  // namespace surefoot::diagnosis

@@ -107,7 +107,7 @@ SUREFOOT_INLINE void compare_single(const Clocks& clocks, LogFaultKind kind, con
     const double chance = outlier_by_chance(clocks.estimates, r) * static_cast<double>(clocks.estimates.size()) * kinds;
     const double ratio = error_at(clocks.profiles[r], common) / one.error;
     if (std::getenv("DOCTOR_DEBUG")) std::fprintf(stderr, "clock %d rec %zu value %.5f sd %.5f common %.5f chance %.2g ratio %.3g err %.3g\n", (int)kind, r, one.value, std::sqrt(one.variance), common, chance, ratio, one.error);
-    if (!(chance < criteria.significance && ratio > criteria.decisive)) continue;
+    if (!(chance < criteria.significance && ratio > criteria.clock_gain)) continue;
     if (!best || one.error < best->error) best = SingleClock{kind, r, one.value - common, one.error};
   }
 }
@@ -121,30 +121,50 @@ SUREFOOT_INLINE std::vector<Recording> with_amounts(const LogFit& fit, LogFaultK
   return recordings;
 }
 
-/// Offsets that differ between all recordings: they move the parameters, so that the model is calibrated without them
-/// before they count.
+/// The model calibrated to recordings whose offsets were taken out.
+struct WithoutOffsets {
+  LogFit fit;
+  std::vector<double> amounts;  // [s]
+};
+
+/// Takes offsets out and calibrates in turn, until neither moves much: each recording's own, or one for all.
+SUREFOOT_INLINE WithoutOffsets take_offsets_out(const LogDoctorInputs& inputs, const LogFit& fit, const Clocks& clocks,
+                                                bool own) {
+  constexpr int rounds = 3;
+  WithoutOffsets result{fit, std::vector<double>(fit.error.size(), 0.0)};
+  const Clocks* left = &clocks;
+  Clocks measured;
+  for (int round = 0; round < rounds; ++round) {
+    const double common = median_value(left->estimates);
+    for (std::size_t r = 0; r < result.amounts.size(); ++r) {
+      const ClockEstimate& one = left->estimates[r];
+      result.amounts[r] += own && one.usable ? one.value : common;
+    }
+    result.fit = fit_log(inputs, with_amounts(fit, LogFaultKind::offset, result.amounts),
+                         result.fit.hypothesis.parameters);
+    if (round + 1 < rounds) measured = measure_clocks(result.fit, LogFaultKind::offset, inputs);
+    left = &measured;
+  }
+  return result;
+}
+
+/// Offsets that differ between all recordings: the error falls much further with each one's own than with a delay that
+/// all have in common.
 SUREFOOT_INLINE std::optional<ClockFault> differing_offsets(const LogDoctorInputs& inputs, const LogFit& fit,
                                                             const Clocks& clocks) {
   const LogDoctorCriteria& criteria = inputs.criteria;
-  const double chance = scatter_by_chance(clocks.estimates, criteria);
-  if (std::getenv("DOCTOR_DEBUG")) std::fprintf(stderr, "scatter chance %.3g\n", chance);
-  if (!(chance < criteria.significance)) return std::nullopt;
-  ClockFault fault{LogFaultKind::offset, {}};
-  for (const ClockEstimate& one : clocks.estimates) {
-    fault.amounts.push_back(one.usable ? one.value - median_value(clocks.estimates) : 0);
+  if (!(scatter_by_chance(clocks.estimates, criteria) < criteria.significance)) return std::nullopt;
+  const WithoutOffsets delayed = take_offsets_out(inputs, fit, clocks, false);
+  const WithoutOffsets cured = take_offsets_out(inputs, fit, clocks, true);
+  double gain = 0;
+  for (std::size_t r = 0; r < fit.error.size(); ++r) {
+    gain += std::log(delayed.fit.error[r] / cured.fit.error[r]) / static_cast<double>(fit.error.size());
   }
-  LogFit cured = fit;
-  for (int round = 0; round < 2; ++round) {  // the second with parameters that the first offsets do not spoil
-    cured = fit_log(inputs, with_amounts(fit, fault.kind, fault.amounts), fit.hypothesis.parameters);
-    const Clocks left = measure_clocks(cured, fault.kind, inputs);
-    for (std::size_t r = 0; r < left.estimates.size() && round == 0; ++r) {
-      if (left.estimates[r].usable) fault.amounts[r] += left.estimates[r].value - median_value(left.estimates);
-    }
-  }
-  std::vector<double> gains;
-  for (std::size_t r = 0; r < fit.error.size(); ++r) gains.push_back(std::log(fit.error[r] / cured.error[r]));
-  if (std::getenv("DOCTOR_DEBUG")) std::fprintf(stderr, "offsets median ratio %.3g\n", std::exp(median_of(gains)));
-  if (!(median_of(gains) > std::log(criteria.decisive))) return std::nullopt;
+  if (std::getenv("DOCTOR_DEBUG")) std::fprintf(stderr, "offsets mean gain %.3g\n", std::exp(gain));
+  if (!(gain > std::log(criteria.decisive))) return std::nullopt;
+  ClockFault fault{LogFaultKind::offset, cured.amounts};
+  const double middle = median_of(fault.amounts);
+  for (double& amount : fault.amounts) amount -= middle;
   return fault;
 }
 

@@ -23,6 +23,32 @@ SUREFOOT_INLINE Eigen::VectorXd unit_before(Eigen::VectorXd unit, const Repairs&
   return unit;
 }
 
+/// Highest log-likelihood of n independent residuals with this sum of squares, in units of what is typically left,
+/// where recordings differ in the size of theirs: its logarithm is normal with this standard deviation.
+SUREFOOT_INLINE double log_likelihood(double n, double squares, double scatter) {
+  if (!std::isfinite(squares)) return -std::numeric_limits<double>::infinity();
+  const double precision = 1 / (scatter * scatter);
+  double low = -50, high = 50;  // of the logarithm of the size, whose derivative falls
+  for (int round = 0; round < 60; ++round) {
+    const double middle = 0.5 * (low + high);
+    (squares * std::exp(-2 * middle) - n - precision * middle > 0 ? low : high) = middle;
+  }
+  return -n * low - 0.5 * squares * std::exp(-2 * low) - 0.5 * precision * low * low;
+}
+
+SUREFOOT_INLINE double scatter_of_sizes(const LogFit& fit) {
+  constexpr double normal = 1.4826;  // standard deviation over median absolute deviation of a normal distribution
+  constexpr double least = 0.2;      // recordings of one kind scatter by chance; few alone cannot tell less
+  std::vector<double> logarithms;
+  for (const ResidualRows& residuals : fit.residuals) {
+    const double square = mean_square(residuals, fit.typical);
+    if (square > 0 && std::isfinite(square)) logarithms.push_back(0.5 * std::log(square));
+  }
+  const double middle = median_of(logarithms);
+  for (double& value : logarithms) value = std::abs(value - middle);
+  return std::max(normal * median_of(logarithms), least);
+}
+
 SUREFOOT_INLINE RepairEffect effect_of(const LogFit& fit, std::size_t r, const Repairs& repairs,
                                        const ResidualRows& after) {
   constexpr double least = 1e-12;  // of an output's variance: as good as no error
@@ -32,9 +58,10 @@ SUREFOOT_INLINE RepairEffect effect_of(const LogFit& fit, std::size_t r, const R
   RepairEffect effect;
   effect.after = std::max(mean_square(after, fit.size), least);
   effect.log_ratio = std::log(std::max(mean_square(before, unit_before(fit.size, repairs)), least) / effect.after);
-  const double gain =
-      mean_square(before, unit_before(fit.typical, repairs)) - mean_square(after, fit.typical);
-  effect.log_odds = std::isnan(gain) ? 0 : 0.5 * count * independent_share(after, fit.typical) * gain;
+  const double n = count * independent_share(after, fit.typical), scatter = scatter_of_sizes(fit);
+  const double with = log_likelihood(n, n * mean_square(after, fit.typical), scatter);
+  const double without = log_likelihood(n, n * mean_square(before, unit_before(fit.typical, repairs)), scatter);
+  effect.log_odds = std::isfinite(with) ? with - without : 0;
   if (std::isnan(effect.log_ratio)) effect.log_ratio = 0;  // both ran away
   return effect;
 }
@@ -140,18 +167,19 @@ SUREFOOT_INLINE std::optional<FoundFault> find_fault_of_one(const LogFit& fit, c
   return found;
 }
 
-/// How much less the error of the median recording is, as a logarithm; 0 unless it halves in most recordings.
+/// How much less the error of all recordings together is, as a logarithm; 0 unless it halves, and is less in most.
 SUREFOOT_INLINE double common_gain(const LogFit& before, const LogFit& after, const LogDoctorCriteria& criteria) {
-  constexpr double least = 1e-12;  // of an output's variance: as good as no error
-  std::vector<double> gains;
-  double better = 0;
+  constexpr double least = 1e-12, most = 1e12;  // of an output's variance: as good as no error; ran away
+  double better = 0, sum_before = 0, sum_after = 0;
   for (std::size_t r = 0; r < before.error.size(); ++r) {
-    const double gain = std::log(std::max(before.error[r], least) / std::max(after.error[r], least));
-    gains.push_back(std::isnan(gain) ? 0 : gain);
-    better += gains.back() > std::log(criteria.decisive) ? 1 : 0;
+    const double error = std::min(before.error[r], most), now = std::clamp(after.error[r], least, most);
+    better += now < error ? 1 : 0;
+    sum_before += error;
+    sum_after += now;
   }
-  if (better < criteria.most_of * static_cast<double>(gains.size())) return 0;
-  return median_of(gains);
+  const double gain = std::log(sum_before / sum_after);
+  const bool in_most = better >= criteria.most_of * static_cast<double>(before.error.size());
+  return in_most && gain > std::log(criteria.decisive) ? gain : 0;
 }
 
 SUREFOOT_INLINE std::optional<FoundFault> find_fault_of_all(const LogDoctorInputs& inputs, const LogFit& fit) {

@@ -22,13 +22,15 @@ struct LogDoctorCriteria {
   std::size_t blocks = 8;           // of a recording, left out in turn for the standard error of its clock
   double most_shift = 40;           // rows that outputs may be early or late by
   double most_skew = 0.05;          // of the time: clocks are worse only if they are broken
-  std::size_t skews = 11;           // clock rates that are tried
+  double read_skews = 201;          // rates of the outputs' clock that are tried
+  double simulated_skews = 11;      // rates of a recording's clock, each simulated
+  double clock_gain = 1.5;          // least ratio of mean square errors where the scatter of all clocks decides already
 
   double gap = 10;                 // times the median interval: rows are missing
   double gap_against_others = 3;   // times the longest interval of most recordings
-  std::size_t constant_rows = 10;  // equal readings in a row that are a stretch
+  std::size_t constant_rows = 5;   // equal readings in a row that are a stretch
   double repeats = 0.02;           // share of rows that repeat the one before while the model moves on
-  double odd = 9;                  // times the mean square error of the worst other recording: three times its error
+  double odd = 0.5;                // least share of its variance unexplained: physics that is missing leaves less
 };
 
 }  // namespace surefoot::diagnosis

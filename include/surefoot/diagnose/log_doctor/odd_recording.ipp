@@ -40,7 +40,8 @@ SUREFOOT_INLINE std::optional<OddRecording> find_odd_recording(const LogDoctorIn
     double others = 0;
     for (std::size_t o = 0; o < count; ++o) others = std::max(others, o == worst ? 0 : errors[o]);
     const double chance = error_by_chance(errors, worst) * static_cast<double>(count);
-    return errors[worst] > inputs.criteria.odd * others && chance < inputs.criteria.significance;
+    const bool far_off = errors[worst] > inputs.criteria.decisive * others && errors[worst] > inputs.criteria.odd;
+    return far_off && chance < inputs.criteria.significance;
   };
   if (!is_odd(fit.error)) return std::nullopt;
   std::vector<Recording> others = fit.bound.recordings;

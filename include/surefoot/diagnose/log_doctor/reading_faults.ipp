@@ -137,6 +137,17 @@ struct RepeatedRows {
   double moving = 0;
 };
 
+/// Whether the reading after a repeated one makes up for what was missed since row `from`, as the model moves: a
+/// machine that rests goes on from where it was.
+SUREFOOT_INLINE bool catches_up(const Recording& recording, const Eigen::MatrixXd& simulated, Eigen::Index output,
+                                Eigen::Index row, Eigen::Index from) {
+  if (row + 1 >= recording.rows()) return false;
+  const double step = recording.outputs(output, row + 1) - recording.outputs(output, row);
+  const double whole = simulated(output, row + 1) - simulated(output, from);
+  const double last = simulated(output, row + 1) - simulated(output, row);
+  return std::abs(step - whole) < std::abs(step - last);
+}
+
 SUREFOOT_INLINE RepeatedRows repeated_rows(const LogFit& fit, std::size_t r, Eigen::Index output, double resolution,
                                            const LogDoctorCriteria& criteria) {
   constexpr double steps = 2;  // of the sensor: by so much the model must move from row to row
@@ -151,7 +162,9 @@ SUREFOOT_INLINE RepeatedRows repeated_rows(const LogFit& fit, std::size_t r, Eig
     if (!(std::abs(simulated(output, row) - simulated(output, row - 1)) > steps * resolution)) continue;
     if (equal >= static_cast<Eigen::Index>(criteria.constant_rows)) continue;  // a stretch
     ++result.moving;
-    if (equal > 0) result.rows.emplace_back(row, row + 1);
+    if (equal > 0 && catches_up(recording, simulated, output, row, row - equal)) {
+      result.rows.emplace_back(row, row + 1);
+    }
   }
   return result;
 }
