@@ -50,7 +50,8 @@ std::string verdict_part(const Diagnosis& d) {
 
 std::string log_faults_part(const Diagnosis& d) {
   if (d.log_faults.empty()) return "";
-  std::string html = "<h2>Faults of the log</h2>\n<p>Not of the machine, but they would pass for missing physics:</p>\n<ul>\n";
+  std::string html =
+      "<h2>Faults of the log</h2>\n<p>Not of the machine, but they would pass for missing physics:</p>\n<ul>\n";
   for (const auto& fault : d.log_faults) html += element("li", fault_text(fault)) + "\n";
   return html + "</ul>\n";
 }

@@ -183,7 +183,8 @@ Spoilt spoil_odd(Random& random, Log& log, const Log& donor) {
   for (const std::size_t c : log.outputs) {
     for (std::size_t row = 0; row < table.rows(); ++row) {
       const bool measured = std::isfinite(table.columns[c][row]);
-      const std::size_t from = row + 1 == table.rows() ? other.rows() - 1 : std::min(row, other.rows() - 1);
+      const std::size_t last = other.rows() - 1, there_and_back = row % (2 * last);
+      const std::size_t from = row + 1 == table.rows() ? last : std::min(there_and_back, 2 * last - there_and_back);
       if (measured) table.columns[c][row] = other.columns[c][from];
     }
   }

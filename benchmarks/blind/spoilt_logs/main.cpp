@@ -138,7 +138,7 @@ void score(const fs::path& out, const fs::path& results) {
                   kind.c_str(), what.c_str(), right ? " (found)" : "", named.empty() ? " nothing" : named.c_str());
     }
   }
-  std::printf("\n%-18s %5s %6s %s\n", "kind", "logs", "named", "with another fault named (for clean logs: false alarms)");
+  std::printf("\n%-18s %5s %6s %s\n", "kind", "logs", "named", "with others named too (of clean logs: false alarms)");
   Count all;
   for (const auto& [kind, count] : counts) {
     std::printf("%-18s %5d %6d %d\n", kind.c_str(), count.logs, count.right, count.others);

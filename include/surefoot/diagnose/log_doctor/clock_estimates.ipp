@@ -91,7 +91,7 @@ SUREFOOT_INLINE double least_error_at(const std::vector<double>& amounts, const 
   const double bend = left - 2 * errors[at] + right;
   if (!(bend > 0)) return amounts[at];
   const double share = 0.5 * (left - right) / bend;
-  least -= 0.25 * (left - right) * share;
+  least -= (left - right) * share / (2 * 2);  // the parabola's lowest point
   return amounts[at] + share * step;
 }
 
@@ -120,7 +120,7 @@ SUREFOOT_INLINE double error_at(const ClockProfile& profile, double amount) {
   const std::vector<double> errors = errors_without(profile, -1);
   const double step = profile.amounts[1] - profile.amounts[0];
   const double place = std::clamp((amount - profile.amounts[0]) / step, 0.0, static_cast<double>(errors.size() - 1));
-  const auto middle = std::clamp<std::size_t>(static_cast<std::size_t>(place + 0.5), 1, errors.size() - 2);
+  const auto middle = std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(place)), 1, errors.size() - 2);
   const double x = place - static_cast<double>(middle);  // on the parabola through the three nearest
   const double rise = 0.5 * (errors[middle + 1] - errors[middle - 1]);
   const double bend = 0.5 * (errors[middle + 1] + errors[middle - 1]) - errors[middle];

@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -19,7 +17,8 @@
 namespace surefoot::diagnosis {
 
 SUREFOOT_INLINE bool has_clocks(const LogFit& fit, const LogDoctorCriteria& criteria) {
-  if (fit.bound.info.kind != SimulatorKind::ode || fit.bound.recordings.size() < 3) return false;
+  constexpr std::size_t fewest = 3;  // recordings: one that differs, and two that agree
+  if (fit.bound.info.kind != SimulatorKind::ode || fit.bound.recordings.size() < fewest) return false;
   for (const Recording& recording : fit.bound.recordings) {
     if (recording.rows() < static_cast<Eigen::Index>(criteria.fewest_rows)) return false;
   }
@@ -100,13 +99,13 @@ struct SingleClock {
 
 SUREFOOT_INLINE void compare_single(const Clocks& clocks, LogFaultKind kind, const LogDoctorCriteria& criteria,
                                     std::optional<SingleClock>& best) {
-  const double common = median_value(clocks.estimates), kinds = 3;
+  constexpr double kinds = 3;  // of clocks, each of which is tested
+  const double common = median_value(clocks.estimates);
   for (std::size_t r = 0; r < clocks.estimates.size(); ++r) {
     const ClockEstimate& one = clocks.estimates[r];
     if (!one.usable) continue;
     const double chance = outlier_by_chance(clocks.estimates, r) * static_cast<double>(clocks.estimates.size()) * kinds;
     const double ratio = error_at(clocks.profiles[r], common) / one.error;
-    if (std::getenv("DOCTOR_DEBUG")) std::fprintf(stderr, "clock %d rec %zu value %.5f sd %.5f common %.5f chance %.2g ratio %.3g err %.3g\n", (int)kind, r, one.value, std::sqrt(one.variance), common, chance, ratio, one.error);
     if (!(chance < criteria.significance && ratio > criteria.clock_gain)) continue;
     if (!best || one.error < best->error) best = SingleClock{kind, r, one.value - common, one.error};
   }
@@ -127,25 +126,43 @@ struct WithoutOffsets {
   std::vector<double> amounts;  // [s]
 };
 
-/// Takes offsets out and calibrates in turn, until neither moves much: each recording's own, or one for all.
-SUREFOOT_INLINE WithoutOffsets take_offsets_out(const LogDoctorInputs& inputs, const LogFit& fit, const Clocks& clocks,
-                                                bool own) {
-  constexpr int rounds = 3;
-  WithoutOffsets result{fit, std::vector<double>(fit.error.size(), 0.0)};
-  const Clocks* left = &clocks;
-  Clocks measured;
-  for (int round = 0; round < rounds; ++round) {
-    const double common = median_value(left->estimates);
-    for (std::size_t r = 0; r < result.amounts.size(); ++r) {
-      const ClockEstimate& one = left->estimates[r];
-      result.amounts[r] += own && one.usable ? one.value : common;
-    }
-    result.fit = fit_log(inputs, with_amounts(fit, LogFaultKind::offset, result.amounts),
-                         result.fit.hypothesis.parameters);
-    if (round + 1 < rounds) measured = measure_clocks(result.fit, LogFaultKind::offset, inputs);
-    left = &measured;
+/// The one amount with which the errors of all recordings are least, by the mean of their logarithms.
+SUREFOOT_INLINE double common_amount(const Clocks& clocks) {
+  const std::vector<double>& amounts = clocks.profiles.front().amounts;
+  const double rows_apart = amounts[1] - amounts[0];
+  double best = 0, least = std::numeric_limits<double>::infinity();
+  for (std::size_t a = 0; a < amounts.size(); ++a) {
+    const double amount = amounts.front() + rows_apart * static_cast<double>(a);
+    double sum = 0;
+    for (const ClockProfile& profile : clocks.profiles) sum += std::log(error_at(profile, amount));
+    if (sum < least) best = amount;
+    least = std::min(least, sum);
   }
-  return result;
+  return best;
+}
+
+/// Takes offsets out and calibrates in turn, until neither moves much: each recording's own, or one for all.
+SUREFOOT_INLINE WithoutOffsets take_offsets_out(const LogDoctorInputs& inputs, const LogFit& fit, WithoutOffsets start,
+                                                bool own) {
+  constexpr int rounds = 3;  // the third changes little
+  for (int round = 0; round < rounds; ++round) {
+    const Clocks left = measure_clocks(start.fit, LogFaultKind::offset, inputs);
+    const double common = common_amount(left);
+    for (std::size_t r = 0; r < start.amounts.size(); ++r) {
+      const ClockEstimate& one = left.estimates[r];
+      start.amounts[r] += own && one.usable ? one.value : own ? 0 : common;
+    }
+    start.fit = fit_log(inputs, with_amounts(fit, LogFaultKind::offset, start.amounts),
+                        start.fit.hypothesis.parameters);
+  }
+  return start;
+}
+
+/// Mean logarithm of how much the mean square errors of recordings fall.
+SUREFOOT_INLINE double mean_gain(const LogFit& before, const LogFit& after) {
+  double sum = 0;
+  for (std::size_t r = 0; r < before.error.size(); ++r) sum += std::log(before.error[r] / after.error[r]);
+  return sum / static_cast<double>(before.error.size());
 }
 
 /// Offsets that differ between all recordings: the error falls much further with each one's own than with a delay that
@@ -154,13 +171,17 @@ SUREFOOT_INLINE std::optional<ClockFault> differing_offsets(const LogDoctorInput
                                                             const Clocks& clocks) {
   const LogDoctorCriteria& criteria = inputs.criteria;
   if (!(scatter_by_chance(clocks.estimates, criteria) < criteria.significance)) return std::nullopt;
-  const WithoutOffsets delayed = take_offsets_out(inputs, fit, clocks, false);
-  const WithoutOffsets cured = take_offsets_out(inputs, fit, clocks, true);
-  double gain = 0;
-  for (std::size_t r = 0; r < fit.error.size(); ++r) {
-    gain += std::log(delayed.fit.error[r] / cured.fit.error[r]) / static_cast<double>(fit.error.size());
+  const WithoutOffsets logged{fit, std::vector<double>(fit.error.size(), 0.0)};
+  WithoutOffsets delayed = take_offsets_out(inputs, fit, logged, false);
+  WithoutOffsets cured = take_offsets_out(inputs, fit, delayed, true);
+  const WithoutOffsets other = take_offsets_out(inputs, fit, logged, true);
+  if (mean_gain(cured.fit, other.fit) > 0) cured = other;
+  for (const double& amount : cured.amounts) {  // the common delay from several starts: no worse a chance for physics
+    WithoutOffsets same{cured.fit, std::vector<double>(fit.error.size(), amount)};
+    same.fit = fit_log(inputs, with_amounts(fit, LogFaultKind::offset, same.amounts), cured.fit.hypothesis.parameters);
+    if (mean_gain(delayed.fit, same.fit) > 0) delayed = same;
   }
-  if (std::getenv("DOCTOR_DEBUG")) std::fprintf(stderr, "offsets mean gain %.3g\n", std::exp(gain));
+  const double gain = mean_gain(delayed.fit, cured.fit);
   if (!(gain > std::log(criteria.decisive))) return std::nullopt;
   ClockFault fault{LogFaultKind::offset, cured.amounts};
   const double middle = median_of(fault.amounts);

@@ -43,6 +43,9 @@ std::vector<Repairs> repairs_to_try(const SimulatorInfo& info);
 std::optional<FoundFault> find_fault_of_one(const LogFit& fit, const LogDoctorCriteria& criteria,
                                             const Parallel& parallel);
 
+/// Share of its variance that is left of the output that fits worst, in the median recording.
+double worst_output_error(const LogFit& fit);
+
 /// The most likely fault that all recordings have.
 std::optional<FoundFault> find_fault_of_all(const LogDoctorInputs& inputs, const LogFit& fit);
 

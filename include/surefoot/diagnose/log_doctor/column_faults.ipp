@@ -15,21 +15,15 @@
 
 namespace surefoot::diagnosis {
 
-/// The unit of an output's residuals before its readings are multiplied by something: the same share of its size.
-SUREFOOT_INLINE Eigen::VectorXd unit_before(Eigen::VectorXd unit, const Repairs& repairs) {
-  for (const LogRepair& repair : repairs) {
-    if (repair.kind == LogFaultKind::degrees && !repair.channel.input) unit[repair.channel.index] /= repair.amount;
-  }
-  return unit;
-}
-
 /// Highest log-likelihood of n independent residuals with this sum of squares, in units of what is typically left,
 /// where recordings differ in the size of theirs: its logarithm is normal with this standard deviation.
 SUREFOOT_INLINE double log_likelihood(double n, double squares, double scatter) {
   if (!std::isfinite(squares)) return -std::numeric_limits<double>::infinity();
   const double precision = 1 / (scatter * scatter);
-  double low = -50, high = 50;  // of the logarithm of the size, whose derivative falls
-  for (int round = 0; round < 60; ++round) {
+  constexpr double widest = 50;  // of the logarithm of the size, on both sides: beyond what numbers hold
+  constexpr int halvings = 60;   // of that range, in which the derivative falls, to the last digit
+  double low = -widest, high = widest;
+  for (int round = 0; round < halvings; ++round) {
     const double middle = 0.5 * (low + high);
     (squares * std::exp(-2 * middle) - n - precision * middle > 0 ? low : high) = middle;
   }
@@ -49,19 +43,53 @@ SUREFOOT_INLINE double scatter_of_sizes(const LogFit& fit) {
   return std::max(normal * median_of(logarithms), least);
 }
 
+/// Residuals of the outputs that repairs touch; of all where they touch inputs or the time.
+SUREFOOT_INLINE ResidualRows touched(ResidualRows residuals, const Repairs& repairs) {
+  std::vector<bool> keep(static_cast<std::size_t>(residuals.rows()), false);
+  for (const LogRepair& repair : repairs) {
+    if (repair.channel.input || repair.kind == LogFaultKind::time_unit) return residuals;
+    keep[static_cast<std::size_t>(repair.channel.index)] = true;
+    if (repair.kind == LogFaultKind::swap) keep[static_cast<std::size_t>(repair.other.index)] = true;
+  }
+  for (Eigen::Index k = 0; k < residuals.rows(); ++k) {
+    if (keep[static_cast<std::size_t>(k)]) continue;
+    for (Eigen::Index row = 0; row < residuals.cols(); ++row) {
+      residuals(k, row) = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return residuals;
+}
+
+SUREFOOT_INLINE double measured_cells(const ResidualRows& residuals) {
+  double count = 0;
+  for (Eigen::Index i = 0; i < residuals.size(); ++i) count += std::isnan(residuals.data()[i]) ? 0 : 1;
+  return count;
+}
+
+/// Logarithm of how much denser readings lie after they were multiplied by something (the Jacobian of that change).
+SUREFOOT_INLINE double log_density(const ResidualRows& after, const Repairs& repairs) {
+  double sum = 0;
+  for (const LogRepair& repair : repairs) {
+    if (repair.kind != LogFaultKind::degrees || repair.channel.input) continue;
+    sum += std::log(std::abs(repair.amount)) * measured_cells(touched(after, {repair}));
+  }
+  return sum;
+}
+
 SUREFOOT_INLINE RepairEffect effect_of(const LogFit& fit, std::size_t r, const Repairs& repairs,
                                        const ResidualRows& after) {
   constexpr double least = 1e-12;  // of an output's variance: as good as no error
   const ResidualRows& before = fit.residuals[r];
-  double count = 0;
-  for (Eigen::Index i = 0; i < after.size(); ++i) count += std::isnan(after.data()[i]) ? 0 : 1;
   RepairEffect effect;
   effect.after = std::max(mean_square(after, fit.size), least);
-  effect.log_ratio = std::log(std::max(mean_square(before, unit_before(fit.size, repairs)), least) / effect.after);
-  const double n = count * independent_share(after, fit.typical), scatter = scatter_of_sizes(fit);
+  const double touched_after = std::max(mean_square(touched(after, repairs), fit.size), least);
+  const double touched_before = mean_square(touched(before, repairs), fit.size);
+  effect.log_ratio = std::log(std::max(touched_before, least) / touched_after);
+  const double share = independent_share(after, fit.typical), n = share * measured_cells(after);
+  const double scatter = scatter_of_sizes(fit);
   const double with = log_likelihood(n, n * mean_square(after, fit.typical), scatter);
-  const double without = log_likelihood(n, n * mean_square(before, unit_before(fit.typical, repairs)), scatter);
-  effect.log_odds = std::isfinite(with) ? with - without : 0;
+  const double without = log_likelihood(n, n * mean_square(before, fit.typical), scatter);
+  effect.log_odds = std::isfinite(with) ? with + share * log_density(after, repairs) - without : 0;
   if (std::isnan(effect.log_ratio)) effect.log_ratio = 0;  // both ran away
   return effect;
 }
@@ -114,13 +142,20 @@ SUREFOOT_INLINE Recording repaired(const BoundSimulator& bound, Recording record
   return recording;
 }
 
-/// Repairs of one recording that would cure about as well as the best.
-SUREFOOT_INLINE std::vector<Repairs> as_good(const std::vector<Repairs>& tried, const std::vector<RepairEffect>& effects,
-                                             std::size_t best, const LogDoctorCriteria& criteria) {
+/// Whether one repair is more likely than another; of two that end a simulation's running away, the closer one.
+SUREFOOT_INLINE bool more_likely(const RepairEffect& one, const RepairEffect& other) {
+  return one.log_odds != other.log_odds ? one.log_odds > other.log_odds : one.after < other.after;
+}
+
+/// Repairs of one recording that are about as likely as the best.
+SUREFOOT_INLINE std::vector<Repairs> as_good(const std::vector<Repairs>& tried,
+                                             const std::vector<RepairEffect>& effects, std::size_t best,
+                                             const LogDoctorCriteria& criteria) {
   std::vector<Repairs> also;
   for (std::size_t t = 0; t < tried.size(); ++t) {
-    const bool close = effects[t].log_ratio > effects[best].log_ratio - std::log(criteria.decisive) / 2;
-    if (t != best && close && effects[t].log_ratio > std::log(criteria.decisive)) also.push_back(tried[t]);
+    const bool close = effects[t].log_odds - std::log(criteria.significance) > effects[best].log_odds;
+    const bool cures = effects[t].after < criteria.decisive * effects[best].after;
+    if (t != best && close && cures && tried[t].size() == 1) also.push_back(tried[t]);
   }
   return also;
 }
@@ -146,7 +181,7 @@ SUREFOOT_INLINE std::optional<FoundFault> find_fault_of_one(const LogFit& fit, c
   const double tests = static_cast<double>(count * columns.size());
   const double least_odds = std::log(tests / criteria.significance);
   std::optional<FoundFault> found;
-  double best_ratio = 0;
+  RepairEffect best;
   for (std::size_t r = 0; r < count; ++r) {
     double others_worst = 0;
     for (std::size_t o = 0; o < count; ++o) others_worst = std::max(others_worst, o == r ? 0 : fit.error[o]);
@@ -159,8 +194,8 @@ SUREFOOT_INLINE std::optional<FoundFault> find_fault_of_one(const LogFit& fit, c
         if (o != r && t < columns.size()) of_others.push_back(effects[o][t].log_ratio);
       }
       if (median_of(of_others) > 0) continue;  // physics that all have in common
-      if (found && effect.log_ratio <= best_ratio) continue;
-      best_ratio = effect.log_ratio;
+      if (found && !more_likely(effect, best)) continue;
+      best = effect;
       found = FoundFault{tried[r][t], r, as_good(tried[r], effects[r], t, criteria)};
     }
   }
@@ -168,11 +203,13 @@ SUREFOOT_INLINE std::optional<FoundFault> find_fault_of_one(const LogFit& fit, c
 }
 
 /// How much less the error of all recordings together is, as a logarithm; 0 unless it halves, and is less in most.
-SUREFOOT_INLINE double common_gain(const LogFit& before, const LogFit& after, const LogDoctorCriteria& criteria) {
+SUREFOOT_INLINE double common_gain(const LogFit& before, const LogFit& after, const Repairs& repairs,
+                                   const LogDoctorCriteria& criteria) {
   constexpr double least = 1e-12, most = 1e12;  // of an output's variance: as good as no error; ran away
   double better = 0, sum_before = 0, sum_after = 0;
   for (std::size_t r = 0; r < before.error.size(); ++r) {
-    const double error = std::min(before.error[r], most), now = std::clamp(after.error[r], least, most);
+    const double error = std::min(mean_square(touched(before.residuals[r], repairs), before.size), most);
+    const double now = std::clamp(mean_square(touched(after.residuals[r], repairs), after.size), least, most);
     better += now < error ? 1 : 0;
     sum_before += error;
     sum_after += now;
@@ -182,9 +219,18 @@ SUREFOOT_INLINE double common_gain(const LogFit& before, const LogFit& after, co
   return in_most && gain > std::log(criteria.decisive) ? gain : 0;
 }
 
+SUREFOOT_INLINE double worst_output_error(const LogFit& fit) {
+  double worst = 0;
+  for (Eigen::Index k = 0; k < fit.size.size(); ++k) {
+    const double share = fit.typical[k] / fit.size[k];
+    worst = std::max(worst, share * share);
+  }
+  return worst;
+}
+
 SUREFOOT_INLINE std::optional<FoundFault> find_fault_of_all(const LogDoctorInputs& inputs, const LogFit& fit) {
   const LogDoctorCriteria& criteria = inputs.criteria;
-  if (median_of(fit.error) < criteria.poor_fit) return std::nullopt;
+  if (worst_output_error(fit) < criteria.poor_fit) return std::nullopt;
   std::vector<Repairs> tried = repairs_to_try(fit.bound.info);
   if (fit.bound.info.kind == SimulatorKind::ode) {
     for (const double unit : time_units) tried.push_back({{.kind = LogFaultKind::time_unit, .amount = unit}});
@@ -195,7 +241,7 @@ SUREFOOT_INLINE std::optional<FoundFault> find_fault_of_all(const LogDoctorInput
     for (const Recording& recording : fit.bound.recordings) {
       recordings.push_back(repaired(fit.bound, recording, repairs));
     }
-    gains.push_back(common_gain(fit, fit_log(inputs, std::move(recordings)), criteria));
+    gains.push_back(common_gain(fit, fit_log(inputs, std::move(recordings)), repairs, criteria));
   }
   const auto best = std::ranges::max_element(gains);
   if (!(*best > 0)) return std::nullopt;

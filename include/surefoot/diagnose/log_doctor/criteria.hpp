@@ -10,7 +10,7 @@ struct LogDoctorCriteria {
   // all tests of a log; and what halves the error, for missing physics makes small but significant differences too.
   double significance = 1e-3;
   double decisive = 4;          // least mean square error as logged over that after the repair
-  double poor_fit = 0.25;       // of the variance unexplained in the median recording: the whole log is in doubt
+  double poor_fit = 0.25;       // of an output's variance unexplained in the median recording: the log is in doubt
   double most_of = 0.8;         // share of the recordings that a fault of the whole log must be seen in
   std::size_t search_points = 8;   // of the search for parameters where the log is in doubt
   std::size_t fewest_rows = 40;  // of a recording, for what concerns its clock or its sensors
@@ -27,9 +27,9 @@ struct LogDoctorCriteria {
   double clock_gain = 1.5;          // least ratio of mean square errors where the scatter of all clocks decides already
 
   double gap = 10;                 // times the median interval: rows are missing
-  double gap_against_others = 3;   // times the longest interval of most recordings
+  double gap_against_others = 3;   // times what one in twenty intervals exceed
   std::size_t constant_rows = 5;   // equal readings in a row that are a stretch
-  double repeats = 0.02;           // share of rows that repeat the one before while the model moves on
+  double repeats = 0.05;           // share of rows that repeat the one before while the model moves on
   double odd = 0.5;                // least share of its variance unexplained: physics that is missing leaves less
 };
 

@@ -23,7 +23,10 @@ SUREFOOT_INLINE std::string with_unit(double value, const std::string& unit) {
   return in_short(value) + (unit.empty() || unit == "1" ? "" : " " + unit);
 }
 
-SUREFOOT_INLINE std::string milliseconds(double seconds) { return in_short(1e3 * seconds) + " ms"; }
+SUREFOOT_INLINE std::string milliseconds(double seconds) {
+  constexpr double in_a_second = 1e3;  // milliseconds
+  return in_short(in_a_second * seconds) + " ms";
+}
 
 SUREFOOT_INLINE std::string what_is_wrong_in_columns(const SimulatorInfo& info, const LogRepair& repair, bool all) {
   const std::string name = name_of(info, repair.channel);
@@ -36,8 +39,8 @@ SUREFOOT_INLINE std::string what_is_wrong_in_columns(const SimulatorInfo& info, 
     case LogFaultKind::swap:
       return name + " and " + name_of(info, repair.other) + " are in each other's place";
     default:
-      return "time is in " +
-             std::string(repair.amount > 1e-4 ? "milli" : repair.amount > 1e-7 ? "micro" : "nano") +
+      constexpr double milli = 1e-4, micro = 1e-7;  // [s] such a unit is longer
+      return "time is in " + std::string(repair.amount > milli ? "milli" : repair.amount > micro ? "micro" : "nano") +
              "seconds where the model expects seconds";
   }
 }

@@ -38,7 +38,7 @@ struct LogUnderExamination {
 /// Calibrated from the nominal parameters on, or from others where that fails.
 SUREFOOT_INLINE LogFit first_fit(const LogDoctorInputs& inputs, const std::vector<Recording>& recordings) {
   LogFit fit = fit_log(inputs, recordings);
-  if (median_of(fit.error) < inputs.criteria.poor_fit) return fit;
+  if (worst_output_error(fit) < inputs.criteria.poor_fit) return fit;
   LogFit other = fit_log(inputs, recordings, {}, inputs.criteria.search_points);
   return median_of(other.error) < median_of(fit.error) ? other : fit;
 }

@@ -37,8 +37,8 @@ struct LogFit {
 /// Mean of the squared residuals, each output in its unit; infinite if any is.
 double mean_square(const ResidualRows& residuals, const Eigen::VectorXd& unit);
 
-/// Share of the residuals that count as independent of each other: less where they are correlated from row to row
-/// ((1 - r) / (1 + r) for a first-order autoregression).
+/// Share of the residuals that count as independent of each other for their mean square: less where they are correlated
+/// from row to row ((1 - r^2) / (1 + r^2) for a first-order autoregression).
 double independent_share(const ResidualRows& residuals, const Eigen::VectorXd& unit);
 
 double median_of(std::vector<double> values);

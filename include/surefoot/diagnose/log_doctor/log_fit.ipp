@@ -54,7 +54,7 @@ SUREFOOT_INLINE double independent_share(const ResidualRows& residuals, const Ei
   }
   if (!(squares > 0)) return 1;
   const double r = std::clamp(products / squares, 0.0, 1.0);
-  return std::max((1 - r) / (1 + r), 1 / std::max(count, 1.0));
+  return std::max((1 - r * r) / (1 + r * r), 1 / std::max(count, 1.0));
 }
 
 /// The bound simulator with one recording alone, in another version.

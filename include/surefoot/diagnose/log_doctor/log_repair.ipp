@@ -62,10 +62,11 @@ SUREFOOT_INLINE std::vector<LogRepair> column_repairs(const SimulatorInfo& info)
   constexpr double radians = std::numbers::pi / 180;  // of a degree
   for (std::size_t c = 0; c < channels.size(); ++c) {
     repairs.push_back({.kind = LogFaultKind::sign, .channel = channels[c], .amount = -1});
-    const std::string unit = unit_of(info, channels[c]).substr(0, 3);
-    if (unit == "rad" || unit == "deg") {
-      repairs.push_back(
-          {.kind = LogFaultKind::degrees, .channel = channels[c], .amount = unit == "rad" ? radians : 1 / radians});
+    const std::string& unit = unit_of(info, channels[c]);
+    const bool in_radians = unit.starts_with("rad");
+    if (in_radians || unit.starts_with("deg")) {
+      const double factor = in_radians ? radians : 1 / radians;
+      repairs.push_back({.kind = LogFaultKind::degrees, .channel = channels[c], .amount = factor});
     }
     for (std::size_t d = c + 1; d < channels.size(); ++d) {
       if (channels[d].input != channels[c].input) continue;

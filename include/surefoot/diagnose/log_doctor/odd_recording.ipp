@@ -10,6 +10,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/log_doctor/odd_recording.hpp"
 #include "surefoot/diagnose/log_doctor/tails.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -31,11 +32,26 @@ SUREFOOT_INLINE double error_by_chance(const std::vector<double>& errors, std::s
   return variance > 0 ? t_tail(off / std::sqrt(variance), count - 1) : 1;
 }
 
+/// Mean square residual of a recording relative to how much its own outputs move: large motions are missed by more.
+SUREFOOT_INLINE double relative_error(const LogFit& fit, const Recording& recording, const ResidualRows& residuals) {
+  constexpr double least_motion = 0.5;  // of that of most recordings: what hardly moves is noise
+  Eigen::VectorXd unit = fit.size;
+  for (Eigen::Index k = 0; k < unit.size() && fit.bound.integration.restart == 0; ++k) {
+    const double own = standard_deviation(surefoot::detail::row_of(recording.outputs, k));
+    if (own > 0) unit[k] = std::max(own, least_motion * unit[k]);
+  }
+  return mean_square(residuals, unit);
+}
+
 SUREFOOT_INLINE std::optional<OddRecording> find_odd_recording(const LogDoctorInputs& inputs, const LogFit& fit) {
   constexpr std::size_t fewest = 4;  // recordings, to say what most of them are like
   const std::size_t count = fit.error.size();
   if (count < fewest) return std::nullopt;
-  const auto worst = static_cast<std::size_t>(std::ranges::max_element(fit.error) - fit.error.begin());
+  std::vector<double> relative;
+  for (std::size_t r = 0; r < count; ++r) {
+    relative.push_back(relative_error(fit, fit.bound.recordings[r], fit.residuals[r]));
+  }
+  const auto worst = static_cast<std::size_t>(std::ranges::max_element(relative) - relative.begin());
   const auto is_odd = [&](const std::vector<double>& errors) {
     double others = 0;
     for (std::size_t o = 0; o < count; ++o) others = std::max(others, o == worst ? 0 : errors[o]);
@@ -43,16 +59,17 @@ SUREFOOT_INLINE std::optional<OddRecording> find_odd_recording(const LogDoctorIn
     const bool far_off = errors[worst] > inputs.criteria.decisive * others && errors[worst] > inputs.criteria.odd;
     return far_off && chance < inputs.criteria.significance;
   };
-  if (!is_odd(fit.error)) return std::nullopt;
+  if (!is_odd(relative)) return std::nullopt;
   std::vector<Recording> others = fit.bound.recordings;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(worst));
   const LogFit without = fit_log(inputs, others, fit.hypothesis.parameters);
   LogFit all = fit;  // with the parameters of the others
   all.hypothesis.parameters = without.hypothesis.parameters;
   std::vector<double> errors = without.error;
-  const double predicted = mean_square(resimulate(all, worst, fit.bound.recordings[worst]).residuals, fit.size);
+  const Recording& left_out = fit.bound.recordings[worst];
+  const double predicted = relative_error(fit, left_out, resimulate(all, worst, left_out).residuals);
   for (std::size_t o = 0; o < errors.size(); ++o) {  // in the same units
-    errors[o] = mean_square(without.residuals[o], fit.size);
+    errors[o] = relative_error(fit, others[o], without.residuals[o]);
   }
   errors.insert(errors.begin() + static_cast<std::ptrdiff_t>(worst), predicted);
   if (!is_odd(errors)) return std::nullopt;

@@ -16,7 +16,8 @@ struct ConstantStretch {
   Eigen::Index readings = 0;  // measured
   double value = 0;
   double missed = 0;   // how much the model moves meanwhile: standard deviation
-  bool beyond = false;  // the value is the recording's largest or smallest, and the model goes beyond it
+  bool extreme = false;  // the value is the recording's largest or smallest
+  bool beyond = false;   // it is, and the model goes beyond it
 };
 
 /// Stretches of at least `constant_rows` equal readings, while the model moves by more than a sensor can tell.

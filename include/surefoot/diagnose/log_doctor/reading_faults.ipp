@@ -14,6 +14,14 @@
 
 namespace surefoot::diagnosis {
 
+/// The value that one in twenty exceed.
+SUREFOOT_INLINE double high_value(std::vector<double> values) {
+  constexpr std::size_t one_in = 20;  // values is above
+  const auto high = values.begin() + static_cast<std::ptrdiff_t>(values.size() - 1 - (values.size() - 1) / one_in);
+  std::nth_element(values.begin(), high, values.end());
+  return *high;
+}
+
 SUREFOOT_INLINE double resolution_of(const std::vector<Recording>& recordings, Eigen::Index output) {
   constexpr double rounding = 1e-9;  // of a reading: digits lost in a file are no step
   double least = std::numeric_limits<double>::infinity();
@@ -44,17 +52,20 @@ SUREFOOT_INLINE double missed_motion(const LogFit& fit, std::size_t r, Eigen::In
   return std::sqrt(std::max(0.0, squares / count - mean * mean));
 }
 
-SUREFOOT_INLINE bool goes_beyond(const LogFit& fit, std::size_t r, Eigen::Index output, const ConstantStretch& stretch) {
-  const Recording& recording = fit.bound.recordings[r];
-  double low = std::numeric_limits<double>::infinity(), high = -low;
+/// Whether a stretch is at the recording's largest (1) or smallest (-1) value; 0: neither.
+SUREFOOT_INLINE int end_of_range(const Recording& recording, Eigen::Index output, double value) {
+  bool highest = true, lowest = true;
   for (Eigen::Index row = 0; row < recording.rows(); ++row) {
-    const double value = recording.outputs(output, row);
-    if (!std::isfinite(value)) continue;
-    low = std::min(low, value);
-    high = std::max(high, value);
+    const double other = recording.outputs(output, row);
+    highest = highest && !(other > value);
+    lowest = lowest && !(other < value);
   }
-  if (stretch.value != low && stretch.value != high) return false;
-  const double side = stretch.value == high ? 1 : -1;
+  return highest ? 1 : lowest ? -1 : 0;
+}
+
+/// Whether the model goes beyond the value of a stretch, on that side, for most of it.
+SUREFOOT_INLINE bool goes_beyond(const LogFit& fit, std::size_t r, Eigen::Index output, const ConstantStretch& stretch,
+                                 int side) {
   Eigen::Index beyond = 0;
   for (Eigen::Index row = stretch.rows.first; row < stretch.rows.second; ++row) {
     if (side * (fit.runs[r].outputs(output, row) - stretch.value) > 0) ++beyond;
@@ -72,7 +83,9 @@ SUREFOOT_INLINE std::vector<ConstantStretch> constant_stretches(const LogFit& fi
   const auto close = [&] {
     if (now.readings < static_cast<Eigen::Index>(criteria.constant_rows)) return;
     now.missed = missed_motion(fit, r, output, now.rows);
-    now.beyond = goes_beyond(fit, r, output, now);
+    const int side = end_of_range(recording, output, now.value);
+    now.extreme = side != 0;
+    now.beyond = side != 0 && goes_beyond(fit, r, output, now, side);
     if (now.missed > steps_missed * resolution) stretches.push_back(now);
   };
   for (Eigen::Index row = 0; row < recording.rows(); ++row) {
@@ -106,9 +119,8 @@ SUREFOOT_INLINE bool ends_in_jump(const LogFit& fit, std::size_t r, Eigen::Index
     if (std::isfinite(step) && (row < rows.first || row > rows.second)) steps.push_back(step);
   }
   if (steps.empty() || rows.second >= recording.rows()) return false;
-  const auto high = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() * 19 / 20);
-  std::nth_element(steps.begin(), high, steps.end());
-  return std::abs(recording.outputs(output, rows.second) - recording.outputs(output, rows.second - 1)) > jump * *high;
+  const double step = recording.outputs(output, rows.second) - recording.outputs(output, rows.second - 1);
+  return std::abs(step) > jump * high_value(steps);
 }
 
 /// The stretches of one output and recording that no sensor and no machine explains: clipped or stuck.
@@ -117,9 +129,10 @@ SUREFOOT_INLINE std::optional<FoundFault> constant_fault(const LogFit& fit, std:
   LogRepair clipped{.kind = LogFaultKind::clipped, .channel = {false, output}};
   LogRepair stuck{.kind = LogFaultKind::stuck, .channel = {false, output}};
   double clipped_rows = 0, stuck_rows = 0;
+  const bool steps = fit.bound.integration.restart > 0;  // then the model is never far beyond
   for (const ConstantStretch& one : stretches) {
     const bool jump = ends_in_jump(fit, r, output, one.rows);
-    if (one.beyond && !jump) {
+    if ((one.beyond || (one.extreme && steps)) && !jump) {
       clipped.rows.push_back(one.rows);
       clipped_rows += static_cast<double>(one.readings);
     } else if (jump || one.missed > fit.typical[output]) {
@@ -198,6 +211,13 @@ SUREFOOT_INLINE std::vector<FoundFault> find_reading_faults(const LogFit& fit, c
   const std::size_t count = fit.bound.recordings.size();
   for (Eigen::Index output = 0; output < static_cast<Eigen::Index>(fit.bound.info.outputs.size()); ++output) {
     const double resolution = resolution_of(fit.bound.recordings, output);
+    std::vector<std::size_t> repeats(count, 0);
+    if (fit.bound.info.kind == SimulatorKind::ode) {
+      for (const FoundFault& fault : repeated_row_faults(fit, output, resolution, criteria)) {
+        repeats[*fault.recording] = fault.repairs.front().rows.size();
+        found.push_back(fault);
+      }
+    }
     std::vector<std::vector<ConstantStretch>> stretches(count);
     std::vector<double> missed(count);
     for (std::size_t r = 0; r < count; ++r) {
@@ -208,10 +228,11 @@ SUREFOOT_INLINE std::vector<FoundFault> find_reading_faults(const LogFit& fit, c
       double others = 0;
       for (std::size_t o = 0; o < count; ++o) others = std::max(others, o == r ? 0 : missed[o]);
       if (!(missed[r] > criteria.decisive * criteria.decisive * others)) continue;
+      Eigen::Index readings = 0;
+      for (const ConstantStretch& one : stretches[r]) readings += one.readings;
+      if (static_cast<std::size_t>(readings) < repeats[r]) continue;  // some of these in a row
       if (const auto fault = constant_fault(fit, r, output, stretches[r])) found.push_back(*fault);
     }
-    if (fit.bound.info.kind != SimulatorKind::ode) continue;
-    for (const FoundFault& fault : repeated_row_faults(fit, output, resolution, criteria)) found.push_back(fault);
   }
   return found;
 }
@@ -227,10 +248,7 @@ SUREFOOT_INLINE std::vector<FoundFault> find_gaps(const BoundSimulator& bound, c
       intervals.push_back(recording.time[row] - recording.time[row - 1]);
     }
     const double middle = median_of(intervals);
-    std::vector<double> sorted = intervals;
-    const auto high = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() * 19 / 20);
-    std::nth_element(sorted.begin(), high, sorted.end());
-    const double least = std::max(criteria.gap * middle, criteria.gap_against_others * *high);
+    const double least = std::max(criteria.gap * middle, criteria.gap_against_others * high_value(intervals));
     LogRepair gaps{.kind = LogFaultKind::gap};
     for (std::size_t i = 0; i < intervals.size(); ++i) {
       if (intervals[i] > least) {
