@@ -31,7 +31,7 @@ TEST_SUITE("log_doctor") {
     const auto found = find_fault_of_all(inputs, fit_log(inputs, log));
     REQUIRE(found);
     CHECK_FALSE(found->recording);
-    CHECK(found->repairs.size() == 2);  // both angles that are read
+    CHECK(found->repairs[0].kind == LogFaultKind::degrees);
   }
 
   TEST_CASE("the effect of a repair is the odds for it") {

@@ -165,6 +165,12 @@ SUREFOOT_INLINE double mean_gain(const LogFit& before, const LogFit& after) {
   return sum / static_cast<double>(before.error.size());
 }
 
+SUREFOOT_INLINE ClockFault single_fault(const SingleClock& single, std::size_t recordings) {
+  ClockFault fault{single.kind, std::vector<double>(recordings, 0.0)};
+  fault.amounts[single.recording] = single.amount;
+  return fault;
+}
+
 /// Offsets that differ between all recordings: the error falls much further with each one's own than with a delay that
 /// all have in common.
 SUREFOOT_INLINE std::optional<ClockFault> differing_offsets(const LogDoctorInputs& inputs, const LogFit& fit,
@@ -173,6 +179,9 @@ SUREFOOT_INLINE std::optional<ClockFault> differing_offsets(const LogDoctorInput
   if (!(scatter_by_chance(clocks.estimates, criteria) < criteria.significance)) return std::nullopt;
   const WithoutOffsets logged{fit, std::vector<double>(fit.error.size(), 0.0)};
   WithoutOffsets delayed = take_offsets_out(inputs, fit, logged, false);
+  std::optional<SingleClock> single;  // beside a delay that all have in common
+  compare_single(measure_clocks(delayed.fit, LogFaultKind::offset, inputs), LogFaultKind::offset, criteria, single);
+  if (single) return single_fault(*single, fit.error.size());
   WithoutOffsets cured = take_offsets_out(inputs, fit, delayed, true);
   const WithoutOffsets other = take_offsets_out(inputs, fit, logged, true);
   if (mean_gain(cured.fit, other.fit) > 0) cured = other;
@@ -197,11 +206,7 @@ SUREFOOT_INLINE std::optional<ClockFault> find_clock_fault(const LogDoctorInputs
   for (const LogFaultKind kind : {LogFaultKind::output_skew, LogFaultKind::time_skew}) {
     compare_single(measure_clocks(fit, kind, inputs), kind, inputs.criteria, single);
   }
-  if (single) {
-    ClockFault fault{single->kind, std::vector<double>(fit.bound.recordings.size(), 0.0)};
-    fault.amounts[single->recording] = single->amount;
-    return fault;
-  }
+  if (single) return single_fault(*single, fit.error.size());
   return differing_offsets(inputs, fit, offsets);
 }
 
