@@ -2,7 +2,6 @@
 
 #include <doctest/doctest.h>
 
-#include <limits>
 #include <numbers>
 
 #include "tests/diagnose/log_doctor/servo_log.hpp"
@@ -28,8 +27,6 @@ LogFault only_fault(const Log& log, const std::string& kind, const std::string& 
 }
 
 constexpr double degrees = 180 / std::numbers::pi;
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
 TEST_SUITE("log_doctor") {
   TEST_CASE("clean logs have no fault, whatever physics the model leaves out") {
     using Effects = std::vector<surefoot::NamedEffect>;
@@ -147,7 +144,7 @@ TEST_SUITE("log_doctor") {
   TEST_CASE("two rows, one recording and sparse outputs are no faults") {
     Log log = toys::servo_log();
     for (Eigen::Index row = 0; row < 300; ++row) {
-      if (row % 10 != 0) log[2].outputs.col(row).setConstant(nothing);
+      if (row % 10 != 0) log[2].outputs.col(row).setConstant(std::nan(""));
     }
     CHECK(toys::examined(log).faults.empty());
     CHECK(toys::examined({log[0]}).faults.empty());

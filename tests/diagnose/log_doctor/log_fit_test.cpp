@@ -10,8 +10,6 @@ namespace {
 
 using namespace surefoot::diagnosis;
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
 TEST_SUITE("log_doctor") {
   TEST_CASE("a spoilt recording hardly moves the parameters") {
     auto log = toys::servo_log();
@@ -26,7 +24,7 @@ TEST_SUITE("log_doctor") {
 
   TEST_CASE("sizes leave out what was not measured, and what ran away is infinitely far off") {
     Eigen::MatrixXd residuals(1, 3);
-    residuals << 3, nothing, -3;
+    residuals << 3, std::numeric_limits<double>::quiet_NaN(), -3;
     CHECK(mean_square(residuals, Eigen::VectorXd::Constant(1, 3)) == 1);
     residuals(0, 0) = std::numeric_limits<double>::infinity();
     CHECK(std::isinf(mean_square(residuals, Eigen::VectorXd::Constant(1, 3))));
