@@ -32,7 +32,7 @@ mkdir -p "$out"
 for folder in "$out"/cases/case_*; do
   result=$out/results/${folder##*/}
   mkdir -p "$result"
-  timeout 900 "$build/bin/surefoot-diagnose" --model "$folder/model.toml" --out "$result" --quiet --max-effects 0 \
+  timeout 900 "$build/bin/surefoot-diagnose" --model "$folder/model.toml" --out "$result" --quiet --repair --max-effects 0 \
     "$folder"/rec_*.csv >"$result/log.txt" 2>&1 || echo "${folder##*/}: exit code $?, see $result/log.txt"
 done
 "$build/bin/spoilt_logs" --score "$out" "$out/results" | tee "$out/score.txt"

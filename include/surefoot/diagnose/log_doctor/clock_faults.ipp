@@ -106,7 +106,8 @@ SUREFOOT_INLINE void compare_single(const Clocks& clocks, LogFaultKind kind, con
     if (!one.usable) continue;
     const double chance = outlier_by_chance(clocks.estimates, r) * static_cast<double>(clocks.estimates.size()) * kinds;
     const double ratio = error_at(clocks.profiles[r], common) / one.error;
-    if (!(chance < criteria.significance && ratio > criteria.clock_gain)) continue;
+    const double least = kind == LogFaultKind::offset ? criteria.decisive : criteria.skew_gain;
+    if (!(chance < criteria.significance && ratio > least)) continue;
     if (!best || one.error < best->error) best = SingleClock{kind, r, one.value - common, one.error};
   }
 }
@@ -171,6 +172,16 @@ SUREFOOT_INLINE ClockFault single_fault(const SingleClock& single, std::size_t r
   return fault;
 }
 
+/// Whether a recording's offset explains it better than parameters of its own would, as physics may ask for that
+/// is missing and that it alone shows: friction where motions are small.
+SUREFOOT_INLINE bool beats_own_parameters(const LogDoctorInputs& inputs, const LogFit& fit, const SingleClock& single) {
+  if (single.kind != LogFaultKind::offset) return true;  // such parameters are a time scale of their own
+  const std::size_t r = single.recording;
+  const LogFit own = fit_log(inputs, {fit.bound.recordings[r]}, fit.hypothesis.parameters);
+  const Recording cured = repaired(fit.bound, fit.bound.recordings[r], {.kind = single.kind, .amount = single.amount});
+  return mean_square(resimulate(fit, r, cured).residuals, fit.size) < mean_square(own.residuals.front(), fit.size);
+}
+
 /// Offsets that differ between all recordings: the error falls much further with each one's own than with a delay that
 /// all have in common.
 SUREFOOT_INLINE std::optional<ClockFault> differing_offsets(const LogDoctorInputs& inputs, const LogFit& fit,
@@ -181,7 +192,7 @@ SUREFOOT_INLINE std::optional<ClockFault> differing_offsets(const LogDoctorInput
   WithoutOffsets delayed = take_offsets_out(inputs, fit, logged, false);
   std::optional<SingleClock> single;  // beside a delay that all have in common
   compare_single(measure_clocks(delayed.fit, LogFaultKind::offset, inputs), LogFaultKind::offset, criteria, single);
-  if (single) return single_fault(*single, fit.error.size());
+  if (single && beats_own_parameters(inputs, delayed.fit, *single)) return single_fault(*single, fit.error.size());
   WithoutOffsets cured = take_offsets_out(inputs, fit, delayed, true);
   const WithoutOffsets other = take_offsets_out(inputs, fit, logged, true);
   if (mean_gain(cured.fit, other.fit) > 0) cured = other;
@@ -206,7 +217,7 @@ SUREFOOT_INLINE std::optional<ClockFault> find_clock_fault(const LogDoctorInputs
   for (const LogFaultKind kind : {LogFaultKind::output_skew, LogFaultKind::time_skew}) {
     compare_single(measure_clocks(fit, kind, inputs), kind, inputs.criteria, single);
   }
-  if (single) return single_fault(*single, fit.error.size());
+  if (single && beats_own_parameters(inputs, fit, *single)) return single_fault(*single, fit.error.size());
   return differing_offsets(inputs, fit, offsets);
 }
 

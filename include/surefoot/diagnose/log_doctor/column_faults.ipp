@@ -214,8 +214,9 @@ SUREFOOT_INLINE double common_gain(const LogFit& before, const LogFit& after, co
     sum_before += error;
     sum_after += now;
   }
-  const double gain = std::log(sum_before / sum_after);
-  const bool in_most = better >= criteria.most_of * static_cast<double>(before.error.size());
+  const double gain = std::log(sum_before / sum_after), count = static_cast<double>(before.error.size());
+  const double by_chance = 0.5 * (count + criteria.deviations * std::sqrt(count));  // of recordings, by a fair coin
+  const bool in_most = better >= std::min(criteria.most_of * count, by_chance);
   return in_most && gain > std::log(criteria.decisive) ? gain : 0;
 }
 

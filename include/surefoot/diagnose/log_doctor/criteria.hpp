@@ -12,7 +12,8 @@ struct LogDoctorCriteria {
   double decisive = 4;          // least mean square error as logged over that after the repair
   double poor_fit = 0.25;       // of an output's variance unexplained in the median recording: the log is in doubt
   double most_of = 0.8;         // share of the recordings that a fault of the whole log must be seen in
-  std::size_t search_points = 8;   // of the search for parameters where the log is in doubt
+  double deviations = 3;         // standard deviations beyond half of them, where recordings are many and short
+  std::size_t search_points = 8;  // of the search for parameters where the log is in doubt
   std::size_t fewest_rows = 40;  // of a recording, for what concerns its clock or its sensors
   std::size_t fit_rows = 10000;  // of the light calibration, over as many recordings as that gives
   std::size_t few_fitted = 6;    // recordings at least
@@ -24,7 +25,8 @@ struct LogDoctorCriteria {
   double most_skew = 0.05;          // of the time: clocks are worse only if they are broken
   double read_skews = 201;          // rates of the outputs' clock that are tried
   double simulated_skews = 11;      // rates of a recording's clock, each simulated
-  double clock_gain = 1.5;          // least ratio of mean square errors where the scatter of all clocks decides already
+  double skew_gain = 1.5;           // least ratio of mean square errors for a rate: motions hide most of it, and the
+                                    // scatter of all clocks decides already
 
   double gap = 10;                 // times the median interval: rows are missing
   double gap_against_others = 3;   // times what one in twenty intervals exceed

@@ -255,6 +255,24 @@ SUREFOOT_INLINE void evaluate_selection(const EstimationSetup& setup, const Cali
   diagnosis.noise_findings = find_noise(setup.bound, choice.chosen.hypothesis, training, setup.noise, run.parallel);
 }
 
+/// All stages after the recordings were screened and examined.
+SUREFOOT_INLINE void diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
+                                         const RunContext& run, Diagnosis& diagnosis) {
+  recordings = cut_few_recordings(bind, std::move(recordings), run);
+  EstimationSetup setup = hold_out_recordings(bind, std::move(recordings), run);
+  name_recordings(setup, diagnosis);
+
+  run.progress("calibrating", progress_calibration);
+  const Calibration calibration = calibrate_model(setup, run);
+  const SearchProblem problem = search_problem(setup, run);
+  const std::vector<AttachedEffect> candidates = candidate_effects(setup, calibration, run);
+  const Selection selection = select_effects(setup.bound, calibration.calibrated, problem, candidates, run.parallel);
+  diagnosis.complete = !run.stop.stop_requested();
+
+  run.progress("evaluating", progress_evaluation);
+  evaluate_selection(setup, calibration, problem, selection, candidates, run, diagnosis);
+}
+
 SUREFOOT_INLINE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorInfo& info,
                                        std::vector<Recording> recordings, const DiagnoseOptions& options,
                                        const Parallel& parallel, std::uint64_t seed, std::stop_token stop) {
@@ -267,20 +285,13 @@ SUREFOOT_INLINE Diagnosis run_pipeline(const BindSimulator& bind, const Simulato
   run.progress("screening", 0);
   diagnosis.remarks = screen_recordings(info, recordings);
   diagnosis.log_faults = examine_recordings(bind, recordings, run);
-  recordings = cut_few_recordings(bind, std::move(recordings), run);
-  EstimationSetup setup = hold_out_recordings(bind, std::move(recordings), run);
-  name_recordings(setup, diagnosis);
-
-  run.progress("calibrating", progress_calibration);
-  const Calibration calibration = calibrate_model(setup, run);
-  const SearchProblem problem = search_problem(setup, run);
-  const std::vector<AttachedEffect> candidates = candidate_effects(setup, calibration, run);
-  const Selection selection = select_effects(setup.bound, calibration.calibrated, problem, candidates, parallel);
-  diagnosis.complete = !stop.stop_requested();
-
-  run.progress("evaluating", progress_evaluation);
-  evaluate_selection(setup, calibration, problem, selection, candidates, run, diagnosis);
-  diagnosis.sentence = caution(diagnosis.log_faults) + diagnosis.sentence;
+  const std::string warning = caution(diagnosis.log_faults);
+  try {
+    diagnose_recordings(bind, std::move(recordings), run, diagnosis);
+  } catch (const DiagnoseError& error) {  // which may well come of the fault
+    throw DiagnoseError(warning + error.what());
+  }
+  diagnosis.sentence = warning + diagnosis.sentence;
   diagnosis.seconds = run.seconds();
   run.progress("done", 1, diagnosis.sentence);
   return diagnosis;
