@@ -182,24 +182,31 @@ SUREFOOT_INLINE RepeatedRows repeated_rows(const LogFit& fit, std::size_t r, Eig
   return result;
 }
 
+/// Log-likelihood of a share of rows at its own estimate over that at another share.
+SUREFOOT_INLINE double log_likelihood_ratio(double hits, double rows, double share) {
+  const auto term = [](double part, double own, double other) { return part > 0 ? part * std::log(own / other) : 0; };
+  return rows > 0 ? term(hits, hits / rows, share) + term(rows - hits, 1 - hits / rows, 1 - share) : 0;
+}
+
 SUREFOOT_INLINE std::vector<FoundFault> repeated_row_faults(const LogFit& fit, Eigen::Index output, double resolution,
                                                             const LogDoctorCriteria& criteria) {
   const std::size_t count = fit.bound.recordings.size();
   std::vector<RepeatedRows> repeated(count);
+  double all_hits = 0, all_rows = 0;
   for (std::size_t r = 0; r < count; ++r) {
     if (fit.runs[r].finite) repeated[r] = repeated_rows(fit, r, output, resolution, criteria);
+    all_hits += static_cast<double>(repeated[r].rows.size());
+    all_rows += repeated[r].moving;
   }
   std::vector<FoundFault> found;
   const double least_odds = std::log(static_cast<double>(count) / criteria.significance);
   for (std::size_t r = 0; r < count; ++r) {
-    double hits = 1, moving = 2;  // of the others, with one more of each kind (Laplace)
-    for (std::size_t o = 0; o < count; ++o) {
-      if (o != r) hits += static_cast<double>(repeated[o].rows.size());
-      if (o != r) moving += repeated[o].moving;
-    }
-    const double p = hits / moving, n = repeated[r].moving, own = static_cast<double>(repeated[r].rows.size()) / n;
-    if (!(n > 0 && own > criteria.repeats && own > criteria.decisive * p)) continue;
-    const double odds = n * (own * std::log(own / p) + (own < 1 ? (1 - own) * std::log((1 - own) / (1 - p)) : 0));
+    const double hits = static_cast<double>(repeated[r].rows.size()), rows = repeated[r].moving;
+    const double other_hits = all_hits - hits, other_rows = all_rows - rows;
+    if (!(hits > criteria.repeats * rows) || hits * other_rows <= criteria.decisive * other_hits * rows) continue;
+    const double share = all_hits / all_rows;  // if all recordings repeat alike
+    const double odds =
+        log_likelihood_ratio(hits, rows, share) + log_likelihood_ratio(other_hits, other_rows, share);
     if (odds < least_odds) continue;
     found.push_back({{{.kind = LogFaultKind::repeated, .channel = {false, output}, .rows = repeated[r].rows}}, r});
   }
