@@ -145,16 +145,22 @@ SUREFOOT_INLINE double common_amount(const Clocks& clocks) {
 /// Takes offsets out and calibrates in turn, until neither moves much: each recording's own, or one for all.
 SUREFOOT_INLINE WithoutOffsets take_offsets_out(const LogDoctorInputs& inputs, const LogFit& fit, WithoutOffsets start,
                                                 bool own) {
-  constexpr int rounds = 3;  // the third changes little
+  constexpr int rounds = 10;         // parameters that follow a delay make it slow
+  constexpr double settled = 0.05;  // of an interval between rows: no offset moves further
+  const double interval = median_interval(fit.bound.recordings.front());
   for (int round = 0; round < rounds; ++round) {
     const Clocks left = measure_clocks(start.fit, LogFaultKind::offset, inputs);
     const double common = common_amount(left);
+    double move = 0;
     for (std::size_t r = 0; r < start.amounts.size(); ++r) {
       const ClockEstimate& one = left.estimates[r];
-      start.amounts[r] += own && one.usable ? one.value : own ? 0 : common;
+      const double more = own && one.usable ? one.value : own ? 0 : common;
+      start.amounts[r] += more;
+      move = std::max(move, std::abs(more));
     }
     start.fit = fit_log(inputs, with_amounts(fit, LogFaultKind::offset, start.amounts),
                         start.fit.hypothesis.parameters);
+    if (move < settled * interval) break;
   }
   return start;
 }
