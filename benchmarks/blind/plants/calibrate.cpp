@@ -111,6 +111,11 @@ Column residuals(const System& system, const Values& parameters, const std::vect
   return all;
 }
 
+Values calibrate_from(const System& system, const Values& start, const std::vector<Fault>& faults,
+                      std::span<const Recording> recordings, const How& how) {
+  return fit_from(system, start, faults, recordings, how).parameters;
+}
+
 Values calibrate(const System& system, const std::vector<Fault>& faults, std::span<const Recording> recordings,
                  const How& how) {
   Values nominal;

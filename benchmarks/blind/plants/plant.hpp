@@ -115,6 +115,7 @@ struct Fault {
   double a = 0, b = 0, c = 0;  // what the formula uses
   bool same_formula = true;
   std::vector<Number> numbers = {};
+  std::vector<std::pair<std::string, std::string>> equivalents = {};  // names and places of which no test could tell it
 };
 
 struct Parameter {
