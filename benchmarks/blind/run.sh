@@ -99,7 +99,11 @@ methods=()
 for method in surefoot-diagnose sparse_regression all_at_once; do
   [[ -d $out/results/$method ]] && methods+=(--results "$out/results/$method")
 done
-"$build/bin/concealed_score" --cases "$out" "${methods[@]}" | tee "$out/score.txt.part"
+rm -f "$out/reliability.dat"
+"$build/bin/concealed_score" --cases "$out" "${methods[@]}" --reliability "$out/reliability.dat" | tee "$out/score.txt.part"
 mv "$out/score.txt.part" "$out/score.txt"
+if [[ -e $out/reliability.dat ]] && command -v gnuplot >/dev/null; then
+  gnuplot -e "data='$out/reliability.dat'; picture='$out/reliability.png'" benchmarks/blind/score/reliability.gp
+fi
 echo
 echo "score: $out/score.txt"

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "draw_case.hpp"
+#include "equivalents.hpp"
 
 namespace {
 
@@ -70,6 +70,8 @@ void generate(const Options& options) {
   for (std::size_t i = 0; i < options.cases; ++i) {
     plants::Random random(options.seed * 1000003 + i);
     machines::Drawn drawn = machines::draw_case(random, options.grammar, random.choice(machines::families()), planned[i]);
+    for (std::size_t k = 0; k < drawn.hidden.size() && drawn.one.kind != plants::Kind::outside; ++k)
+      drawn.one.faults[k].equivalents = machines::equivalents(drawn, k);
     char name[32];
     std::snprintf(name, sizeof name, "case_%04zu", i + 1);
     drawn.one.name = name;

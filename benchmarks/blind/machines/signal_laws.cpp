@@ -9,13 +9,25 @@ namespace {
 
 constexpr double circle = 2 * std::numbers::pi;
 
+// Means over the steps of what was asked a delay earlier, so that a change within a step has its exact effect.
 void delay_input(double delay, const Column& times, Column& values) {
+  Column integral{0};  // of what was asked, from the first step on
+  for (std::size_t i = 0; i + 1 < times.size(); ++i)
+    integral.push_back(integral[i] + values[i] * (times[i + 1] - times[i]));
   const Column asked = values;
   std::size_t from = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    while (from + 1 < values.size() && times[from + 1] <= times[i] - delay + 1e-9 * delay) ++from;
-    values[i] = asked[from];
+  const auto until = [&](double time) {
+    if (time <= times[0]) return asked[0] * (time - times[0]);
+    while (from + 1 < times.size() && times[from + 1] <= time) ++from;
+    return integral[from] + asked[from] * (time - times[from]);
+  };
+  double before = until(times[0] - delay);
+  for (std::size_t i = 0; i + 1 < values.size(); ++i) {
+    const double now = until(times[i + 1] - delay);
+    values[i] = (now - before) / (times[i + 1] - times[i]);
+    before = now;
   }
+  values.back() = asked[from];
 }
 
 // Lags, rate limits and what wears: one pass from the first step to the last.
@@ -39,17 +51,6 @@ void remember(const Hidden& one, const Column& times, Column& values) {
       first += (asked[i] - first) * share;
       second += (first - second) * share;
     }
-  }
-}
-
-void delay_readings(double delay, const Column& times, Column& values) {
-  const Column actual = values;
-  std::size_t from = 0;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    const double then = std::max(times[i] - delay, times[0]);
-    while (from + 1 < i && times[from + 1] <= then) ++from;
-    const double share = std::clamp((then - times[from]) / (times[from + 1] - times[from]), 0.0, 1.0);
-    values[i] = actual[from] + share * (actual[from + 1] - actual[from]);
   }
 }
 
@@ -142,7 +143,6 @@ double factor_of_parameter(const Hidden& one, double time) {
 }
 
 void change_readings(const Hidden& one, const Column& times, Column& values) {
-  if (one.law == Law::sensor_delay) return delay_readings(one.a, times, values);
   double held = values.empty() ? 0 : values[0];
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double now = times[i] - times[0];

@@ -33,6 +33,7 @@ class Run {
     for (const Hidden& one : hidden_) {
       drifting_ |= one.where == Where::parameter;
       tapped_ |= one.where == Where::signal;
+      late_sensors_ |= one.law == Law::sensor_delay;
     }
   }
 
@@ -49,16 +50,49 @@ class Run {
       const double step = (recording_.time[row + 1] - recording_.time[row]) / how_.substeps;
       for (std::size_t k = 0; k < fine; ++k) {
         for (std::size_t i = 0; i < inputs.size(); ++i) reg(compiled_.inputs[i]) = inputs[i][row * fine + k];
-        advance(recording_.time[row] + static_cast<double>(k) * step, step);
+        const double time = recording_.time[row] + static_cast<double>(k) * step;
+        if (late_sensors_) remember_outputs(time);
+        advance(time, step);
       }
     }
-    for (const Hidden& one : hidden_)
-      if (one.where == Where::sensor) change_readings(one, recording_.time, series.outputs[at(one.target)]);
+    if (late_sensors_) remember_outputs(recording_.time.back());
+    for (const Hidden& one : hidden_) {
+      if (one.where != Where::sensor) continue;
+      Column& readings = series.outputs[at(one.target)];
+      if (one.law == Law::sensor_delay) {
+        readings = late(outputs_[at(one.target)], one.a);
+      } else {
+        change_readings(one, recording_.time, readings);
+      }
+    }
     return series;
   }
 
  private:
   double& reg(int index) { return registers_[at(index)]; }
+
+  void remember_outputs(double time) {
+    for (std::size_t i = 0; i < states_; ++i) reg(compiled_.states[i]) = y_[i];
+    fine_times_.push_back(time);
+    outputs_.resize(compiled_.outputs.size());
+    for (std::size_t k = 0; k < outputs_.size(); ++k) {
+      evaluate(compiled_.outputs[k].steps, registers_);
+      outputs_[k].push_back(reg(compiled_.outputs[k].result));
+    }
+  }
+
+  // What an output was at the rows minus the delay.
+  Column late(const Column& values, double delay) const {
+    Column readings;
+    std::size_t from = 0;
+    for (const double now : recording_.time) {
+      const double then = std::max(now - delay, fine_times_[0]);
+      while (from + 2 < fine_times_.size() && fine_times_[from + 1] <= then) ++from;
+      const double share = (then - fine_times_[from]) / (fine_times_[from + 1] - fine_times_[from]);
+      readings.push_back(values[from] + share * (values[from + 1] - values[from]));
+    }
+    return readings;
+  }
 
   std::vector<Column> fine_inputs() const {
     Column times;
@@ -279,7 +313,9 @@ class Run {
   double asked_now_ = 0;
   std::array<std::vector<double>, 4> slopes_;
   std::vector<double> stage_;
-  bool drifting_ = false, tapped_ = false, starting_ = false;
+  Column fine_times_;             // and outputs at them, where a sensor is late
+  std::vector<Column> outputs_;
+  bool drifting_ = false, tapped_ = false, late_sensors_ = false, starting_ = false;
 };
 
 }  // namespace

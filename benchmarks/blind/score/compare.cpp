@@ -15,19 +15,40 @@ const Effect* find(const Effects& effects, const std::string& name) {
   return at == effects.end() ? nullptr : &*at;
 }
 
+// Another name and place of which no test could tell the hidden effect.
+bool is_equivalent(const Effect& named, const Effect& truth) {
+  return std::ranges::find(truth.equivalents, std::pair(named.name, named.attached_to)) != truth.equivalents.end();
+}
+
+bool right_name(const Effect& named, const Effect& truth) {
+  return named.name == truth.name || is_equivalent(named, truth);
+}
+
 bool any_right(const Effects& named, const Effects& truth) {
-  return std::ranges::any_of(named, [&](const Effect& one) { return find(truth, one.name) != nullptr; });
+  return std::ranges::any_of(named, [&](const Effect& one) {
+    return std::ranges::any_of(truth, [&](const Effect& t) { return right_name(one, t); });
+  });
+}
+
+bool all_right(const Effects& named, const Effects& truth) {
+  return !truth.empty() && std::ranges::all_of(truth, [&](const Effect& t) {
+    return std::ranges::any_of(named, [&](const Effect& one) { return right_name(one, t); });
+  });
 }
 
 bool right_place(const Effect& named, const Effect& truth) {
-  return named.attached_to == truth.attached_to ||
+  return named.attached_to == truth.attached_to || is_equivalent(named, truth) ||
          std::ranges::find(truth.also_accepted, named.attached_to) != truth.also_accepted.end();
+}
+
+bool right_both(const Effect& named, const Effect& truth) {
+  return is_equivalent(named, truth) || (named.name == truth.name && right_place(named, truth));
 }
 
 // Some hidden effect is named at its right place.
 bool any_attached(const Effects& named, const Effects& truth) {
   return std::ranges::any_of(named, [&](const Effect& one) {
-    return std::ranges::any_of(truth, [&](const Effect& t) { return t.name == one.name && right_place(one, t); });
+    return std::ranges::any_of(truth, [&](const Effect& t) { return right_both(one, t); });
   });
 }
 
@@ -105,6 +126,13 @@ double error_ratio(const Truth& truth, const Answer& answer) {
 
 }  // namespace
 
+bool is_right_structure(const Truth& truth, const Effects& effects) {
+  if (truth.kind == "outside" || effects.size() != truth.effects.size()) return false;
+  return std::ranges::all_of(truth.effects, [&](const Effect& t) {
+    return std::ranges::any_of(effects, [&](const Effect& one) { return right_both(one, t); });
+  });
+}
+
 Outcome compare(const Truth& truth, const Answer& answer) {
   Outcome outcome;
   outcome.truth = &truth;
@@ -112,15 +140,15 @@ Outcome compare(const Truth& truth, const Answer& answer) {
   outcome.detected = answer.verdict == "missing-physics" || answer.verdict == "unexplained";
   outcome.error_ratio = error_ratio(truth, answer);
   outcome.parameter_errors = parameter_errors(answer.effects, truth.effects);
-  for (const Effect& one : answer.effects) outcome.superfluous += find(truth.effects, one.name) == nullptr ? 1 : 0;
+  for (const Effect& one : answer.effects) outcome.superfluous += any_right({one}, truth.effects) ? 0 : 1;
 
   const Effects first(answer.effects.begin(), answer.effects.begin() + (answer.effects.empty() ? 0 : 1));
   outcome.named_first = any_right(first, truth.effects);
   outcome.attached = any_attached(answer.effects, truth.effects);
   outcome.named_in_three = any_right(answer.effects, truth.effects);
-  outcome.all_named = !truth.effects.empty() && std::ranges::all_of(truth.effects, [&](const Effect& t) {
-    return find(answer.effects, t.name) != nullptr;
-  });
+  outcome.all_named = all_right(answer.effects, truth.effects);
+  outcome.structure_right = is_right_structure(truth, answer.effects);
+  outcome.against_noise = answer.verdict != "unexplained" && outcome.error_ratio > unexplained_error;
   for (std::size_t i = 0; i < answer.alternatives.size(); ++i) {
     const Alternative& other = answer.alternatives[i];
     const bool right = any_right(other.effects, truth.effects);
@@ -130,9 +158,8 @@ Outcome compare(const Truth& truth, const Answer& answer) {
     outcome.named_first |= right;
     outcome.named_in_three |= right;
     outcome.attached |= any_attached(other.effects, truth.effects);
-    outcome.all_named |= !truth.effects.empty() && std::ranges::all_of(truth.effects, [&](const Effect& t) {
-      return find(other.effects, t.name) != nullptr;
-    });
+    outcome.all_named |= all_right(other.effects, truth.effects);
+    outcome.structure_right |= is_right_structure(truth, other.effects);
   }
   return outcome;
 }

@@ -1,0 +1,117 @@
+#include "equivalents.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <span>
+
+#include "../plants/calibrate.hpp"
+
+namespace machines {
+namespace {
+
+using plants::How;
+using plants::System;
+
+// Effects that coincide in some machines: delays where nothing else happens between command and reading, offsets that
+// pass through linear equations, friction and dead zones while everything goes one way.
+const std::map<std::string, std::vector<std::string>>& relatives() {
+  static const std::map<std::string, std::vector<std::string>> table{
+      {"input_delay", {"sensor_delay"}},
+      {"sensor_delay", {"input_delay"}},
+      {"input_gain", {"sensor_scale"}},
+      {"sensor_scale", {"input_gain"}},
+      {"constant_force", {"sensor_bias", "constant_rate", "dead_zone", "coulomb_friction"}},
+      {"constant_rate", {"sensor_bias", "sensor_drift", "constant_force", "dead_zone"}},
+      {"sensor_bias", {"constant_force", "constant_rate"}},
+      {"sensor_drift", {"constant_rate"}},
+      {"dead_zone", {"constant_force", "constant_rate", "coulomb_friction"}},
+      {"coulomb_friction", {"constant_force", "dead_zone"}},
+      {"leak", {"viscous_friction"}},
+      {"viscous_friction", {"input_gain", "leak"}}};
+  return table;
+}
+
+bool is_signed(const std::string& name) {
+  static const std::set<std::string> names{"constant_force", "constant_rate",   "sensor_bias",    "sensor_scale",
+                                           "sensor_drift",   "input_asymmetry", "gravity_offset", "parameter_drift",
+                                           "input_gain"};
+  return names.contains(name);
+}
+
+// The alternative fitted to `reference` (its readings are noise-free): squared differences that remain.
+double remaining(const Drawn& drawn, std::vector<Hidden> hidden, std::size_t k, std::vector<Recording>& reference,
+                 const Same& same) {
+  System system = drawn.one.system;
+  const std::shared_ptr<const CompiledMachine> machine = drawn.machine;
+  const double size = std::abs(hidden[k].a);
+  system.parameters.push_back(
+      {"strength", "", hidden[k].a, hidden[k].a, is_signed(hidden[k].name) ? -50 * size : 1e-3 * size, 50 * size, false});
+  system.simulate = [machine, hidden, k](const Values& values, const std::vector<plants::Fault>&,
+                                         const Recording& recording, const How& how) {
+    std::vector<Hidden> present = hidden;
+    present[k].a = values.back();
+    return simulate(*machine, Values(values.begin(), values.end() - 1), present, recording, how);
+  };
+  const How how{same.substeps, false, false, nullptr};
+  const Values fitted = plants::calibrate_from(system, plants::actual_values(system), {}, reference, how);
+  double squares = 0;
+  for (const double one : plants::residuals(system, fitted, {}, reference, how)) squares += one * one;
+  return squares;
+}
+
+// Recordings whose readings are what the true machine gives in as many integration steps as will be compared.
+std::vector<Recording> references(const Drawn& drawn, const Same& same) {
+  const std::vector<Recording>& all = drawn.one.system.recordings;
+  std::vector<Recording> chosen(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(same.recordings, all.size())));
+  const Values actual = plants::actual_values(drawn.one.system);
+  for (Recording& one : chosen) {
+    one.readings = simulate(*drawn.machine, actual, drawn.hidden, one, How{same.substeps, false, false, nullptr}).outputs;
+    for (std::vector<bool>& outliers : one.outliers) outliers.assign(outliers.size(), false);
+  }
+  return chosen;
+}
+
+double rows_of(std::span<const Recording> recordings) {
+  double rows = 0;
+  for (const Recording& one : recordings) rows += static_cast<double>(one.time.size());
+  return rows;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> equivalents(const Drawn& drawn, std::size_t k, const Same& criterion) {
+  const Hidden& truth = drawn.hidden[k];
+  Same same = criterion;
+  if (truth.law == Law::delay || truth.law == Law::sensor_delay) same.substeps = same.substeps_of_delays;
+  const Machine& machine = drawn.machine->machine;
+  const Sizes sizes = measure(*drawn.machine, drawn.one.system.recordings);
+  const auto related = relatives().find(truth.name);
+  std::vector<Recording> reference = references(drawn, same);
+  const double scale = rows_of(drawn.one.system.recordings) / rows_of(reference);
+  std::vector<std::pair<std::string, std::string>> found;
+  std::set<std::pair<std::string, std::string>> tried{{truth.name, truth.attached_to}};
+  for (const std::string& place : truth.also) tried.insert({truth.name, place});
+  for (const Candidate& candidate : named_candidates(machine)) {
+    const bool same_name = candidate.name == truth.name;
+    const bool relative = related != relatives().end() && std::ranges::find(related->second, candidate.name) != related->second.end();
+    if (!same_name && !relative) continue;
+    Random random(1);  // for what the alternative has beside its strength
+    Hidden other = draw_hidden(random, {}, machine, sizes, candidate, drawn.one.system.noise);
+    if (!tried.insert({other.name, other.attached_to}).second) continue;
+    if (same_name && other.where == truth.where) {
+      other.law = truth.law, other.b = truth.b, other.c = truth.c, other.d = truth.d;
+    }
+    if (truth.law == Law::delay || truth.law == Law::sensor_delay || truth.law == Law::gain || truth.law == Law::scale)
+      other.a = truth.a;
+    std::vector<Hidden> hidden = drawn.hidden;
+    hidden[k] = other;
+    if (!(scale * remaining(drawn, hidden, k, reference, same) < same.most_squares)) continue;
+    found.emplace_back(other.name, other.attached_to);
+    for (const std::string& place : other.also) found.emplace_back(other.name, place);
+  }
+  return found;
+}
+
+}  // namespace machines
