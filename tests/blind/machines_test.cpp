@@ -123,9 +123,9 @@ TEST_CASE("every effect can be drawn at every place, and development draws nothi
       const machines::Hidden one = machines::draw_hidden(random, {}, draft.machine, sizes, candidate, noise);
       CHECK(one.a != 0);
       CHECK(!one.attached_to.empty());
-      for (const Law own : {Law::arctan_dry, Law::stribeck_lorentz, Law::tangent_spring, Law::two_wave_cogging,
-                            Law::power_leak, Law::tanh_clip, Law::second_lag, Law::late_drift, Law::heat_fade,
-                            Law::radiation, Law::ageing})
+      for (const Law own :
+           {Law::arctan_dry, Law::stribeck_lorentz, Law::tangent_spring, Law::two_wave_cogging, Law::power_leak,
+            Law::tanh_clip, Law::second_lag, Law::late_drift, Law::heat_fade, Law::radiation, Law::ageing})
         CHECK(one.law != own);
     }
   }
@@ -147,7 +147,8 @@ TEST_CASE("the true model, fitted from the truth, is left with the noise alone")
 }
 
 TEST_CASE("a delay of the only input is that of the only sensor, and friction is no dead zone") {
-  const auto delay = machines::equivalents(with_effect(effect("input_delay", "push", Where::input, Law::delay, 0, 0.06)), 0);
+  const auto delay =
+      machines::equivalents(with_effect(effect("input_delay", "push", Where::input, Law::delay, 0, 0.06)), 0);
   CHECK(std::ranges::find(delay, std::pair<std::string, std::string>("sensor_delay", "x_m")) != delay.end());
   const auto friction =
       machines::equivalents(with_effect(effect("coulomb_friction", "v", Where::speed, Law::bristles, 1, 1.5)), 0);

@@ -21,6 +21,7 @@ Truth friction_and(const std::vector<Effect>& more = {}) {
   truth.effects.insert(truth.effects.end(), more.begin(), more.end());
   truth.noise = {{"x_m", 0.5}};
   truth.rmse = {{"rec_1.csv", 1.0}};
+  truth.floor = truth.rmse;
   truth.calibrated = {{"rec_1.csv", 4.0}};
   return truth;
 }

@@ -66,7 +66,8 @@ std::vector<Candidate> named_candidates(const Machine& machine) {
   for (std::size_t i = 0; i < machine.states.size(); ++i) {
     const State& state = machine.states[i];
     if (state.is_speed) add_forces(list, machine, i);
-    if (state.is_amount) add(list, machine.family == "tanks" ? "leak overflow constant_rate" : "constant_rate", Where::state, i);
+    if (state.is_amount)
+      add(list, machine.family == "tanks" ? "leak overflow constant_rate" : "constant_rate", Where::state, i);
     if (state.name == "yaw") add(list, "constant_rate", Where::state, i);
   }
   const std::string both = "input_gain dead_zone saturation rate_limit input_delay first_order_lag supply_sag";
@@ -91,7 +92,8 @@ std::vector<Candidate> outside_candidates(const Machine& machine) {
     if (state.is_speed) add(list, "gusts asymmetric_damping heat_fade", Where::speed, i);
     if (state.is_speed && state.position >= 0)
       add(list, "detent sticky_patch growing_inertia two_resonators weak_zone", Where::speed, i);
-    if (state.is_amount) add(list, machine.family == "tanks" ? "ripple choke exchange" : "ripple radiation", Where::state, i);
+    if (state.is_amount)
+      add(list, machine.family == "tanks" ? "ripple choke exchange" : "ripple radiation", Where::state, i);
   }
   for (std::size_t i = 0; i < machine.inputs.size(); ++i) add(list, "uneven_gain gain_ripple ageing", Where::input, i);
   return list;
@@ -109,17 +111,22 @@ Sizes measure(const CompiledMachine& machine, const std::vector<Recording>& reco
     sizes.duration += (recording.time.back() - recording.time.front()) / static_cast<double>(recordings.size());
   }
   const std::size_t states = machine.states.size(), count = recordings.size();
-  sizes.states = sizes_of(states, count, times, [&](auto k, auto i) -> auto& { return runs[k].states[i]; });
-  sizes.signals = sizes_of(machine.signals.size(), count, times,
-                           [&](auto k, auto i) -> auto& { return runs[k].states[states + i]; });
-  sizes.outputs = sizes_of(machine.outputs.size(), count, times, [&](auto k, auto i) -> auto& { return runs[k].outputs[i]; });
-  sizes.inputs = sizes_of(machine.inputs.size(), count, times, [&](auto k, auto i) -> auto& { return recordings[k].inputs[i]; });
+  sizes.states = sizes_of(
+      states, count, times, [&](auto k, auto i) -> auto& { return runs[k].states[i]; });
+  sizes.signals = sizes_of(
+      machine.signals.size(), count, times, [&](auto k, auto i) -> auto& { return runs[k].states[states + i]; });
+  sizes.outputs = sizes_of(
+      machine.outputs.size(), count, times, [&](auto k, auto i) -> auto& { return runs[k].outputs[i]; });
+  sizes.inputs = sizes_of(
+      machine.inputs.size(), count, times, [&](auto k, auto i) -> auto& { return recordings[k].inputs[i]; });
   for (std::size_t i = 0; i < states; ++i) {
     std::vector<double> registers = machine.registers;
-    for (std::size_t k = 0; k < actual.size(); ++k) registers[static_cast<std::size_t>(machine.parameters[k])] = actual[k];
+    for (std::size_t k = 0; k < actual.size(); ++k)
+      registers[static_cast<std::size_t>(machine.parameters[k])] = actual[k];
     const Formula& effort = machine.efforts[i];
     evaluate(effort.steps, registers);
-    sizes.forces.push_back(sizes.states[i].rate * (effort.result < 0 ? 1 : registers[static_cast<std::size_t>(effort.result)]));
+    sizes.forces.push_back(sizes.states[i].rate *
+                           (effort.result < 0 ? 1 : registers[static_cast<std::size_t>(effort.result)]));
   }
   return sizes;
 }

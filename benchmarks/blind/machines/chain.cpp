@@ -89,7 +89,8 @@ class Chain {
     if (s_.count == 3 && random_.chance(0.5)) link(0, 2, "p");
     if (s_.clamped) {
       const std::size_t where = grammar_.draw_own(random_) ? s_.count - 1 : 0;
-      parameter("k0", s_.force_unit + "/" + s_.length_unit, s_.mass * std::pow(s_.frequency, 2) * random_.uniform(0.5, 1.5));
+      parameter("k0", s_.force_unit + "/" + s_.length_unit,
+                s_.mass * std::pow(s_.frequency, 2) * random_.uniform(0.5, 1.5));
       force_[where] += " - k0*" + position(where);
     }
     if (s_.gravity) {
@@ -114,9 +115,9 @@ class Chain {
     parameter("d" + name, s_.force_unit + " s/" + s_.length_unit,
               2 * random_.uniform(0.03, 0.2) * std::sqrt(stiffness * s_.mass), 0.1);
     machine_.signals.push_back({"bend" + name, position(from) + " - " + position(to), s_.length_unit, false});
-    machine_.signals.push_back({"pass" + name,
-                                "k" + name + "*bend" + name + " + d" + name + "*(" + speed(from) + " - " + speed(to) + ")",
-                                s_.force_unit, false});
+    machine_.signals.push_back(
+        {"pass" + name, "k" + name + "*bend" + name + " + d" + name + "*(" + speed(from) + " - " + speed(to) + ")",
+         s_.force_unit, false});
     machine_.links.push_back({"bend" + name, static_cast<int>(2 * from + 1), static_cast<int>(2 * to + 1)});
     force_[from] += " - pass" + name;
     force_[to] += " + pass" + name;
@@ -169,8 +170,7 @@ class Chain {
     const double soft = side > 0 ? 0.35 : 1;
     const double top = s_.force * random_.uniform(1, 3);
     const double kp = soft * random_.uniform(0.6, 1.6) * s_.mass * std::pow(s_.frequency, 2) / top;
-    machine_.inputs.push_back(
-        {words_.command, words_.command + (s_.turns ? "_rad" : "_m"), s_.length_unit, 0});
+    machine_.inputs.push_back({words_.command, words_.command + (s_.turns ? "_rad" : "_m"), s_.length_unit, 0});
     draft_.middle.push_back(0), draft_.swing.push_back(s_.amplitude);
     std::string duty = "kp*" + error;
     const double spread = random_.chance(0.4) ? 2 : 1;

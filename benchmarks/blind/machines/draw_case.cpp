@@ -91,7 +91,8 @@ struct Strength {
   double held_out = 0, fitted = 0;
 };
 
-Strength strength_of(const plants::Case& one, const Values& parameters, const std::vector<Fault>& faults, int substeps) {
+Strength strength_of(const plants::Case& one, const Values& parameters, const std::vector<Fault>& faults,
+                     int substeps) {
   const Split parts = split(one.system);
   const How how{substeps, true, false, nullptr}, truth{fine, false, false, nullptr};
   const Values actual = plants::actual_values(one.system);
@@ -113,9 +114,12 @@ void note_errors(plants::Case& one) {
   one.errors.clear();
   const std::span<const Recording> all(system.recordings);
   for (std::size_t i = 0; i < all.size(); ++i) {
+    std::vector<Recording> as_read{all[i]};
+    for (std::vector<bool>& outliers : as_read[0].outliers) outliers.assign(outliers.size(), false);
     one.errors.push_back({all[i].name, i >= parts.fitted.size(),
                           error_of(system, actual, one.faults, all.subspan(i, 1), truth),
-                          error_of(system, one.calibrated, {}, all.subspan(i, 1), how)});
+                          error_of(system, one.calibrated, {}, all.subspan(i, 1), how),
+                          error_of(system, actual, one.faults, as_read, truth)});
   }
 }
 
@@ -132,8 +136,8 @@ bool each_visible(plants::Case& one) {
     std::vector<Fault> others = one.faults;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
     const How how{fine / 2, true, false, nullptr};
-    const Values p = plants::calibrate_from(one.system, plants::actual_values(one.system), others,
-                                            split(one.system).fitted, how);
+    const Values p =
+        plants::calibrate_from(one.system, plants::actual_values(one.system), others, split(one.system).fitted, how);
     const Strength strength = strength_of(one, p, others, fine / 2);
     one.strength_each.push_back(strength.held_out);
     if (!(strength.held_out >= visible.held_out_each && strength.fitted >= visible.fitted_each)) return false;

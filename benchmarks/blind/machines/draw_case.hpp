@@ -10,8 +10,8 @@ namespace machines {
 
 /// When hidden physics counts as visible: errors of the calibrated model without it over those of the true model.
 struct Visible {
-  double held_out = 1.3;       // on recordings that were not fitted to
-  double fitted = 1.15;        // on those fitted to, so that no luck with few recordings decides
+  double held_out = 1.3;        // on recordings that were not fitted to
+  double fitted = 1.15;         // on those fitted to, so that no luck with few recordings decides
   double held_out_each = 1.15;  // of two effects, while the other is known
   double fitted_each = 1.08;
   double most = 80;  // beyond it nobody needs a diagnosis

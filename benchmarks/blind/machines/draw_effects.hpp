@@ -14,8 +14,8 @@ namespace machines {
 struct Size {
   double spread = 0;  // standard deviation
   double rms = 0;
-  double peak = 0;   // largest absolute value
-  double rate = 0;   // root mean square of its rate [1/s]
+  double peak = 0;  // largest absolute value
+  double rate = 0;  // root mean square of its rate [1/s]
   double low = 0, high = 0;
 };
 

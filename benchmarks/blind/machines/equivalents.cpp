@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 #include <span>
@@ -34,9 +35,9 @@ const std::map<std::string, std::vector<std::string>>& relatives() {
 }
 
 bool is_signed(const std::string& name) {
-  static const std::set<std::string> names{"constant_force", "constant_rate",   "sensor_bias",    "sensor_scale",
-                                           "sensor_drift",   "input_asymmetry", "gravity_offset", "parameter_drift",
-                                           "input_gain"};
+  static const std::set<std::string> names{"constant_force", "constant_rate",   "sensor_bias",
+                                           "sensor_scale",   "sensor_drift",    "input_asymmetry",
+                                           "gravity_offset", "parameter_drift", "input_gain"};
   return names.contains(name);
 }
 
@@ -46,8 +47,8 @@ double remaining(const Drawn& drawn, std::vector<Hidden> hidden, std::size_t k, 
   System system = drawn.one.system;
   const std::shared_ptr<const CompiledMachine> machine = drawn.machine;
   const double size = std::abs(hidden[k].a);
-  system.parameters.push_back(
-      {"strength", "", hidden[k].a, hidden[k].a, is_signed(hidden[k].name) ? -50 * size : 1e-3 * size, 50 * size, false});
+  system.parameters.push_back({"strength", "", hidden[k].a, hidden[k].a,
+                               is_signed(hidden[k].name) ? -50 * size : 1e-3 * size, 50 * size, false});
   system.simulate = [machine, hidden, k](const Values& values, const std::vector<plants::Fault>&,
                                          const Recording& recording, const How& how) {
     std::vector<Hidden> present = hidden;
@@ -61,15 +62,27 @@ double remaining(const Drawn& drawn, std::vector<Hidden> hidden, std::size_t k, 
   return squares;
 }
 
-// Recordings whose readings are what the true machine gives in as many integration steps as will be compared.
-std::vector<Recording> references(const Drawn& drawn, const Same& same) {
-  const std::vector<Recording>& all = drawn.one.system.recordings;
-  std::vector<Recording> chosen(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(same.recordings, all.size())));
+// Recordings whose readings are what the true machine gives in as many integration steps as will be compared: those in
+// which the effect shows most.
+std::vector<Recording> references(const Drawn& drawn, std::size_t k, const Same& same) {
   const Values actual = plants::actual_values(drawn.one.system);
-  for (Recording& one : chosen) {
-    one.readings = simulate(*drawn.machine, actual, drawn.hidden, one, How{same.substeps, false, false, nullptr}).outputs;
+  const How how{same.substeps, false, false, nullptr};
+  std::vector<Hidden> others = drawn.hidden;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+  std::vector<std::pair<double, Recording>> all;
+  for (Recording one : drawn.one.system.recordings) {
+    one.readings = simulate(*drawn.machine, actual, drawn.hidden, one, how).outputs;
     for (std::vector<bool>& outliers : one.outliers) outliers.assign(outliers.size(), false);
+    const std::vector<Column> without = simulate(*drawn.machine, actual, others, one, how).outputs;
+    double squares = 0;
+    for (std::size_t j = 0; j < without.size(); ++j)
+      for (std::size_t i = 0; i < without[j].size(); ++i)
+        squares += std::pow((without[j][i] - one.readings[j][i]) / drawn.one.system.noise[j], 2);
+    all.emplace_back(squares, std::move(one));
   }
+  std::ranges::stable_sort(all, std::greater<>(), [](const auto& entry) { return entry.first; });
+  std::vector<Recording> chosen;
+  for (std::size_t i = 0; i < std::min(same.recordings, all.size()); ++i) chosen.push_back(std::move(all[i].second));
   return chosen;
 }
 
@@ -88,14 +101,15 @@ std::vector<std::pair<std::string, std::string>> equivalents(const Drawn& drawn,
   const Machine& machine = drawn.machine->machine;
   const Sizes sizes = measure(*drawn.machine, drawn.one.system.recordings);
   const auto related = relatives().find(truth.name);
-  std::vector<Recording> reference = references(drawn, same);
+  std::vector<Recording> reference = references(drawn, k, same);
   const double scale = rows_of(drawn.one.system.recordings) / rows_of(reference);
-  std::vector<std::pair<std::string, std::string>> found;
+  std::set<std::pair<std::string, std::string>> found;
   std::set<std::pair<std::string, std::string>> tried{{truth.name, truth.attached_to}};
   for (const std::string& place : truth.also) tried.insert({truth.name, place});
   for (const Candidate& candidate : named_candidates(machine)) {
     const bool same_name = candidate.name == truth.name;
-    const bool relative = related != relatives().end() && std::ranges::find(related->second, candidate.name) != related->second.end();
+    const bool relative =
+        related != relatives().end() && std::ranges::find(related->second, candidate.name) != related->second.end();
     if (!same_name && !relative) continue;
     Random random(1);  // for what the alternative has beside its strength
     Hidden other = draw_hidden(random, {}, machine, sizes, candidate, drawn.one.system.noise);
@@ -108,10 +122,10 @@ std::vector<std::pair<std::string, std::string>> equivalents(const Drawn& drawn,
     std::vector<Hidden> hidden = drawn.hidden;
     hidden[k] = other;
     if (!(scale * remaining(drawn, hidden, k, reference, same) < same.most_squares)) continue;
-    found.emplace_back(other.name, other.attached_to);
-    for (const std::string& place : other.also) found.emplace_back(other.name, place);
+    found.emplace(other.name, other.attached_to);
+    for (const std::string& place : other.also) found.emplace(other.name, place);
   }
-  return found;
+  return {found.begin(), found.end()};
 }
 
 }  // namespace machines

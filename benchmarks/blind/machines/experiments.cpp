@@ -52,7 +52,7 @@ Column shape(Random& random, const Column& times, Kind kind, double pace) {
 }
 
 Column command(Random& random, const Column& times, const Input& input, double middle, double swing, double pace) {
-  static const std::vector<Kind> kinds{Kind::steps,  Kind::sine,   Kind::sines, Kind::chirp,
+  static const std::vector<Kind> kinds{Kind::steps, Kind::sine,   Kind::sines, Kind::chirp,
                                        Kind::ramps, Kind::binary, Kind::pulses};
   const double amplitude = swing * random.uniform(0.35, 1);
   Column values = shape(random, times, random.choice(kinds), pace * random.uniform(0.6, 2));
@@ -81,8 +81,8 @@ std::vector<Recording> draw_recordings(Random& random, const Draft& draft) {
     for (const auto& [key, values] : draft.metas) recording.meta.emplace_back(key, random.choice(values));
     recording.time = plants::jittered_times(random, duration * random.uniform(0.8, 1.2), machine.period, jitter);
     for (std::size_t k = 0; k < machine.inputs.size(); ++k) {
-      recording.inputs.push_back(command(random, recording.time, machine.inputs[k], draft.middle[k], draft.swing[k],
-                                         machine.time_scale));
+      recording.inputs.push_back(
+          command(random, recording.time, machine.inputs[k], draft.middle[k], draft.swing[k], machine.time_scale));
     }
     recording.initial = draft.initial;
     recording.initial.resize(machine.states.size(), 0.0);

@@ -7,9 +7,9 @@
 namespace machines {
 namespace {
 
-const std::map<std::string, char, std::less<>> functions{{"sin", 's'},  {"cos", 'c'},  {"tanh", 't'}, {"sqrt", 'q'},
-                                                         {"abs", 'a'},  {"sign", 'g'}, {"exp", 'e'},  {"min", 'm'},
-                                                         {"max", 'M'}};
+const std::map<std::string, char, std::less<>> functions{{"sin", 's'},  {"cos", 'c'}, {"tanh", 't'},
+                                                         {"sqrt", 'q'}, {"abs", 'a'}, {"sign", 'g'},
+                                                         {"exp", 'e'},  {"min", 'm'}, {"max", 'M'}};
 
 class Parser {
  public:
@@ -157,8 +157,8 @@ Formula compile(std::string_view text, Registers& registers) { return Parser(tex
 
 void evaluate(const std::vector<Step>& steps, std::span<double> registers) {
   for (const Step& step : steps) {
-    registers[static_cast<std::size_t>(step.to)] =
-        computed(step.operation, registers[static_cast<std::size_t>(step.a)], registers[static_cast<std::size_t>(step.b)]);
+    registers[static_cast<std::size_t>(step.to)] = computed(step.operation, registers[static_cast<std::size_t>(step.a)],
+                                                            registers[static_cast<std::size_t>(step.b)]);
   }
 }
 

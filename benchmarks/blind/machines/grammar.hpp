@@ -21,11 +21,11 @@ struct Grammar {
 /// A machine and the size of its inputs' excitation.
 struct Draft {
   Machine machine;
-  std::vector<double> initial;        // of the states; empty: zeros
-  std::vector<double> initial_range;  // by which recordings may differ from it
-  int initial_meta = -1;              // constant of a recording that all states begin at
-  std::vector<double> middle, swing;  // of each input
-  double duration = 1;                // of a recording [s]
+  std::vector<double> initial;                                     // of the states; empty: zeros
+  std::vector<double> initial_range;                               // by which recordings may differ from it
+  int initial_meta = -1;                                           // constant of a recording that all states begin at
+  std::vector<double> middle, swing;                               // of each input
+  double duration = 1;                                             // of a recording [s]
   std::vector<std::pair<std::string, std::vector<double>>> metas;  // constants of a recording, values to choose from
 };
 

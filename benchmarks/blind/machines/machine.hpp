@@ -16,7 +16,7 @@ using plants::Values;
 
 struct Input {
   std::string name, column, unit;
-  int group = 0;           // inputs and signals of one group > 0 are constant multiples of each other
+  int group = 0;            // inputs and signals of one group > 0 are constant multiples of each other
   bool one_signed = false;  // pumps, heaters
 };
 
@@ -74,25 +74,83 @@ enum class Where { speed, state, input, signal, sensor, parameter, link };
 /// Formulas of hidden physics; many differ from those of the library.
 enum class Law {
   // on speeds
-  viscous, bristles, soft_bristles, smooth_dry, arctan_dry, stribeck_gauss, stribeck_exponential, stribeck_lorentz,
-  load_bristles, square_drag, power_drag, constant, cubic, sinh_spring, tangent_spring, dahl, square_hysteresis,
-  seen_backlash, load_behind_gap, resonator, sine_cogging, triangle_cogging, two_wave_cogging, weight_offset,
-  hard_stop, elastic_stop,
+  viscous,
+  bristles,
+  soft_bristles,
+  smooth_dry,
+  arctan_dry,
+  stribeck_gauss,
+  stribeck_exponential,
+  stribeck_lorentz,
+  load_bristles,
+  square_drag,
+  power_drag,
+  constant,
+  cubic,
+  sinh_spring,
+  tangent_spring,
+  dahl,
+  square_hysteresis,
+  seen_backlash,
+  load_behind_gap,
+  resonator,
+  sine_cogging,
+  triangle_cogging,
+  two_wave_cogging,
+  weight_offset,
+  hard_stop,
+  elastic_stop,
   // on other states
-  leak, hole, power_leak, rate, overflow, weir,
+  leak,
+  hole,
+  power_leak,
+  rate,
+  overflow,
+  weir,
   // on inputs and signals
-  gain, asymmetry, dead_zone, dead_step, clip, smooth_clip, tanh_clip, rate_limit, delay, lag, second_lag, sag,
+  gain,
+  asymmetry,
+  dead_zone,
+  dead_step,
+  clip,
+  smooth_clip,
+  tanh_clip,
+  rate_limit,
+  delay,
+  lag,
+  second_lag,
+  sag,
   slow_sag,
   // in sensors
-  bias, scale, sensor_delay, drift, warm_drift, round_off, floor_off, sensor_backlash,
+  bias,
+  scale,
+  sensor_delay,
+  drift,
+  warm_drift,
+  round_off,
+  floor_off,
+  sensor_backlash,
   // of parameters
-  linear_drift, warm_up, late_drift,
+  linear_drift,
+  warm_up,
+  late_drift,
   // outside the library, on speeds
-  detent, sticky_patch, growing_inertia, gusts, asymmetric_damping, two_resonators, weak_zone, heat_fade,
+  detent,
+  sticky_patch,
+  growing_inertia,
+  gusts,
+  asymmetric_damping,
+  two_resonators,
+  weak_zone,
+  heat_fade,
   // outside the library, on other states
-  ripple, choke, exchange, radiation,
+  ripple,
+  choke,
+  exchange,
+  radiation,
   // outside the library, on inputs and signals
-  uneven_gain, ageing
+  uneven_gain,
+  ageing
 };
 
 /// One piece of hidden physics at its place.

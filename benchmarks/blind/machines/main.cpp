@@ -1,5 +1,5 @@
-// concealed_machines: writes cases for the blind benchmark whose machines are drawn from a grammar and, apart from them,
-// the truth. Nothing here comes from the library.
+// concealed_machines: writes cases for the blind benchmark whose machines are drawn from a grammar and, apart from
+// them, the truth. Nothing here comes from the library.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -69,7 +69,8 @@ void generate(const Options& options) {
   std::filesystem::create_directories(options.out / "truth");
   for (std::size_t i = 0; i < options.cases; ++i) {
     plants::Random random(options.seed * 1000003 + i);
-    machines::Drawn drawn = machines::draw_case(random, options.grammar, random.choice(machines::families()), planned[i]);
+    machines::Drawn drawn =
+        machines::draw_case(random, options.grammar, random.choice(machines::families()), planned[i]);
     for (std::size_t k = 0; k < drawn.hidden.size() && drawn.one.kind != plants::Kind::outside; ++k)
       drawn.one.faults[k].equivalents = machines::equivalents(drawn, k);
     char name[32];

@@ -102,8 +102,7 @@ class Run {
     }
     std::vector<Column> inputs(recording_.inputs.size());
     for (std::size_t i = 0; i < inputs.size(); ++i) {
-      for (std::size_t k = 0; k < times.size(); ++k)
-        inputs[i].push_back(recording_.inputs[i][k / at(how_.substeps)]);
+      for (std::size_t k = 0; k < times.size(); ++k) inputs[i].push_back(recording_.inputs[i][k / at(how_.substeps)]);
       for (const Hidden& one : hidden_)
         if (one.where == Where::input && at(one.target) == i) change_input(one, times, inputs[i]);
     }
@@ -313,33 +312,12 @@ class Run {
   double asked_now_ = 0;
   std::array<std::vector<double>, 4> slopes_;
   std::vector<double> stage_;
-  Column fine_times_;             // and outputs at them, where a sensor is late
+  Column fine_times_;  // and outputs at them, where a sensor is late
   std::vector<Column> outputs_;
   bool drifting_ = false, tapped_ = false, late_sensors_ = false, starting_ = false;
 };
 
 }  // namespace
-
-CompiledMachine::CompiledMachine(const Machine& description) : machine(description) {
-  Registers names;
-  names.constant(0);
-  for (const Input& one : machine.inputs) inputs.push_back(names.of(one.name));
-  for (const State& one : machine.states) states.push_back(names.of(one.name));
-  for (const Constant& one : machine.constants) constants.push_back(names.of(one.name));
-  for (const plants::Parameter& one : machine.parameters) parameters.push_back(names.of(one.name));
-  for (const Signal& one : machine.signals) {
-    signal_formulas.push_back(compile(one.formula, names));
-    signals.push_back(names.of(one.name));
-  }
-  for (const State& one : machine.states) {
-    rates.push_back(compile(one.rate, names));
-    efforts.push_back(one.effort.empty() ? Formula{{}, -1} : compile(one.effort, names));
-    drives.push_back(one.drive.empty() ? -1 : names.known(one.drive));
-    loads.push_back(one.load.empty() ? -1 : names.known(one.load));
-  }
-  for (const Output& one : machine.outputs) outputs.push_back(compile(one.formula, names));
-  registers = names.initial();
-}
 
 plants::Series simulate(const CompiledMachine& machine, const Values& parameters, const std::vector<Hidden>& hidden,
                         const Recording& recording, const plants::How& how, bool with_signals) {

@@ -16,7 +16,7 @@ struct CompiledMachine {
   CompiledMachine(const Machine& description);
 
   Machine machine;
-  std::vector<double> registers;  // before anything is computed
+  std::vector<double> registers;                                                   // before anything is computed
   std::vector<int> inputs, signals, states, constants, parameters, drives, loads;  // registers; -1: none
   std::vector<Formula> signal_formulas, rates, efforts, outputs;                   // efforts: empty result -1: none
 };

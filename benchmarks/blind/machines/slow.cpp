@@ -19,7 +19,10 @@ class Tanks {
   Tanks(Random& random, const Grammar& grammar) : random_(random) {
     const bool own = grammar.draw_own(random);
     count_ = own ? 2 + random.index(2) : 1 + random.index(2);
-    if (own) network_ = count_ == 3 && random.chance(0.4) ? Network::series : random.chance(0.5) ? Network::parallel : Network::interacting;
+    if (own)
+      network_ = count_ == 3 && random.chance(0.4) ? Network::series
+                 : random.chance(0.5)              ? Network::parallel
+                                                   : Network::interacting;
     pumps_ = count_ > 1 && network_ != Network::parallel && random.chance(0.35) ? 2 : 1;
     centimetres_ = random.chance(0.5);
     level_ = random.log_uniform(0.08, 3) * (centimetres_ ? 100 : 1);
@@ -30,7 +33,9 @@ class Tanks {
     Machine& machine = draft_.machine;
     machine.family = "tanks";
     machine.title = number(count_ - 1) + " tanks";
-    machine.title += network_ == Network::series ? "" : network_ == Network::parallel ? " in parallel" : " that interact";
+    machine.title += network_ == Network::series     ? ""
+                     : network_ == Network::parallel ? " in parallel"
+                                                     : " that interact";
     inflow_.assign(count_, ""), outflow_ = inflow_;
     draw_pumps();
     for (std::size_t i = 0; i < count_; ++i) draw_outlet(i);
@@ -53,7 +58,14 @@ class Tanks {
     for (std::size_t k = 0; k < pumps_; ++k) {
       const std::string name = "pump" + (pumps_ > 1 ? number(k) : std::string());
       const bool volts = top == 5 || top == 10;
-      machine.inputs.push_back({name, name + (volts ? "_V" : top == 1 ? "_1" : "_pct"), volts ? "V" : top == 1 ? "1" : "%", 0, true});
+      machine.inputs.push_back({name,
+                                name + (volts      ? "_V"
+                                        : top == 1 ? "_1"
+                                                   : "_pct"),
+                                volts      ? "V"
+                                : top == 1 ? "1"
+                                           : "%",
+                                0, true});
       draft_.middle.push_back(0.5 * top), draft_.swing.push_back(0.5 * top);
       const std::string gain = "gain" + (pumps_ > 1 ? number(k) : std::string());
       const double amount = level_ / time_ / top * random_.uniform(1.2, 2) / static_cast<double>(pumps_);
@@ -77,8 +89,8 @@ class Tanks {
     if (network_ == Network::interacting && !last) {
       machine.constants.push_back({"thin" + number(i), three_digits(1e-3 * level_)});
       const std::string difference = "(" + level(i) + " - " + level(i + 1) + ")";
-      machine.signals.push_back({flow, outlet + "*" + difference + "/sqrt(abs" + difference + " + thin" + number(i) + ")",
-                                 unit() + "/s"});
+      machine.signals.push_back(
+          {flow, outlet + "*" + difference + "/sqrt(abs" + difference + " + thin" + number(i) + ")", unit() + "/s"});
     } else {
       machine.signals.push_back({flow, outlet + "*sqrt(max(" + level(i) + ", 0))", unit() + "/s"});
     }
@@ -97,8 +109,7 @@ class Tanks {
     const bool measured = i + 1 == count_ || random_.chance(0.6);
     state.initial = measured ? "column:" + level(i) + "_" + unit() : "free";
     machine.states.push_back(state);
-    if (measured)
-      machine.outputs.push_back({level(i) + "_" + unit(), level(i), unit(), static_cast<int>(i)});
+    if (measured) machine.outputs.push_back({level(i) + "_" + unit(), level(i), unit(), static_cast<int>(i)});
     const double start = random_.uniform(0.15, 0.5) * level_;
     draft_.initial.push_back(start), draft_.initial_range.push_back(0.5 * start);
   }

@@ -98,6 +98,8 @@ void write_truth(const Case& one, const std::filesystem::path& file) {
                                      {"held_out", error.held_out},
                                      {"true_model_rmse", error.actual},
                                      {"calibrated_nominal_rmse", error.calibrated}});
+    if (error.actual_with_outliers > 0)
+      json["per_recording"].back()["true_model_rmse_with_outliers"] = error.actual_with_outliers;
   }
   write_text(file, json.dump(1) + "\n");
 }

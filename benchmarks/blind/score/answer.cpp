@@ -68,6 +68,8 @@ Truth read_truth(const std::filesystem::path& file) {
   truth.strength = json.at("strength");
   for (const Json& one : json.at("per_recording")) {
     truth.rmse[one.at("recording")] = one.at("true_model_rmse");
+    truth.floor[one.at("recording")] =
+        one.value("true_model_rmse_with_outliers", one.at("true_model_rmse").get<double>());
     truth.calibrated[one.at("recording")] = one.at("calibrated_nominal_rmse");
   }
   return truth;

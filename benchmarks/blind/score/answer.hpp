@@ -24,6 +24,7 @@ struct Truth {
   std::vector<Effect> effects;
   std::map<std::string, double> noise;  // output -> standard deviation, in the output's unit
   std::map<std::string, double> rmse;   // recording -> error of the true model, in standard deviations of the noise
+  std::map<std::string, double> floor;  // recording -> the same with outliers in it, as a held-out error may have them
   std::map<std::string, double> calibrated;  // recording -> error of the calibrated model without effects, likewise
   double strength = 1;
 };

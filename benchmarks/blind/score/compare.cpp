@@ -148,7 +148,8 @@ Outcome compare(const Truth& truth, const Answer& answer) {
   outcome.named_in_three = any_right(answer.effects, truth.effects);
   outcome.all_named = all_right(answer.effects, truth.effects);
   outcome.structure_right = is_right_structure(truth, answer.effects);
-  outcome.against_noise = answer.verdict != "unexplained" && outcome.error_ratio > unexplained_error;
+  const double floor = root_mean_square(answer.test, truth.floor) / root_mean_square(answer.test, truth.rmse);
+  outcome.against_noise = answer.verdict != "unexplained" && outcome.error_ratio / floor > unexplained_error;
   for (std::size_t i = 0; i < answer.alternatives.size(); ++i) {
     const Alternative& other = answer.alternatives[i];
     const bool right = any_right(other.effects, truth.effects);
@@ -166,14 +167,15 @@ Outcome compare(const Truth& truth, const Answer& answer) {
 
 std::string complaint(const Outcome& outcome) {
   const std::string& kind = outcome.truth->kind;
-  if (kind == "nothing") return outcome.detected ? "false alarm" : "";
+  if (kind == "nothing" && outcome.detected) return "false alarm";
+  if (kind == "nothing") return outcome.against_noise ? "error above the noise" : "";
   if (!outcome.detected) return "not detected";
   if (kind == "outside") return outcome.answer.verdict == "unexplained" ? "" : "misnamed";
   if (outcome.answer.verdict == "unexplained" && outcome.answer.effects.empty()) return "unexplained, but has a name";
   if (!outcome.named_first) return outcome.named_in_three ? "right name not first" : "wrong name";
   if (!outcome.attached) return "wrong place";
   if (kind == "two" && !outcome.all_named) return "second effect not named";
-  return "";
+  return outcome.against_noise ? "error above the noise" : "";
 }
 
 }  // namespace score

@@ -23,7 +23,7 @@ struct Outcome {
   double error_ratio = 0;                // held-out error over the true model's; NaN if the answer does not tell
 };
 
-/// Held-out error, in those of the true model, above which a model explains nothing away.
+/// Held-out error, in those of the true model on the same readings, above which a model explains nothing away.
 constexpr double unexplained_error = 1.5;
 
 /// Whether these effects are exactly the hidden ones, each at its place; equivalent descriptions count as the same.
