@@ -129,23 +129,30 @@ bool worth_calibrating(const plants::Case& one) {
   return as_true.fitted >= visible.fitted && std::isfinite(as_true.held_out);
 }
 
-bool each_visible(plants::Case& one) {
+// Without each effect in turn, parameters and the strength of the other fitted again.
+bool each_visible(Drawn& drawn) {
+  plants::Case& one = drawn.one;
   one.strength_each.clear();
   if (one.faults.size() == 1) one.strength_each = {one.strength()};
-  for (std::size_t k = 0; one.faults.size() > 1 && k < one.faults.size(); ++k) {
-    std::vector<Fault> others = one.faults;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+  for (std::size_t k = 0; one.faults.size() == 2 && k < 2; ++k) {
+    const System without = with_free_strength(one.system, drawn.machine, {drawn.hidden[1 - k]}, 0);
     const How how{fine / 2, true, false, nullptr};
-    const Values p =
-        plants::calibrate_from(one.system, plants::actual_values(one.system), others, split(one.system).fitted, how);
-    const Strength strength = strength_of(one, p, others, fine / 2);
-    one.strength_each.push_back(strength.held_out);
-    if (!(strength.held_out >= visible.held_out_each && strength.fitted >= visible.fitted_each)) return false;
+    const Values p = plants::calibrate_from(without, plants::actual_values(without), {}, split(without).fitted, how);
+    const Split parts = split(one.system);
+    const How truth{fine, false, false, nullptr};
+    const Values actual = plants::actual_values(one.system);
+    const double held_out =
+        error_of(without, p, {}, parts.held_out, how) / error_of(one.system, actual, one.faults, parts.held_out, truth);
+    const double fitted =
+        error_of(without, p, {}, parts.fitted, how) / error_of(one.system, actual, one.faults, parts.fitted, truth);
+    one.strength_each.push_back(held_out);
+    if (!(held_out >= visible.held_out_each && fitted >= visible.fitted_each)) return false;
   }
   return true;
 }
 
-bool matters(plants::Case& one, const Band& band) {
+bool matters(Drawn& drawn, const Band& band) {
+  plants::Case& one = drawn.one;
   if (one.kind == Kind::nothing) {
     note_errors(one);
     return true;
@@ -154,7 +161,7 @@ bool matters(plants::Case& one, const Band& band) {
   note_errors(one);
   if (!(one.strength() >= band.low && one.strength() <= band.high)) return false;
   if (!(strength_of(one, one.calibrated, {}, coarse).fitted >= visible.fitted)) return false;
-  return each_visible(one);
+  return each_visible(drawn);
 }
 
 // A name first, then one of its places, so that machines with many sensors do not have faults of sensors alone.
@@ -205,9 +212,17 @@ std::optional<Drawn> try_machine(Random& random, const Grammar& grammar, Draft d
     free_sensitive_start(drawn.one, draft.machine);
     drawn.machine = std::make_shared<const CompiledMachine>(draft.machine);
     set_hidden(drawn.one.system, drawn.machine, drawn.hidden);
-    if (matters(drawn.one, band)) return drawn;
+    if (matters(drawn, band)) return drawn;
   }
   return std::nullopt;
+}
+
+// Effects whose strength may be negative.
+bool is_signed(const std::string& name) {
+  static const std::set<std::string> names{"constant_force", "constant_rate",   "sensor_bias",
+                                           "sensor_scale",   "sensor_drift",    "input_asymmetry",
+                                           "gravity_offset", "parameter_drift", "input_gain"};
+  return names.contains(name);
 }
 
 }  // namespace
@@ -233,6 +248,21 @@ void set_hidden(System& system, std::shared_ptr<const CompiledMachine> machine, 
     for (const Fault& fault : faults) present.push_back(hidden[static_cast<std::size_t>(fault.target)]);
     return simulate(*machine, parameters, present, recording, how);
   };
+}
+
+System with_free_strength(const System& system, std::shared_ptr<const CompiledMachine> machine,
+                          const std::vector<Hidden>& hidden, std::size_t k) {
+  System freed = system;
+  const double size = std::abs(hidden[k].a);
+  const double least = is_signed(hidden[k].name) ? -50 * size : 1e-3 * size;
+  freed.parameters.push_back({"strength", "", hidden[k].a, hidden[k].a, least, 50 * size, false});
+  freed.simulate = [machine, hidden, k](const Values& values, const std::vector<Fault>&, const Recording& recording,
+                                        const How& how) {
+    std::vector<Hidden> present = hidden;
+    present[k].a = values.back();
+    return simulate(*machine, Values(values.begin(), values.end() - 1), present, recording, how);
+  };
+  return freed;
 }
 
 System system_of(Random& random, const Draft& draft, std::shared_ptr<const CompiledMachine> machine) {

@@ -12,7 +12,7 @@ namespace machines {
 struct Visible {
   double held_out = 1.3;        // on recordings that were not fitted to
   double fitted = 1.15;         // on those fitted to, so that no luck with few recordings decides
-  double held_out_each = 1.15;  // of two effects, while the other is known
+  double held_out_each = 1.15;  // of two effects, while the other's strength is fitted, too
   double fitted_each = 1.08;
   double most = 80;  // beyond it nobody needs a diagnosis
 };
@@ -29,6 +29,10 @@ plants::System system_of(Random& random, const Draft& draft, std::shared_ptr<con
 plants::Fault fault_of(const Hidden& hidden, std::size_t index);
 void set_hidden(plants::System& system, std::shared_ptr<const CompiledMachine> machine,
                 const std::vector<Hidden>& hidden);
+
+/// All of `hidden` at work whatever faults are given, and the strength of hidden[k] as a last parameter.
+plants::System with_free_strength(const plants::System& system, std::shared_ptr<const CompiledMachine> machine,
+                                  const std::vector<Hidden>& hidden, std::size_t k);
 
 /// Draws until the effects matter.
 Drawn draw_case(Random& random, const Grammar& grammar, const std::string& family, plants::Kind kind);

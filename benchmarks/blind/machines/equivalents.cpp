@@ -34,27 +34,10 @@ const std::map<std::string, std::vector<std::string>>& relatives() {
   return table;
 }
 
-bool is_signed(const std::string& name) {
-  static const std::set<std::string> names{"constant_force", "constant_rate",   "sensor_bias",
-                                           "sensor_scale",   "sensor_drift",    "input_asymmetry",
-                                           "gravity_offset", "parameter_drift", "input_gain"};
-  return names.contains(name);
-}
-
 // The alternative fitted to `reference` (its readings are noise-free): squared differences that remain.
-double remaining(const Drawn& drawn, std::vector<Hidden> hidden, std::size_t k, std::vector<Recording>& reference,
-                 const Same& same) {
-  System system = drawn.one.system;
-  const std::shared_ptr<const CompiledMachine> machine = drawn.machine;
-  const double size = std::abs(hidden[k].a);
-  system.parameters.push_back({"strength", "", hidden[k].a, hidden[k].a,
-                               is_signed(hidden[k].name) ? -50 * size : 1e-3 * size, 50 * size, false});
-  system.simulate = [machine, hidden, k](const Values& values, const std::vector<plants::Fault>&,
-                                         const Recording& recording, const How& how) {
-    std::vector<Hidden> present = hidden;
-    present[k].a = values.back();
-    return simulate(*machine, Values(values.begin(), values.end() - 1), present, recording, how);
-  };
+double remaining(const Drawn& drawn, const std::vector<Hidden>& hidden, std::size_t k,
+                 std::vector<Recording>& reference, const Same& same) {
+  const System system = with_free_strength(drawn.one.system, drawn.machine, hidden, k);
   const How how{same.substeps, false, false, nullptr};
   const Values fitted = plants::calibrate_from(system, plants::actual_values(system), {}, reference, how);
   double squares = 0;
