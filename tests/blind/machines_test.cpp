@@ -8,6 +8,7 @@
 
 #include "machines/draw_case.hpp"
 #include "machines/equivalents.hpp"
+#include "machines/free_start.hpp"
 #include "plants/calibrate.hpp"
 #include "plants/systems.hpp"
 
@@ -153,4 +154,21 @@ TEST_CASE("a delay of the only input is that of the only sensor, and friction is
   const auto friction =
       machines::equivalents(with_effect(effect("coulomb_friction", "v", Where::speed, Law::bristles, 1, 1.5)), 0);
   CHECK(friction.empty());
+}
+
+TEST_CASE("initial values that the model file leaves free are those of the readings") {
+  machines::Draft draft = oscillator();
+  draft.machine.states[0].initial = "free";
+  const machines::CompiledMachine machine(draft.machine);
+  plants::Random random(4);
+  plants::Recording recording = machines::draw_recordings(random, draft)[0];
+  recording.initial = {0.07, 0};
+  const plants::Values actual{2, 80, 5};
+  recording.readings = machines::simulate(machine, actual, {}, recording, {4, false, false, nullptr}).outputs;
+  recording.outliers = {std::vector<bool>(recording.time.size(), false)};
+  recording.initial = {0.01, 0};
+  const auto found =
+      machines::simulate_as_user(machine, actual, {}, recording, {4, false, false, nullptr, true}, {1e-3});
+  CHECK(found.states[0][0] == doctest::Approx(0.07).epsilon(1e-6));
+  CHECK(found.outputs[0].back() == doctest::Approx(recording.readings[0].back()).epsilon(1e-6));
 }

@@ -8,6 +8,7 @@
 
 #include "../plants/calibrate.hpp"
 #include "../plants/systems.hpp"
+#include "free_start.hpp"
 
 namespace machines {
 namespace {
@@ -27,6 +28,9 @@ double error_of(const System& system, const Values& parameters, const std::vecto
                 std::span<const Recording> recordings, const How& how) {
   return plants::root_mean_square(plants::residuals(system, parameters, faults, recordings, how));
 }
+
+// As the model file says that a recording begins.
+How as_user(int substeps) { return {substeps, true, false, nullptr, true}; }
 
 struct Band {
   double low, high;
@@ -94,7 +98,7 @@ struct Strength {
 Strength strength_of(const plants::Case& one, const Values& parameters, const std::vector<Fault>& faults,
                      int substeps) {
   const Split parts = split(one.system);
-  const How how{substeps, true, false, nullptr}, truth{fine, false, false, nullptr};
+  const How how = as_user(substeps), truth{fine, false, false, nullptr};
   const Values actual = plants::actual_values(one.system);
   return {error_of(one.system, parameters, faults, parts.held_out, how) /
               error_of(one.system, actual, one.faults, parts.held_out, truth),
@@ -106,7 +110,7 @@ Strength strength_of(const plants::Case& one, const Values& parameters, const st
 void note_errors(plants::Case& one) {
   const System& system = one.system;
   const Split parts = split(system);
-  const How how{coarse, true, false, nullptr}, truth{fine, false, false, nullptr};
+  const How how = as_user(coarse), truth{fine, false, false, nullptr};
   const Values actual = plants::actual_values(system);
   one.calibrated = plants::calibrate(system, {}, parts.fitted, how);
   one.calibrated_rmse = error_of(system, one.calibrated, {}, parts.held_out, how);
@@ -136,7 +140,7 @@ bool each_visible(Drawn& drawn) {
   if (one.faults.size() == 1) one.strength_each = {one.strength()};
   for (std::size_t k = 0; one.faults.size() == 2 && k < 2; ++k) {
     const System without = with_free_strength(one.system, drawn.machine, {drawn.hidden[1 - k]}, 0);
-    const How how{fine / 2, true, false, nullptr};
+    const How how = as_user(fine / 2);
     const Values p = plants::calibrate_from(without, plants::actual_values(without), {}, split(without).fitted, how);
     const Split parts = split(one.system);
     const How truth{fine, false, false, nullptr};
@@ -242,11 +246,11 @@ void set_hidden(System& system, std::shared_ptr<const CompiledMachine> machine, 
   const Machine& description = machine->machine;
   const std::vector<double> noise = system.noise;
   system.model_toml = [description, noise](bool with_noise) { return model_toml(description, noise, with_noise); };
-  system.simulate = [machine, hidden](const Values& parameters, const std::vector<Fault>& faults,
-                                      const Recording& recording, const How& how) {
+  system.simulate = [machine, hidden, noise](const Values& parameters, const std::vector<Fault>& faults,
+                                             const Recording& recording, const How& how) {
     std::vector<Hidden> present;
     for (const Fault& fault : faults) present.push_back(hidden[static_cast<std::size_t>(fault.target)]);
-    return simulate(*machine, parameters, present, recording, how);
+    return simulate_as_user(*machine, parameters, present, recording, how, noise);
   };
 }
 
@@ -256,11 +260,12 @@ System with_free_strength(const System& system, std::shared_ptr<const CompiledMa
   const double size = std::abs(hidden[k].a);
   const double least = is_signed(hidden[k].name) ? -50 * size : 1e-3 * size;
   freed.parameters.push_back({"strength", "", hidden[k].a, hidden[k].a, least, 50 * size, false});
-  freed.simulate = [machine, hidden, k](const Values& values, const std::vector<Fault>&, const Recording& recording,
-                                        const How& how) {
+  const std::vector<double> noise = system.noise;
+  freed.simulate = [machine, hidden, noise, k](const Values& values, const std::vector<Fault>&,
+                                               const Recording& recording, const How& how) {
     std::vector<Hidden> present = hidden;
     present[k].a = values.back();
-    return simulate(*machine, Values(values.begin(), values.end() - 1), present, recording, how);
+    return simulate_as_user(*machine, Values(values.begin(), values.end() - 1), present, recording, how, noise);
   };
   return freed;
 }

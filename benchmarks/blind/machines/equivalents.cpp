@@ -38,7 +38,7 @@ const std::map<std::string, std::vector<std::string>>& relatives() {
 double remaining(const Drawn& drawn, const std::vector<Hidden>& hidden, std::size_t k,
                  std::vector<Recording>& reference, const Same& same) {
   const System system = with_free_strength(drawn.one.system, drawn.machine, hidden, k);
-  const How how{same.substeps, false, false, nullptr};
+  const How how{same.substeps, false, false, nullptr, true};
   const Values fitted = plants::calibrate_from(system, plants::actual_values(system), {}, reference, how);
   double squares = 0;
   for (const double one : plants::residuals(system, fitted, {}, reference, how)) squares += one * one;

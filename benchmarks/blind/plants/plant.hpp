@@ -138,6 +138,7 @@ struct How {
   bool from_readings = false;  // initial state as a user of the nominal model has it: from the first readings
   bool stepwise = false;       // walks: every step starts from the measured pose
   Random* noise = nullptr;     // walks: process noise
+  bool fit_free = false;       // machines: initial values that the model file leaves free are fitted to the readings
 };
 
 using Simulate = std::function<Series(const Values&, const std::vector<Fault>&, const Recording&, const How&)>;
