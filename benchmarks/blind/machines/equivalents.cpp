@@ -63,7 +63,7 @@ std::vector<Recording> references(const Drawn& drawn, std::size_t k, const Same&
         squares += std::pow((without[j][i] - one.readings[j][i]) / drawn.one.system.noise[j], 2);
     all.emplace_back(squares, std::move(one));
   }
-  std::ranges::stable_sort(all, std::greater<>(), [](const auto& entry) { return entry.first; });
+  std::ranges::sort(all, std::greater<>(), [](const auto& entry) { return entry.first; });
   std::vector<Recording> chosen;
   for (std::size_t i = 0; i < std::min(same.recordings, all.size()); ++i) chosen.push_back(std::move(all[i].second));
   return chosen;
