@@ -236,6 +236,7 @@ plants::Fault fault_of(const Hidden& hidden, std::size_t index) {
   fault.name = hidden.name;
   fault.attached_to = hidden.attached_to;
   fault.also = hidden.also;
+  for (const std::string& place : hidden.multiples) fault.equivalents.emplace_back(hidden.name, place);
   fault.same_formula = hidden.same_formula;
   fault.numbers = hidden.numbers;
   fault.target = static_cast<int>(index);

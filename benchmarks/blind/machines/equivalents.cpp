@@ -89,6 +89,7 @@ std::vector<std::pair<std::string, std::string>> equivalents(const Drawn& drawn,
   std::set<std::pair<std::string, std::string>> found;
   std::set<std::pair<std::string, std::string>> tried{{truth.name, truth.attached_to}};
   for (const std::string& place : truth.also) tried.insert({truth.name, place});
+  for (const std::string& place : truth.multiples) tried.insert({truth.name, place});
   for (const Candidate& candidate : named_candidates(machine)) {
     const bool same_name = candidate.name == truth.name;
     const bool relative =
@@ -107,6 +108,7 @@ std::vector<std::pair<std::string, std::string>> equivalents(const Drawn& drawn,
     if (!(scale * remaining(drawn, hidden, k, reference, same) < same.most_squares)) continue;
     found.emplace(other.name, other.attached_to);
     for (const std::string& place : other.also) found.emplace(other.name, place);
+    for (const std::string& place : other.multiples) found.emplace(other.name, place);
   }
   return {found.begin(), found.end()};
 }
