@@ -221,15 +221,14 @@ std::optional<Drawn> try_machine(Random& random, const Grammar& grammar, Draft d
   return std::nullopt;
 }
 
-// Effects whose strength may be negative.
+}  // namespace
+
 bool is_signed(const std::string& name) {
   static const std::set<std::string> names{"constant_force", "constant_rate",   "sensor_bias",
                                            "sensor_scale",   "sensor_drift",    "input_asymmetry",
                                            "gravity_offset", "parameter_drift", "input_gain"};
   return names.contains(name);
 }
-
-}  // namespace
 
 plants::Fault fault_of(const Hidden& hidden, std::size_t index) {
   Fault fault;

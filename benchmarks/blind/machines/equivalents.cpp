@@ -45,6 +45,16 @@ double remaining(const Drawn& drawn, const std::vector<Hidden>& hidden, std::siz
   return squares;
 }
 
+// The same from either sign of the strength where it has one: what is too much on one side may be too little on
+// another.
+double remaining_from_both(const Drawn& drawn, std::vector<Hidden> hidden, std::size_t k,
+                           std::vector<Recording>& reference, const Same& same) {
+  const double as_drawn = remaining(drawn, hidden, k, reference, same);
+  if (!is_signed(hidden[k].name)) return as_drawn;
+  hidden[k].a = -hidden[k].a;
+  return std::min(as_drawn, remaining(drawn, hidden, k, reference, same));
+}
+
 // Recordings whose readings are what the true machine gives in as many integration steps as will be compared: those in
 // which the effect shows most.
 std::vector<Recording> references(const Drawn& drawn, std::size_t k, const Same& same) {
@@ -105,7 +115,7 @@ std::vector<std::pair<std::string, std::string>> equivalents(const Drawn& drawn,
       other.a = truth.a;
     std::vector<Hidden> hidden = drawn.hidden;
     hidden[k] = other;
-    if (!(scale * remaining(drawn, hidden, k, reference, same) < same.most_squares)) continue;
+    if (!(scale * remaining_from_both(drawn, hidden, k, reference, same) < same.most_squares)) continue;
     found.emplace(other.name, other.attached_to);
     for (const std::string& place : other.also) found.emplace(other.name, place);
     for (const std::string& place : other.multiples) found.emplace(other.name, place);
