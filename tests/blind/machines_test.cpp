@@ -156,6 +156,21 @@ TEST_CASE("a delay of the only input is that of the only sensor, and friction is
   CHECK(friction.empty());
 }
 
+TEST_CASE("a gain of one wheel is the inverse gain of the other, where radius and base are not known") {
+  plants::Random random(8);
+  machines::Draft draft = machines::draw_rover(random, {});
+  for (plants::Parameter& parameter : draft.machine.parameters) parameter.fixed = false;
+  machines::Drawn one;
+  one.machine = std::make_shared<const machines::CompiledMachine>(draft.machine);
+  one.one.system = machines::system_of(random, draft, one.machine);
+  one.one.system.noise = {0.01, 0.01, 0.01};
+  for (plants::Recording& recording : one.one.system.recordings)
+    recording.outliers.assign(3, std::vector<bool>(recording.time.size(), false));
+  one.hidden = {effect("input_gain", "right", Where::input, Law::gain, 1, 0.3)};
+  const auto found = machines::equivalents(one, 0);
+  CHECK(std::ranges::find(found, std::pair<std::string, std::string>("input_gain", "left")) != found.end());
+}
+
 TEST_CASE("initial values that the model file leaves free are those of the readings") {
   machines::Draft draft = oscillator();
   draft.machine.states[0].initial = "free";

@@ -109,3 +109,18 @@ TEST_CASE("answers state probabilities in a list of structures, or beside choice
   CHECK(std::isnan(silent->noise_ratio));
   std::filesystem::remove(file);
 }
+
+TEST_CASE("parameters are compared at the place itself, not with those of an equivalent") {
+  Truth truth = friction_and();
+  truth.effects[0].same_formula = true;
+  truth.effects[0].parameters = {{"level", 2.0}};
+  truth.effects[0].equivalents = {{"coulomb_friction", "duty"}};
+  const auto errors = [&](const std::string& place) {
+    Effect effect{"coulomb_friction", place};
+    effect.parameters = {{"level", 2.2}};
+    return score::compare(truth, naming({effect})).parameter_errors;
+  };
+  REQUIRE(errors("v").size() == 1);
+  CHECK(errors("v")[0] == doctest::Approx(0.1));
+  CHECK(errors("duty").empty());
+}

@@ -221,7 +221,8 @@ std::optional<Drawn> try_machine(Random& random, const Grammar& grammar, Draft d
   return std::nullopt;
 }
 
-// Effects whose strength may be negative.
+}  // namespace
+
 bool is_signed(const std::string& name) {
   static const std::set<std::string> names{"constant_force", "constant_rate",   "sensor_bias",
                                            "sensor_scale",   "sensor_drift",    "input_asymmetry",
@@ -229,13 +230,12 @@ bool is_signed(const std::string& name) {
   return names.contains(name);
 }
 
-}  // namespace
-
 plants::Fault fault_of(const Hidden& hidden, std::size_t index) {
   Fault fault;
   fault.name = hidden.name;
   fault.attached_to = hidden.attached_to;
   fault.also = hidden.also;
+  for (const std::string& place : hidden.multiples) fault.equivalents.emplace_back(hidden.name, place);
   fault.same_formula = hidden.same_formula;
   fault.numbers = hidden.numbers;
   fault.target = static_cast<int>(index);

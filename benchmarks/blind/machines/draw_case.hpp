@@ -30,6 +30,9 @@ plants::Fault fault_of(const Hidden& hidden, std::size_t index);
 void set_hidden(plants::System& system, std::shared_ptr<const CompiledMachine> machine,
                 const std::vector<Hidden>& hidden);
 
+/// Whether the strength of an effect may be negative.
+bool is_signed(const std::string& name);
+
 /// All of `hidden` at work whatever faults are given, and the strength of hidden[k] as a last parameter.
 plants::System with_free_strength(const plants::System& system, std::shared_ptr<const CompiledMachine> machine,
                                   const std::vector<Hidden>& hidden, std::size_t k);

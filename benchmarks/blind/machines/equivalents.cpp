@@ -45,6 +45,16 @@ double remaining(const Drawn& drawn, const std::vector<Hidden>& hidden, std::siz
   return squares;
 }
 
+// The same from either sign of the strength where it has one: what is too much on one side may be too little on
+// another.
+double remaining_from_both(const Drawn& drawn, std::vector<Hidden> hidden, std::size_t k,
+                           std::vector<Recording>& reference, const Same& same) {
+  const double as_drawn = remaining(drawn, hidden, k, reference, same);
+  if (!is_signed(hidden[k].name)) return as_drawn;
+  hidden[k].a = -hidden[k].a;
+  return std::min(as_drawn, remaining(drawn, hidden, k, reference, same));
+}
+
 // Recordings whose readings are what the true machine gives in as many integration steps as will be compared: those in
 // which the effect shows most.
 std::vector<Recording> references(const Drawn& drawn, std::size_t k, const Same& same) {
@@ -63,7 +73,7 @@ std::vector<Recording> references(const Drawn& drawn, std::size_t k, const Same&
         squares += std::pow((without[j][i] - one.readings[j][i]) / drawn.one.system.noise[j], 2);
     all.emplace_back(squares, std::move(one));
   }
-  std::ranges::stable_sort(all, std::greater<>(), [](const auto& entry) { return entry.first; });
+  std::ranges::sort(all, std::greater<>(), [](const auto& entry) { return entry.first; });
   std::vector<Recording> chosen;
   for (std::size_t i = 0; i < std::min(same.recordings, all.size()); ++i) chosen.push_back(std::move(all[i].second));
   return chosen;
@@ -89,6 +99,7 @@ std::vector<std::pair<std::string, std::string>> equivalents(const Drawn& drawn,
   std::set<std::pair<std::string, std::string>> found;
   std::set<std::pair<std::string, std::string>> tried{{truth.name, truth.attached_to}};
   for (const std::string& place : truth.also) tried.insert({truth.name, place});
+  for (const std::string& place : truth.multiples) tried.insert({truth.name, place});
   for (const Candidate& candidate : named_candidates(machine)) {
     const bool same_name = candidate.name == truth.name;
     const bool relative =
@@ -104,9 +115,10 @@ std::vector<std::pair<std::string, std::string>> equivalents(const Drawn& drawn,
       other.a = truth.a;
     std::vector<Hidden> hidden = drawn.hidden;
     hidden[k] = other;
-    if (!(scale * remaining(drawn, hidden, k, reference, same) < same.most_squares)) continue;
+    if (!(scale * remaining_from_both(drawn, hidden, k, reference, same) < same.most_squares)) continue;
     found.emplace(other.name, other.attached_to);
     for (const std::string& place : other.also) found.emplace(other.name, place);
+    for (const std::string& place : other.multiples) found.emplace(other.name, place);
   }
   return {found.begin(), found.end()};
 }

@@ -155,9 +155,10 @@ enum class Law {
 
 /// One piece of hidden physics at its place.
 struct Hidden {
-  std::string name;         // of the effect as the library calls it, or "outside: ..."
-  std::string attached_to;  // name of the place
-  std::vector<std::string> also = {};
+  std::string name;                         // of the effect as the library calls it, or "outside: ..."
+  std::string attached_to;                  // name of the place
+  std::vector<std::string> also = {};       // other names of the place
+  std::vector<std::string> multiples = {};  // places where it is the same with another strength
   Where where = Where::speed;
   Law law = Law::viscous;
   int target = 0;                     // state, input, signal, output or parameter

@@ -72,7 +72,7 @@ void generate(const Options& options) {
     machines::Drawn drawn =
         machines::draw_case(random, options.grammar, random.choice(machines::families()), planned[i]);
     for (std::size_t k = 0; k < drawn.hidden.size() && drawn.one.kind != plants::Kind::outside; ++k)
-      drawn.one.faults[k].equivalents = machines::equivalents(drawn, k);
+      for (auto& other : machines::equivalents(drawn, k)) drawn.one.faults[k].equivalents.push_back(std::move(other));
     char name[32];
     std::snprintf(name, sizeof name, "case_%04zu", i + 1);
     drawn.one.name = name;

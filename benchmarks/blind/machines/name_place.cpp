@@ -38,10 +38,10 @@ void name_place(Hidden& one, const Machine& machine, Where where) {
     one.attached_to = machine.parameters[t].name;
   }
   for (const Input& input : machine.inputs)
-    if (group > 0 && input.group == group) one.also.push_back(input.name);
+    if (group > 0 && input.group == group) one.multiples.push_back(input.name);
   for (const Signal& signal : machine.signals)
-    if (group > 0 && signal.group == group) one.also.push_back(signal.name);
-  std::erase(one.also, one.attached_to);
+    if (group > 0 && signal.group == group) one.multiples.push_back(signal.name);
+  std::erase(one.multiples, one.attached_to);
 }
 
 }  // namespace machines

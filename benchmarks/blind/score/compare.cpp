@@ -89,7 +89,7 @@ std::vector<double> parameter_errors(const Effects& named, const Effects& truth)
   std::vector<double> errors;
   for (const Effect& t : truth) {
     const Effect* found = find(named, t.name);
-    if (!t.same_formula || found == nullptr || !right_place(*found, t)) continue;
+    if (!t.same_formula || found == nullptr || is_equivalent(*found, t) || !right_place(*found, t)) continue;
     for (const auto& [name, value] : t.parameters) {
       const double* estimate = value_of(*found, name);
       if (estimate != nullptr && value != 0) errors.push_back(std::abs(*estimate - value) / std::abs(value));
