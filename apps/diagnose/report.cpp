@@ -30,7 +30,7 @@ std::string tile(const std::string& value, const std::string& what) {
 std::string verdict_part(const Diagnosis& d) {
   std::string html = "<header class=\"verdict " + verdict_text(d.verdict) + "\">\n<p class=\"model\">Diagnosis of " +
                      escaped(d.model) + "</p>\n" + element("h1", headline(d.verdict)) + "\n";
-  if (!d.complete) html += "<p><strong>Interrupted: this is what was known by then.</strong></p>\n";
+  if (!d.complete) html += "<p><strong>The search was stopped, or ran out of its budget: this is what was known by then.</strong></p>\n";
   if (!d.sentence.empty()) html += "<p class=\"lead\">" + escaped(d.sentence) + "</p>\n";
   html += "</header>\n<div class=\"tiles\">\n";
   const bool effects = !d.effects.empty();

@@ -54,6 +54,8 @@ std::string headline(surefoot::Verdict verdict) {
       return "Only the parameters were off";
     case surefoot::Verdict::missing_physics:
       return "Physics is missing";
+    case surefoot::Verdict::unfinished:
+      return "The search was not finished";
     case surefoot::Verdict::unexplained:
       break;
   }

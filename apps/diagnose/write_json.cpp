@@ -178,6 +178,8 @@ std::string verdict_text(surefoot::Verdict verdict) {
       return "parameters-only";
     case surefoot::Verdict::missing_physics:
       return "missing-physics";
+    case surefoot::Verdict::unfinished:
+      return "search-not-finished";
     case surefoot::Verdict::unexplained:
       break;
   }
@@ -191,6 +193,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
       {"complete", diagnosis.complete},
       {"verdict", verdict_text(diagnosis.verdict)},
       {"sentence", diagnosis.sentence},
+      {"noise_ratio", finite_or_null(diagnosis.noise_ratio)},
       {"recordings", {{"fit", diagnosis.fit}, {"select", diagnosis.select}, {"test", diagnosis.held_out}}},
       {"parameters", parameters_json(diagnosis.parameters)},
       {"augmented_parameters", parameters_json(diagnosis.augmented_parameters)},

@@ -16,7 +16,8 @@ enum class Verdict : std::uint8_t {
   adequate,         // no significant mismatch, even with the nominal parameters
   parameters_only,  // calibration removes it
   missing_physics,  // named effects remove it
-  unexplained       // a significant mismatch remains that no effect models
+  unexplained,      // a significant mismatch remains that no effect models
+  unfinished        // the search ended before its time: stopped, or out of its budget
 };
 
 /// An estimate with its 95 % interval.
@@ -128,7 +129,7 @@ struct ForestResidual {
 
 struct Diagnosis {
   std::string model;
-  bool complete = true;  // false: interrupted
+  bool complete = true;  // false: the search was stopped, or ran out of its budget
   Verdict verdict = Verdict::adequate;
   std::string sentence;
   std::vector<std::string> fit, select, held_out;  // names of recordings
@@ -151,7 +152,8 @@ struct Diagnosis {
   double held_out_before = 0, held_out_after = 0;
   double held_out_forest = std::numeric_limits<double>::quiet_NaN();  // a forest on residuals instead of effects
   ForestResidual forest_residual;
-  double noise_floor = std::numeric_limits<double>::quiet_NaN();
+  double noise_floor = std::numeric_limits<double>::quiet_NaN();  // NaN: cannot be told
+  double noise_ratio = std::numeric_limits<double>::quiet_NaN();  // held_out_after / noise_floor; NaN: the same
   double gain_low = 0, gain_high = 0;  // 95 % interval of held_out_after / held_out_before over recordings
   std::vector<RecordingFit> per_recording;
   std::vector<Curve> curves;

@@ -147,9 +147,10 @@ SUREFOOT_INLINE std::vector<Variable> variables_of(const BoundSimulator& bound, 
       const auto& parameters = hypothesis.effects[e].effect->parameters;
       for (std::size_t k = 0; k < parameters.size(); ++k) {
         const double unit = measure_size(bound, hypothesis.effects[e], parameters[k].measure);
-        const double low = parameters[k].low * unit, high = parameters[k].high * unit;
+        const double value = hypothesis.values[e][static_cast<Eigen::Index>(k)], now = std::abs(value);
+        // a value that was given is within its bounds, whatever these recordings show
+        const double low = std::min(parameters[k].low * unit, value), high = std::max(parameters[k].high * unit, value);
         const bool logarithmic = low > 0 && high / low >= logarithmic_range;
-        const double now = std::abs(hypothesis.values[e][static_cast<Eigen::Index>(k)]);
         variables.push_back(
             {Variable::Kind::effect, e, k, low, high, std::max(now, least_scale * (high - low)), logarithmic});
       }

@@ -38,6 +38,7 @@ bool indistinguishable(const Comparison& lead, double chosen_gain, double other_
 /// Effects with the same names at the same places, perhaps in another form.
 bool same_names(const Hypothesis& hypothesis, const Hypothesis& chosen);
 
+/// Effects with their places, in plain text.
 std::string names_of(const Hypothesis& hypothesis);
 
 /// All that might have been chosen instead, best first.

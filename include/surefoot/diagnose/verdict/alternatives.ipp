@@ -70,7 +70,11 @@ SUREFOOT_INLINE bool same_names(const Hypothesis& hypothesis, const Hypothesis& 
 
 SUREFOOT_INLINE std::string names_of(const Hypothesis& hypothesis) {
   std::vector<std::string> names;
-  for (const AttachedEffect& effect : hypothesis.effects) names.push_back(effect.effect->name);
+  for (const AttachedEffect& effect : hypothesis.effects) {
+    std::string name = effect.effect->name;
+    std::ranges::replace(name, '_', ' ');
+    names.push_back(name + " at " + effect.place);
+  }
   return in_list(names);
 }
 

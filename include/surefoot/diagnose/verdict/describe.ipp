@@ -107,27 +107,60 @@ SUREFOOT_INLINE std::string next_experiment(const Hypothesis& chosen, const Hypo
   return text;
 }
 
+/// "1.04 times the noise", or nothing where that is unknown.
+SUREFOOT_INLINE std::string against_noise(const Diagnosis& diagnosis) {
+  return std::isfinite(diagnosis.noise_ratio) ? in_digits(diagnosis.noise_ratio) + " times the noise" : "";
+}
+
+/// By how much the error on held-out recordings falls, in how many of them, and what is left of it.
+SUREFOOT_INLINE std::string gain_sentence(const Diagnosis& diagnosis) {
+  const auto better = std::ranges::count_if(diagnosis.per_recording, [](const RecordingFit& one) {
+    return one.after < one.before;
+  });
+  const std::string noise = against_noise(diagnosis);
+  return " With that, the error on held-out recordings falls by " +
+         in_digits(100 * (1 - diagnosis.held_out_after / std::max(diagnosis.held_out_before, never_zero))) + " %" +
+         (noise.empty() ? "" : ", to " + noise) + "; " + std::to_string(better) + " of " +
+         std::to_string(diagnosis.per_recording.size()) + " agree.";
+}
+
+SUREFOOT_INLINE std::string clean_sentence(const Diagnosis& diagnosis, const std::string& parameters) {
+  const std::string noise = against_noise(diagnosis);
+  return "Nothing is missing: with " + parameters + " parameters the model agrees with the recordings" +
+         (noise.empty() ? "." : ", to " + noise + ".");
+}
+
+SUREFOOT_INLINE std::string tie_sentence(const std::vector<std::string>& ties) {
+  constexpr std::size_t most = 3;  // that are told in the sentence; the report has all
+  if (ties.empty()) return "";
+  std::string text = " These recordings cannot tell it from " + ties.front();
+  for (std::size_t i = 1; i < std::min(most, ties.size()); ++i) text += "; or from " + ties[i];
+  return text + (ties.size() > most ? "; or from others." : ".");
+}
+
 SUREFOOT_INLINE std::string verdict_sentence(const Diagnosis& diagnosis, const std::vector<std::string>& ties) {
   std::vector<std::string> effects;
   for (const FoundEffect& effect : diagnosis.effects) effects.push_back(effect.sentence);
-  std::string text;
   switch (diagnosis.verdict) {
     case Verdict::adequate:
-      return "Nothing is missing: with its nominal parameters the model agrees with the recordings.";
+      return clean_sentence(diagnosis, "its nominal");
     case Verdict::parameters_only:
-      return "Nothing is missing: with calibrated parameters the model agrees with the recordings.";
+      return clean_sentence(diagnosis, "calibrated");
     case Verdict::missing_physics:
-      text = "Left out of the model: " + in_list(effects) + ". With that, the error on held-out recordings falls by " +
-             in_digits(100 * (1 - diagnosis.held_out_after / std::max(diagnosis.held_out_before, never_zero))) + " %.";
-      if (!ties.empty()) text += " These recordings cannot tell it from " + in_list(ties) + ".";
-      return text;
+      return "Left out of the model: " + in_list(effects) + "." + gain_sentence(diagnosis) + tie_sentence(ties);
+    case Verdict::unfinished:
+      return "The search was not finished, so that nothing is concluded" +
+             (effects.empty() ? "." : "; the best so far: " + in_list(effects) + "." + gain_sentence(diagnosis));
     case Verdict::unexplained:
       break;
   }
-  text = "The model leaves something out that no known effect explains";
+  std::string text = "The model leaves something out that no known effect explains";
   if (!effects.empty()) text += "; a part of it: " + in_list(effects);
   if (!diagnosis.regions.empty()) text += "; it shows where " + diagnosis.regions.front().rule;
-  return text + ".";
+  text += ".";
+  if (!effects.empty()) return text + gain_sentence(diagnosis) + tie_sentence(ties);
+  const std::string noise = against_noise(diagnosis);
+  return noise.empty() ? text : text + " Its error is " + noise + ".";
 }
 
 }  // namespace surefoot::diagnosis

@@ -36,14 +36,23 @@ double forest_error(const EstimationSetup& setup, const FittedModel& calibrated,
 ForestResidual offer_forest(const EstimationSetup& setup, const FittedModel& chosen, double held_out_before,
                             const Parallel& parallel, std::uint64_t seed, const EvaluationCriteria& criteria = {});
 
+/// Standard deviation of the noise of one output: as stated; or, where it is not, the part of the `residuals` that no
+/// lag predicts, and at least what differs from row to row. Never more than the `error` of the model.
+double output_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings, Eigen::Index output,
+                    const WhitenessTest& residuals, double error);
+
 std::vector<ChannelMismatch> mismatch_by_output(const EstimationSetup& setup, const FittedModels& models);
 
 /// Error that noise alone leaves, in units of `scale` (by output).
 double noise_floor(const std::vector<ChannelMismatch>& outputs, const Eigen::VectorXd& scale);
 
-/// Fills in errors, curves and forests of a diagnosis that has its verdict.
-void evaluate(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis, const Parallel& parallel,
-              std::uint64_t seed, const EvaluationCriteria& criteria = {});
+/// Fills in errors and curves.
+void evaluate_errors(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis, std::uint64_t seed,
+                     const EvaluationCriteria& criteria = {});
+
+/// Fills in what forests do, of a diagnosis that has its verdict.
+void offer_forests(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
+                   const Parallel& parallel, std::uint64_t seed, const EvaluationCriteria& criteria = {});
 
 }  // namespace surefoot::diagnosis
 

@@ -85,6 +85,23 @@ SUREFOOT_INLINE ForestResidual offer_forest(const EstimationSetup& setup, const 
   return offer;
 }
 
+SUREFOOT_INLINE double output_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                    Eigen::Index output, const WhitenessTest& residuals, double error) {
+  constexpr double significance = 0.01;  // of structure in the residuals
+  const double stated = bound.info.outputs[static_cast<std::size_t>(output)].noise;
+  if (stated > 0) return stated;
+  const double structured = residuals.p_value < significance ? std::min(1.0, residuals.share) : 0;
+  const double unpredictable = residuals.rms * std::sqrt(1 - structured);
+  return std::min(std::max(fast_noise(bound, recordings, output), unpredictable), error);
+}
+
+/// The same where noise adds up from row to row: as stated, or as far as it is fast.
+SUREFOOT_INLINE double noise_of_steps(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                      Eigen::Index output, double error) {
+  const double stated = bound.info.outputs[static_cast<std::size_t>(output)].noise;
+  return stated > 0 ? stated : std::min(fast_noise(bound, recordings, output), error);
+}
+
 SUREFOOT_INLINE std::vector<ChannelMismatch> mismatch_by_output(const EstimationSetup& setup,
                                                                 const FittedModels& models) {
   const BoundSimulator& bound = setup.bound;
@@ -109,8 +126,10 @@ SUREFOOT_INLINE std::vector<ChannelMismatch> mismatch_by_output(const Estimation
     channel.rmse_nominal = std::sqrt(sums[0] / count);
     channel.rmse_calibrated = std::sqrt(sums[1] / count);
     channel.rmse_after = std::sqrt(sums[2] / count);
-    const double stated = bound.info.outputs[k].noise;
-    channel.noise = stated > 0 ? stated : std::min(fast_noise(bound, setup.split.training, output), channel.rmse_after);
+    channel.noise =
+        setup.noise == NoiseKind::measurement
+            ? output_noise(bound, setup.split.training, output, models.chosen.by_output[k], channel.rmse_after)
+            : noise_of_steps(bound, setup.split.training, output, channel.rmse_after);
     channel.p_value = models.calibrated.by_output[k].p_value;
     result.push_back(std::move(channel));
   }
@@ -126,9 +145,8 @@ SUREFOOT_INLINE double noise_floor(const std::vector<ChannelMismatch>& outputs, 
   return std::sqrt(squares);
 }
 
-/// Errors of the training and the held-out recordings, and curves of the latter.
-SUREFOOT_INLINE void evaluate_recordings(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
-                                         std::uint64_t seed, const EvaluationCriteria& criteria) {
+SUREFOOT_INLINE void evaluate_errors(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
+                                     std::uint64_t seed, const EvaluationCriteria& criteria) {
   const BoundSimulator& bound = setup.bound;
   const auto& [nominal, calibrated, chosen] = models;
   const auto &held_out = setup.split.held_out, &training = setup.split.training;
@@ -147,20 +165,18 @@ SUREFOOT_INLINE void evaluate_recordings(const EstimationSetup& setup, const Fit
   diagnosis.training_before = error_over_all(bound, training, calibrated.runs.whole_training);
   diagnosis.training_after = error_over_all(bound, training, chosen.runs.whole_training);
   std::tie(diagnosis.gain_low, diagnosis.gain_high) = ratio_interval(before, after, counts, seed, criteria);
+  diagnosis.channels = mismatch_by_output(setup, models);
+  diagnosis.noise_floor = noise_floor(diagnosis.channels, scale);
+  if (setup.noise != NoiseKind::measurement || !(diagnosis.noise_floor > 0)) return;  // noise adds up on the way
+  diagnosis.noise_ratio = diagnosis.held_out_after / diagnosis.noise_floor;
 }
 
-SUREFOOT_INLINE void evaluate(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
-                              const Parallel& parallel, std::uint64_t seed, const EvaluationCriteria& criteria) {
-  evaluate_recordings(setup, models, diagnosis, seed, criteria);
-  if (setup.noise != NoiseKind::final_pose) {
-    diagnosis.held_out_forest = forest_error(setup, models.calibrated, parallel, seed);
-    if (diagnosis.verdict == Verdict::unexplained) {
-      diagnosis.forest_residual =
-          offer_forest(setup, models.chosen, diagnosis.held_out_after, parallel, seed, criteria);
-    }
-  }
-  diagnosis.channels = mismatch_by_output(setup, models);
-  diagnosis.noise_floor = noise_floor(diagnosis.channels, error_scale(setup.bound));
+SUREFOOT_INLINE void offer_forests(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
+                                   const Parallel& parallel, std::uint64_t seed, const EvaluationCriteria& criteria) {
+  if (setup.noise == NoiseKind::final_pose) return;
+  diagnosis.held_out_forest = forest_error(setup, models.calibrated, parallel, seed);
+  if (diagnosis.verdict != Verdict::unexplained) return;
+  diagnosis.forest_residual = offer_forest(setup, models.chosen, diagnosis.held_out_after, parallel, seed, criteria);
 }
 
 }  // namespace surefoot::diagnosis

@@ -4,15 +4,14 @@
 #include <cstdint>
 
 #include "surefoot/diagnose/verdict/fitted_model.hpp"
-#include "surefoot/diagnose/verdict/held_out_check.hpp"
 #include "surefoot/diagnose/verdict/verdict.hpp"
 
 namespace surefoot::diagnosis {
 
-/// `calibration` compares the nominal with the calibrated model. Tests that take long are made only while nothing else
+/// `diagnosis` has its errors already; `calibration` compares the nominal with the calibrated model. Tests that take long are made only while nothing else
 /// says that something is left unexplained.
-VerdictEvidence gather_evidence(const EstimationSetup& setup, const FittedModels& models, const Comparison& calibration,
-                                const VerdictCriteria& verdict, const HeldOutCriteria& held_out,
+VerdictEvidence gather_evidence(const EstimationSetup& setup, const FittedModels& models, const Diagnosis& diagnosis,
+                                const Comparison& calibration, const VerdictCriteria& verdict,
                                 const Parallel& parallel, std::uint64_t seed);
 
 }  // namespace surefoot::diagnosis

@@ -12,8 +12,8 @@
 namespace surefoot::diagnosis {
 
 SUREFOOT_INLINE VerdictEvidence gather_evidence(const EstimationSetup& setup, const FittedModels& models,
-                                                const Comparison& calibration, const VerdictCriteria& verdict,
-                                                const HeldOutCriteria& held_out, const Parallel& parallel,
+                                                const Diagnosis& diagnosis, const Comparison& calibration,
+                                                const VerdictCriteria& verdict, const Parallel& parallel,
                                                 std::uint64_t seed) {
   const auto& [nominal, calibrated, chosen] = models;
   const BoundSimulator& bound = setup.bound;
@@ -21,6 +21,8 @@ SUREFOOT_INLINE VerdictEvidence gather_evidence(const EstimationSetup& setup, co
   VerdictEvidence evidence;
   evidence.noise = setup.noise;
   evidence.effects_found = chosen.hypothesis.effects.size() > calibrated.hypothesis.effects.size();
+  evidence.search_finished = diagnosis.complete;
+  evidence.noise_ratio = diagnosis.noise_ratio;
   evidence.calibration_gain = calibration.gain;
   evidence.calibration_t = calibration.t;
   if (setup.noise == NoiseKind::final_pose) {
@@ -31,12 +33,7 @@ SUREFOOT_INLINE VerdictEvidence gather_evidence(const EstimationSetup& setup, co
   evidence.structure_share = chosen.mismatch.share;
   const double before = calibrated.mismatch.energy;
   evidence.structure_energy = before > 0 ? chosen.mismatch.energy / before : 0;
-  if (setup.noise == NoiseKind::measurement) {
-    const HeldOutExcess excess = held_out_excess(setup, calibrated, chosen, held_out);
-    evidence.held_out_share = excess.share;
-    evidence.held_out_ratio = excess.ratio;
-    return evidence;
-  }
+  if (setup.noise == NoiseKind::measurement) return evidence;
   if (is_unexplained(evidence, verdict)) return evidence;
   const Comparison steps = residual_predictability(bound, chosen.hypothesis, setup.problem, folds, parallel, seed);
   evidence.prediction = {steps.gain, steps.p_value};

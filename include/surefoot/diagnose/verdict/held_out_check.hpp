@@ -10,7 +10,6 @@ namespace surefoot::diagnosis {
 struct HeldOutCriteria {
   double error_ratio = 0.98;        // in the units in which effects were chosen: 2 % less at least
   double whole_error_ratio = 1.02;  // of whole recordings: 2 % more at most, as errors may add up by chance
-  double least_noise = 1e-3;        // of an output's standard deviation, where no noise is stated and none is seen
 };
 
 /// Errors of a model on the held-out recordings.
@@ -35,15 +34,6 @@ struct CheckedChoice {
 /// `calibrated` is the model without effects that `selection` began with.
 CheckedChoice check_on_held_out(const EstimationSetup& setup, const FittedModel& calibrated, const Selection& selection,
                                 const HeldOutCriteria& criteria, const Parallel& parallel);
-
-/// What effects leave of the held-out recordings' squared errors beyond noise.
-struct HeldOutExcess {
-  double share = 0;  // of what there was without them
-  double ratio = 0;  // root mean square, in units of the noise
-};
-
-HeldOutExcess held_out_excess(const EstimationSetup& setup, const FittedModel& calibrated, const FittedModel& chosen,
-                              const HeldOutCriteria& criteria);
 
 }  // namespace surefoot::diagnosis
 

@@ -42,24 +42,4 @@ SUREFOOT_INLINE CheckedChoice check_on_held_out(const EstimationSetup& setup, co
   return none;
 }
 
-SUREFOOT_INLINE HeldOutExcess held_out_excess(const EstimationSetup& setup, const FittedModel& calibrated,
-                                              const FittedModel& chosen, const HeldOutCriteria& criteria) {
-  const BoundSimulator& bound = setup.bound;
-  const auto& held_out = setup.split.held_out;
-  const Eigen::VectorXd before = residual_sizes(bound, held_out, calibrated.runs.held_out);
-  const Eigen::VectorXd after = residual_sizes(bound, held_out, chosen.runs.held_out);
-  const Eigen::VectorXd deviations = output_deviations(bound, held_out);
-  double missed = 0, left = 0, squares = 0;
-  for (Eigen::Index k = 0; k < before.size(); ++k) {
-    const bool stated = bound.info.outputs[static_cast<std::size_t>(k)].noise > 0;
-    const double seen = noise_of(bound, held_out, k);
-    const double noise = stated ? seen : std::max(seen, criteria.least_noise * deviations[k]);
-    const double a = before[k] / noise, b = after[k] / noise;
-    missed += std::max(0.0, a * a - 1);
-    left += std::max(0.0, b * b - 1);
-    squares += b * b / static_cast<double>(before.size());
-  }
-  return {missed > 0 ? left / missed : 0, std::sqrt(squares)};
-}
-
 }  // namespace surefoot::diagnosis

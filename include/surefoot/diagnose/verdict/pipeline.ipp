@@ -114,6 +114,10 @@ SUREFOOT_INLINE Calibration calibrate_model(EstimationSetup& setup, const RunCon
   bound.integration.restart = noise == NoiseKind::process ? 1 : 0;
   if (noise == NoiseKind::measurement) free_measured_initial_states(bound, split.training);
   problem.integration = bound.integration;
+  if (!nominal.effects.empty()) {  // the bounds of their parameters are multiples of these
+    bound.sizes = measure_sizes(bound, nominal, split.training,
+                                simulate_all(bound, nominal, split.training, bound.integration, parallel));
+  }
   Fit calibrated = calibrate(bound, nominal, problem, run.options.starts, run.seed, parallel);
   bound.integration = choose_integration(bound, calibrated.hypothesis, problem.weighting.sigma, bound.integration,
                                          split.training.front());
@@ -242,13 +246,14 @@ SUREFOOT_INLINE void evaluate_selection(const EstimationSetup& setup, const Cali
   const BlockLosses nominal =
       block_losses(setup.bound, training, models.nominal.runs.training, setup.problem.weighting);
   const Comparison calibration_gain = compare_losses(nominal, selection.nominal.cross_validated);
-  diagnosis.verdict =
-      decide(gather_evidence(setup, models, calibration_gain, verdict, held_out, run.parallel, run.seed), verdict);
+  evaluate_errors(setup, models, diagnosis, run.seed);
+  diagnosis.verdict = decide(
+      gather_evidence(setup, models, diagnosis, calibration_gain, verdict, run.parallel, run.seed), verdict);
 
   describe_models(setup, models, choice.selection, run, diagnosis);
   const std::vector<std::string> ties = describe_alternatives(choice.selection, diagnosis);
   std::tie(diagnosis.regions, diagnosis.intervals) = locate_mismatch(setup, calibrated, run.seed);
-  evaluate(setup, models, diagnosis, run.parallel, run.seed);
+  offer_forests(setup, models, diagnosis, run.parallel, run.seed);
   describe_limits(setup, models, problem, candidates, run, diagnosis);
   diagnosis.sentence = verdict_sentence(diagnosis, ties);
   if (diagnosis.verdict == Verdict::unexplained) return;  // what is left of it would pass for noise
@@ -267,7 +272,7 @@ SUREFOOT_INLINE void diagnose_recordings(const BindSimulator& bind, std::vector<
   const SearchProblem problem = search_problem(setup, run);
   const std::vector<AttachedEffect> candidates = candidate_effects(setup, calibration, run);
   const Selection selection = select_effects(setup.bound, calibration.calibrated, problem, candidates, run.parallel);
-  diagnosis.complete = !run.stop.stop_requested();
+  diagnosis.complete = !run.search_has_ended();
 
   run.progress("evaluating", progress_evaluation);
   evaluate_selection(setup, calibration, problem, selection, candidates, run, diagnosis);

@@ -1,6 +1,8 @@
 // The verdict: a decision on plain numbers.
 #pragma once
 
+#include <limits>
+
 #include "surefoot/diagnose/diagnosis.hpp"
 #include "surefoot/diagnose/estimation/noise_regime.hpp"
 
@@ -15,9 +17,8 @@ struct VerdictCriteria {
   double tolerated_share_with_effects = 0.3;  // the same beside effects, whose form is never quite that of the machine
   double tolerated_energy = 0.2;              // of what the calibrated model leaves: effects took the rest
 
-  // Effects leave more than noise of the held-out recordings (whole recordings only):
-  double held_out_share = 0.2;  // of what the calibrated model leaves beyond noise
-  double held_out_ratio = 3;    // root mean square in units of the noise: below, another noise is as likely
+  // Error on held-out recordings against the noise (whole recordings only):
+  double largest_ratio = 1.5;  // root mean square in units of the noise floor: beyond, something else is there
 
   // Tests for walks:
   double sequence_significance = 0.005;     // of final poses that go together
@@ -44,8 +45,8 @@ struct VerdictEvidence {
   double structure_share = 0;    // of the mean square of the output that shows it most
   double structure_energy = 0;   // against that of the calibrated model (ratio)
 
-  double held_out_share = 0;  // see HeldOutExcess
-  double held_out_ratio = 0;
+  bool search_finished = true;
+  double noise_ratio = std::numeric_limits<double>::quiet_NaN();  // as in Diagnosis
 
   double sequence_p_value = 1;
   PredictionEvidence prediction;  // of errors of single steps, from the motion

@@ -16,10 +16,7 @@ SUREFOOT_INLINE bool is_unexplained(const VerdictEvidence& evidence, const Verdi
                           (!evidence.effects_found || evidence.structure_energy > criteria.tolerated_energy);
   if (structured) return true;
 
-  if (evidence.noise == NoiseKind::measurement) {
-    return evidence.effects_found && evidence.held_out_share > criteria.held_out_share &&
-           evidence.held_out_ratio > criteria.held_out_ratio;
-  }
+  if (evidence.noise == NoiseKind::measurement) return evidence.noise_ratio > criteria.largest_ratio;
   const auto predicts = [&](const PredictionEvidence& test) {
     return test.gain > criteria.predictable_gain && test.p_value < criteria.predictable_significance;
   };
@@ -27,6 +24,7 @@ SUREFOOT_INLINE bool is_unexplained(const VerdictEvidence& evidence, const Verdi
 }
 
 SUREFOOT_INLINE Verdict decide(const VerdictEvidence& evidence, const VerdictCriteria& criteria) {
+  if (!evidence.search_finished) return Verdict::unfinished;
   if (is_unexplained(evidence, criteria)) return Verdict::unexplained;
   if (evidence.effects_found) return Verdict::missing_physics;
   const bool parameters_matter =
