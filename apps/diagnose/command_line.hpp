@@ -21,6 +21,7 @@ struct CommandLine {
   double budget = 0;  // [s], 0: none
   std::uint64_t seed = 1;
   std::size_t threads = 0;  // 0: as many as the machine has
+  bool repair = false;  // faults of the log
   bool quiet = false;
 };
 

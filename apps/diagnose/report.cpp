@@ -30,7 +30,7 @@ std::string tile(const std::string& value, const std::string& what) {
 std::string verdict_part(const Diagnosis& d) {
   std::string html = "<header class=\"verdict " + verdict_text(d.verdict) + "\">\n<p class=\"model\">Diagnosis of " +
                      escaped(d.model) + "</p>\n" + element("h1", headline(d.verdict)) + "\n";
-  if (!d.complete) html += "<p><strong>Interrupted: this is what was known by then.</strong></p>\n";
+  if (!d.complete) html += "<p><strong>The search was stopped, or ran out of its budget: this is what was known by then.</strong></p>\n";
   if (!d.sentence.empty()) html += "<p class=\"lead\">" + escaped(d.sentence) + "</p>\n";
   html += "</header>\n<div class=\"tiles\">\n";
   const bool effects = !d.effects.empty();
@@ -46,6 +46,14 @@ std::string verdict_part(const Diagnosis& d) {
          "nor to choose (they may only reject the choice), in units of the noise, or of the standard deviation of the "
          "output where the noise is "
          "unknown.</p>\n";
+}
+
+std::string log_faults_part(const Diagnosis& d) {
+  if (d.log_faults.empty()) return "";
+  std::string html =
+      "<h2>Faults of the log</h2>\n<p>Not of the machine, but they would pass for missing physics:</p>\n<ul>\n";
+  for (const auto& fault : d.log_faults) html += element("li", fault_text(fault)) + "\n";
+  return html + "</ul>\n";
 }
 
 std::string where_part(const Diagnosis& d, const std::string& unit) {
@@ -271,7 +279,7 @@ Report make_report(const Diagnosis& d, const surefoot::SimulatorInfo& info) {
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
       escaped(d.model) + ": " + escaped(headline(d.verdict)) + "</title>\n<style>" + report_style +
-      "</style>\n</head>\n<body>\n<main>\n" + verdict_part(d) +
+      "</style>\n</head>\n<body>\n<main>\n" + verdict_part(d) + log_faults_part(d) +
       where_part(d, info.kind == surefoot::SimulatorKind::ode ? " s" : "") + what_part(d) + limits_part(d) +
       curves_part(d, report.pictures) + ranking_part(d) + next_part(d) + forest_part(d.forest_residual) +
       parameters_part(d) + noise_part(d) + remarks_part(d) + "<footer>" +

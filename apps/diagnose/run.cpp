@@ -39,6 +39,7 @@ int run(const surefoot::SimulatorInfo& info, const surefoot_apps::DiagnoseFuncti
   options.held_out_share = line.test_share;
   options.effects = line.effects;
   options.max_effects = line.max_effects;
+  options.repair = line.repair;
   if (line.budget > 0) options.max_seconds = line.budget;
   prepare_folder(line.out);
   example::Interrupt interrupt;
@@ -52,7 +53,7 @@ int run(const surefoot::SimulatorInfo& info, const surefoot_apps::DiagnoseFuncti
   diagnosis.remarks.insert(diagnosis.remarks.begin(), loaded.remarks.begin(), loaded.remarks.end());
   write_results(diagnosis, info, line.out, model);
   if (!line.quiet) print_summary(diagnosis, line.out);
-  return diagnosis.complete ? exit_done : exit_interrupted;
+  return !diagnosis.complete && interrupt.requested() ? exit_interrupted : exit_done;
 }
 
 }  // namespace diagnose_program

@@ -1,6 +1,7 @@
 #include "summary.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "progress.hpp"
@@ -11,8 +12,9 @@ namespace diagnose_program {
 
 std::string summary(const surefoot::Diagnosis& d, const std::filesystem::path& out) {
   std::ostringstream text;
-  text << d.model << ": " << headline(d.verdict) << (d.complete ? "" : " (interrupted, so far)") << '\n';
+  text << d.model << ": " << headline(d.verdict) << (d.complete ? "" : " (so far)") << '\n';
   if (!d.sentence.empty()) text << "  " << d.sentence << '\n';
+  for (const auto& fault : d.log_faults) text << "  log     " << fault_text(fault) << '\n';
   if (!d.regions.empty()) {
     const auto& region = d.regions.front();
     text << "  where   " << region.rule << ": " << percent(region.share_of_excess) << " of the excess error in "
@@ -34,7 +36,9 @@ std::string summary(const surefoot::Diagnosis& d, const std::filesystem::path& o
   if (!d.held_out.empty()) {
     text << "  on " << d.held_out.size() << " held-out recording(s): error " << rounded(d.held_out_before);
     if (!d.effects.empty()) text << " before, " << rounded(d.held_out_after) << " after";
-    text << "; forest " << rounded(d.held_out_forest) << ", noise floor " << rounded(d.noise_floor) << '\n';
+    text << "; forest " << rounded(d.held_out_forest) << ", noise floor " << rounded(d.noise_floor);
+    if (std::isfinite(d.noise_ratio)) text << " (" << rounded(d.noise_ratio) << " times it is left)";
+    text << '\n';
   }
   if (d.forest_residual.kept) {
     text << "  offered  " << residual_file << ", a forest that corrects what is simulated: error "

@@ -40,6 +40,12 @@ std::string effects_text(const std::vector<std::pair<std::string, std::string>>&
   return text.empty() ? "no effect" : text;
 }
 
+std::string fault_text(const surefoot::LogFault& fault) {
+  if (fault.repaired) return fault.sentence + " (repaired for this diagnosis)";
+  const bool can_be_repaired = fault.kind != "odd_recording";
+  return fault.sentence + "; " + fault.cure + (can_be_repaired ? ", or run again with --repair" : "");
+}
+
 std::string headline(surefoot::Verdict verdict) {
   switch (verdict) {
     case surefoot::Verdict::adequate:

@@ -24,6 +24,9 @@ std::string p_text(double p);
 /// "coulomb_friction at omega + input_delay at goal".
 std::string effects_text(const std::vector<std::pair<std::string, std::string>>& effects);
 
+/// A fault of the log with its cure, in one sentence.
+std::string fault_text(const surefoot::LogFault& fault);
+
 /// The verdict as a headline: "Physics is missing".
 std::string headline(surefoot::Verdict verdict);
 

@@ -169,6 +169,21 @@ Json remarks_json(const Diagnosis& diagnosis) {
   return list;
 }
 
+Json log_faults_json(const Diagnosis& diagnosis) {
+  Json list = Json::array();
+  for (const auto& fault : diagnosis.log_faults) {
+    list.push_back({{"kind", fault.kind},
+                    {"recording", fault.recording},
+                    {"channel", fault.channel},
+                    {"size", finite_or_null(fault.size)},
+                    {"unit", fault.unit},
+                    {"sentence", fault.sentence},
+                    {"cure", fault.cure},
+                    {"repaired", fault.repaired}});
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string verdict_text(surefoot::Verdict verdict) {
@@ -212,6 +227,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
       {"fit", fit_json(diagnosis)},
       {"forest_residual", forest_json(diagnosis.forest_residual)},
       {"remarks", remarks_json(diagnosis)},
+      {"log_faults", log_faults_json(diagnosis)},
       {"seconds", finite_or_null(diagnosis.seconds)},
       {"seed", diagnosis.seed}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";  // names of files may be no UTF-8

@@ -53,6 +53,14 @@ TEST_CASE("the JSON holds every key of the schema with the values of the diagnos
   CHECK(fit.at("heldout").at("per_recording").at(1) ==
         json({{"recording", "rec_2.csv"}, {"before", 0.06}, {"after", 0.005}}));
   CHECK(fit.at("heldout").at("rmse_forest") == 0.011);
+  CHECK(result.at("log_faults").at(0) == json({{"kind", "sign_flipped"},
+                                               {"recording", "rec_4.csv"},
+                                               {"channel", "theta_rad"},
+                                               {"size", -1.0},
+                                               {"unit", ""},
+                                               {"sentence", "rec_4.csv: theta_rad has the opposite sign"},
+                                               {"cure", "flip its sign"},
+                                               {"repaired", false}}));
   CHECK(result.at("noise").at(0) ==
         json({{"name", "correlated_noise"},
               {"output", "theta_rad"},

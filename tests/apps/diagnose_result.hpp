@@ -37,6 +37,12 @@ inline surefoot::Diagnosis some_diagnosis() {
   d.fit = {"rec_3.csv", "rec_4.csv"};
   d.select = {"rec_5_with_a_name_that_is_much_longer_than_one_would_wish_for_in_a_narrow_window.csv"};
   d.held_out = {"rec_1.csv", "rec_2.csv"};
+  d.log_faults = {{.kind = "sign_flipped",
+                   .recording = "rec_4.csv",
+                   .channel = "theta_rad",
+                   .size = -1,
+                   .sentence = "rec_4.csv: theta_rad has the opposite sign",
+                   .cure = "flip its sign"}};
   d.remarks = {{"rec_3.csv", "row 12: a single outlier of theta_rad, left out"}};
   d.parameters = {{{"kt", "N m/A", 1.48, 1.45, 1.51}, 1.6}, {{"R", "ohm", 15, 14.8, 15}, 3.6, true}};
   d.augmented_parameters = d.parameters;

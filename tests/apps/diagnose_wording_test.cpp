@@ -2,6 +2,17 @@
 
 #include "apps/diagnose/wording.hpp"
 
+TEST_CASE("a fault of the log is said with its cure, or that it was repaired") {
+  surefoot::LogFault fault{.kind = "sign_flipped"};
+  fault.sentence = "a.csv: y has the opposite sign";
+  fault.cure = "flip its sign";
+  CHECK(diagnose_program::fault_text(fault) ==
+        "a.csv: y has the opposite sign; flip its sign, or run again with --repair");
+  fault.repaired = true;
+  CHECK(diagnose_program::fault_text(fault) == "a.csv: y has the opposite sign (repaired for this diagnosis)");
+  CHECK(diagnose_program::fault_text({.kind = "odd_recording", .sentence = "a", .cure = "b"}) == "a; b");
+}
+
 TEST_CASE("shares are printed without exponents") {
   using diagnose_program::percent;
   CHECK(percent(0.0961) == "9.6 %");

@@ -7,7 +7,7 @@ Headers directly in the folder of an area are its face. Folders below it are roo
 Within an area a layer includes its own and those below, never one above or beside it. Faces named here stand between
 rooms; in forest and motion the face includes rooms and rooms the face, in any order without a circle.
   diagnose   recording, simulator < effects < options, residual_model, diagnosis, text, screening < simulation
-             < estimation < selection beside residual_tests < verdict < the rest of the face
+             < estimation < selection beside residual_tests, log_doctor < verdict < the rest of the face
   forest     evaluate < c, train < shrink
   motion     fit < monitor < plan
 NAME.ipp is a part of NAME.hpp, which alone includes it, at its end and unless SUREFOOT_COMPILED is defined.
@@ -36,7 +36,7 @@ OPTIONAL = ["mpi"]  # has no header of the area, and is not in surefoot.hpp
 LAYERS = {
     "diagnose": [["recording.hpp", "simulator.hpp"], ["effects"],
                  ["options.hpp", "residual_model.hpp", "diagnosis.hpp", "text.hpp", "screening.hpp"], ["simulation"],
-                 ["estimation"], ["selection", "residual_tests"], ["verdict"], ["face"]],
+                 ["estimation"], ["selection", "residual_tests", "log_doctor"], ["verdict"], ["face"]],
     "forest": [["evaluate"], ["c", "train"], ["shrink"]],
     "motion": [["fit"], ["monitor"], ["plan"]],
 }

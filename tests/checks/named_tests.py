@@ -9,8 +9,9 @@ from pathlib import Path
 from cpp_source import finish, headers
 from layers import area_of, is_face, room_of
 
-STAGES = ["simulation", "estimation", "selection", "residual_tests", "verdict"]
+STAGES = ["simulation", "estimation", "log_doctor", "selection", "residual_tests", "verdict"]
 COVERED = {
+    "surefoot/diagnose/log_doctor/criteria.hpp": "diagnose/log_doctor/examine_log_test.cpp",  # thresholds
     "surefoot/diagnose/simulation/augmented_simulator.hpp": "diagnose/simulation/simulation_run_effects_test.cpp",
     "surefoot/diagnose/simulation/integrate.hpp": "diagnose/simulation/simulation_run_test.cpp",  # its order and steps
     "surefoot/diagnose/simulation/rates.hpp": "diagnose/simulation/simulation_run_effects_test.cpp",

@@ -1,6 +1,6 @@
 """No threshold without a name and a reason where a diagnosis is decided: thresholds.py REPOSITORY
 
-In diagnose/verdict and diagnose/selection a number in the body of a function may be 0, 1 or 2 (also negative), a factor
+In diagnose/verdict, diagnose/selection and diagnose/log_doctor a number in the body of a function may be 0, 1 or 2 (also negative), a factor
 of a half, a factor of 100 (a share in percent), a guard against division by zero (1e-300 and smaller), a size in
 brackets, or hexadecimal (the label of a stream of random numbers). Any other stands in a field of a criteria struct or
 in a constexpr, whose line or the comment above it says why it is what it is.
@@ -9,7 +9,7 @@ import sys
 
 from cpp_source import declarations, finish, headers, tokens
 
-ROOMS = ["surefoot/diagnose/verdict/", "surefoot/diagnose/selection/"]
+ROOMS = ["surefoot/diagnose/verdict/", "surefoot/diagnose/selection/", "surefoot/diagnose/log_doctor/"]
 SMALLEST_THRESHOLD = 1e-300
 
 

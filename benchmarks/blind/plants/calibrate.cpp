@@ -14,29 +14,6 @@ double cost(const Column& values) {
   return sum;
 }
 
-// Solves a x = b for symmetric positive a, by elimination with pivots.
-Values solve(std::vector<Values> a, Values b) {
-  const std::size_t n = b.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    std::size_t pivot = i;
-    for (std::size_t r = i + 1; r < n; ++r)
-      if (std::abs(a[r][i]) > std::abs(a[pivot][i])) pivot = r;
-    std::swap(a[i], a[pivot]);
-    std::swap(b[i], b[pivot]);
-    if (a[i][i] == 0) a[i][i] = 1e-30;
-    for (std::size_t r = i + 1; r < n; ++r) {
-      const double share = a[r][i] / a[i][i];
-      for (std::size_t c = i; c < n; ++c) a[r][c] -= share * a[i][c];
-      b[r] -= share * b[i];
-    }
-  }
-  for (std::size_t i = n; i-- > 0;) {
-    for (std::size_t c = i + 1; c < n; ++c) b[i] -= a[i][c] * b[c];
-    b[i] /= a[i][i];
-  }
-  return b;
-}
-
 struct Fit {
   Values parameters;
   double cost = 0;
@@ -93,6 +70,28 @@ Fit fit_from(const System& system, Values parameters, const std::vector<Fault>& 
 
 }  // namespace
 
+Values solve(std::vector<Values> a, Values b) {
+  const std::size_t n = b.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    std::size_t pivot = i;
+    for (std::size_t r = i + 1; r < n; ++r)
+      if (std::abs(a[r][i]) > std::abs(a[pivot][i])) pivot = r;
+    std::swap(a[i], a[pivot]);
+    std::swap(b[i], b[pivot]);
+    if (a[i][i] == 0) a[i][i] = 1e-30;
+    for (std::size_t r = i + 1; r < n; ++r) {
+      const double share = a[r][i] / a[i][i];
+      for (std::size_t c = i; c < n; ++c) a[r][c] -= share * a[i][c];
+      b[r] -= share * b[i];
+    }
+  }
+  for (std::size_t i = n; i-- > 0;) {
+    for (std::size_t c = i + 1; c < n; ++c) b[i] -= a[i][c] * b[c];
+    b[i] /= a[i][i];
+  }
+  return b;
+}
+
 Column residuals(const System& system, const Values& parameters, const std::vector<Fault>& faults,
                  std::span<const Recording> recordings, const How& how) {
   Column all;
@@ -109,6 +108,11 @@ Column residuals(const System& system, const Values& parameters, const std::vect
     }
   }
   return all;
+}
+
+Values calibrate_from(const System& system, const Values& start, const std::vector<Fault>& faults,
+                      std::span<const Recording> recordings, const How& how) {
+  return fit_from(system, start, faults, recordings, how).parameters;
 }
 
 Values calibrate(const System& system, const std::vector<Fault>& faults, std::span<const Recording> recordings,

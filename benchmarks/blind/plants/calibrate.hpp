@@ -12,6 +12,13 @@ namespace plants {
 Column residuals(const System& system, const Values& parameters, const std::vector<Fault>& faults,
                  std::span<const Recording> recordings, const How& how);
 
+/// Solves a x = b for symmetric positive a, by elimination with pivots.
+Values solve(std::vector<Values> a, Values b);
+
+/// Parameters that are not fixed, fitted from these values.
+Values calibrate_from(const System& system, const Values& start, const std::vector<Fault>& faults,
+                      std::span<const Recording> recordings, const How& how);
+
 /// Parameters that are not fixed, from the nominal values and from the true ones; the better fit.
 Values calibrate(const System& system, const std::vector<Fault>& faults, std::span<const Recording> recordings,
                  const How& how);

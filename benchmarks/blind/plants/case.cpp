@@ -76,7 +76,7 @@ void judge(Case& one) {
   for (std::size_t i = 0; i < count; ++i) {
     one.errors.push_back({system.recordings[i].name, i >= fitted,
                           error_of(system, actual, one.faults, all.subspan(i, 1), true_full),
-                          error_of(system, one.calibrated, {}, all.subspan(i, 1), full)});
+                          error_of(system, one.calibrated, {}, all.subspan(i, 1), full), 0});
   }
   if (system.stepwise) {
     const How steps{1, false, true, nullptr};

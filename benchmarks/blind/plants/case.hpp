@@ -17,6 +17,7 @@ struct RecordingError {
   std::string name;
   bool held_out = false;  // not used to calibrate the nominal model
   double actual = 0, calibrated = 0;
+  double actual_with_outliers = 0;  // 0: not computed
 };
 
 struct Case {

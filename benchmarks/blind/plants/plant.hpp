@@ -115,6 +115,7 @@ struct Fault {
   double a = 0, b = 0, c = 0;  // what the formula uses
   bool same_formula = true;
   std::vector<Number> numbers = {};
+  std::vector<std::pair<std::string, std::string>> equivalents = {};  // names and places of which no test could tell it
 };
 
 struct Parameter {
@@ -137,6 +138,7 @@ struct How {
   bool from_readings = false;  // initial state as a user of the nominal model has it: from the first readings
   bool stepwise = false;       // walks: every step starts from the measured pose
   Random* noise = nullptr;     // walks: process noise
+  bool fit_free = false;       // machines: initial values that the model file leaves free are fitted to the readings
 };
 
 using Simulate = std::function<Series(const Values&, const std::vector<Fault>&, const Recording&, const How&)>;

@@ -40,6 +40,8 @@ std::string csv(const System& system, const Recording& recording) {
 
 nlohmann::ordered_json effect_json(const Fault& fault, double strength) {
   nlohmann::ordered_json json{{"name", fault.name}, {"attached_to", fault.attached_to}, {"also_accepted", fault.also}};
+  for (const auto& [name, place] : fault.equivalents)
+    json["equivalents"].push_back({{"name", name}, {"attached_to", place}});
   json["same_formula"] = fault.same_formula;
   json["strength_alone"] = strength;
   json["parameters"] = nlohmann::ordered_json::array();
@@ -59,6 +61,7 @@ void write_case(const Case& one, const std::filesystem::path& folder) {
 
 void write_truth(const Case& one, const std::filesystem::path& file) {
   nlohmann::ordered_json json{{"schema", "surefoot.truth/1"}, {"case", one.name}, {"family", one.system.family}};
+  json["machine"] = one.system.model_name;
   json["kind"] = name_of(one.kind);
   json["effects"] = nlohmann::ordered_json::array();
   for (std::size_t k = 0; k < one.faults.size(); ++k) {
@@ -95,6 +98,8 @@ void write_truth(const Case& one, const std::filesystem::path& file) {
                                      {"held_out", error.held_out},
                                      {"true_model_rmse", error.actual},
                                      {"calibrated_nominal_rmse", error.calibrated}});
+    if (error.actual_with_outliers > 0)
+      json["per_recording"].back()["true_model_rmse_with_outliers"] = error.actual_with_outliers;
   }
   write_text(file, json.dump(1) + "\n");
 }

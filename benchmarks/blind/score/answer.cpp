@@ -30,8 +30,10 @@ double number(const Json& json, const char* key) {
 Effect read_effect(const Json& json) {
   Effect effect;
   effect.name = json.at("name");
-  effect.attached_to = json.value("attached_to", "");
+  effect.attached_to = json.value("attached_to", json.value("place", ""));
   effect.also_accepted = json.value("also_accepted", std::vector<std::string>{});
+  for (const Json& one : json.value("equivalents", Json::array()))
+    effect.equivalents.emplace_back(one.at("name"), one.at("attached_to"));
   effect.same_formula = json.value("same_formula", false);
   for (const Json& one : json.value("parameters", Json::array()))
     effect.parameters[one.at("name")] = number(one, "value");
@@ -66,14 +68,40 @@ Truth read_truth(const std::filesystem::path& file) {
   truth.strength = json.at("strength");
   for (const Json& one : json.at("per_recording")) {
     truth.rmse[one.at("recording")] = one.at("true_model_rmse");
+    truth.floor[one.at("recording")] =
+        one.value("true_model_rmse_with_outliers", one.at("true_model_rmse").get<double>());
     truth.calibrated[one.at("recording")] = one.at("calibrated_nominal_rmse");
   }
   return truth;
 }
 
+// Probabilities of whole structures: of a list of their own or, without one, beside the effects of choice and
+// alternatives.
+std::vector<Stated> read_structures(const Json& json) {
+  std::vector<Stated> structures;
+  const auto add = [&](const Json& effects, double probability) {
+    if (std::isfinite(probability)) structures.push_back({read_effects(effects), probability});
+  };
+  for (const Json& one : json.value("structures", Json::array()))
+    add(one.value("effects", Json::array()), number(one, "probability"));
+  if (!structures.empty()) return structures;
+  const auto of_effects = [](const Json& effects) {
+    return effects.empty() ? std::numeric_limits<double>::quiet_NaN() : number(effects[0], "probability");
+  };
+  add(json.at("effects"), of_effects(json.at("effects")));
+  for (const Json& one : json.value("alternatives", Json::array())) {
+    const double own = number(one, "probability");
+    add(one.at("effects"), std::isfinite(own) ? own : of_effects(one.at("effects")));
+  }
+  return structures;
+}
+
 Answer understand(const Json& json) {
   Answer answer;
   answer.verdict = json.at("verdict");
+  std::ranges::replace(answer.verdict, '_', '-');
+  answer.structures = read_structures(json);
+  answer.noise_ratio = number(json, "noise_ratio");
   answer.effects = read_effects(json.at("effects"));
   for (const Json& one : json.value("alternatives", Json::array())) {
     answer.alternatives.push_back({read_effects(one.at("effects")), one.value("indistinguishable", false)});

@@ -15,19 +15,40 @@ const Effect* find(const Effects& effects, const std::string& name) {
   return at == effects.end() ? nullptr : &*at;
 }
 
+// Another name and place of which no test could tell the hidden effect.
+bool is_equivalent(const Effect& named, const Effect& truth) {
+  return std::ranges::find(truth.equivalents, std::pair(named.name, named.attached_to)) != truth.equivalents.end();
+}
+
+bool right_name(const Effect& named, const Effect& truth) {
+  return named.name == truth.name || is_equivalent(named, truth);
+}
+
 bool any_right(const Effects& named, const Effects& truth) {
-  return std::ranges::any_of(named, [&](const Effect& one) { return find(truth, one.name) != nullptr; });
+  return std::ranges::any_of(named, [&](const Effect& one) {
+    return std::ranges::any_of(truth, [&](const Effect& t) { return right_name(one, t); });
+  });
+}
+
+bool all_right(const Effects& named, const Effects& truth) {
+  return !truth.empty() && std::ranges::all_of(truth, [&](const Effect& t) {
+    return std::ranges::any_of(named, [&](const Effect& one) { return right_name(one, t); });
+  });
 }
 
 bool right_place(const Effect& named, const Effect& truth) {
-  return named.attached_to == truth.attached_to ||
+  return named.attached_to == truth.attached_to || is_equivalent(named, truth) ||
          std::ranges::find(truth.also_accepted, named.attached_to) != truth.also_accepted.end();
+}
+
+bool right_both(const Effect& named, const Effect& truth) {
+  return is_equivalent(named, truth) || (named.name == truth.name && right_place(named, truth));
 }
 
 // Some hidden effect is named at its right place.
 bool any_attached(const Effects& named, const Effects& truth) {
   return std::ranges::any_of(named, [&](const Effect& one) {
-    return std::ranges::any_of(truth, [&](const Effect& t) { return t.name == one.name && right_place(one, t); });
+    return std::ranges::any_of(truth, [&](const Effect& t) { return right_both(one, t); });
   });
 }
 
@@ -68,7 +89,7 @@ std::vector<double> parameter_errors(const Effects& named, const Effects& truth)
   std::vector<double> errors;
   for (const Effect& t : truth) {
     const Effect* found = find(named, t.name);
-    if (!t.same_formula || found == nullptr || !right_place(*found, t)) continue;
+    if (!t.same_formula || found == nullptr || is_equivalent(*found, t) || !right_place(*found, t)) continue;
     for (const auto& [name, value] : t.parameters) {
       const double* estimate = value_of(*found, name);
       if (estimate != nullptr && value != 0) errors.push_back(std::abs(*estimate - value) / std::abs(value));
@@ -105,6 +126,13 @@ double error_ratio(const Truth& truth, const Answer& answer) {
 
 }  // namespace
 
+bool is_right_structure(const Truth& truth, const Effects& effects) {
+  if (truth.kind == "outside" || effects.size() != truth.effects.size()) return false;
+  return std::ranges::all_of(truth.effects, [&](const Effect& t) {
+    return std::ranges::any_of(effects, [&](const Effect& one) { return right_both(one, t); });
+  });
+}
+
 Outcome compare(const Truth& truth, const Answer& answer) {
   Outcome outcome;
   outcome.truth = &truth;
@@ -112,15 +140,16 @@ Outcome compare(const Truth& truth, const Answer& answer) {
   outcome.detected = answer.verdict == "missing-physics" || answer.verdict == "unexplained";
   outcome.error_ratio = error_ratio(truth, answer);
   outcome.parameter_errors = parameter_errors(answer.effects, truth.effects);
-  for (const Effect& one : answer.effects) outcome.superfluous += find(truth.effects, one.name) == nullptr ? 1 : 0;
+  for (const Effect& one : answer.effects) outcome.superfluous += any_right({one}, truth.effects) ? 0 : 1;
 
   const Effects first(answer.effects.begin(), answer.effects.begin() + (answer.effects.empty() ? 0 : 1));
   outcome.named_first = any_right(first, truth.effects);
   outcome.attached = any_attached(answer.effects, truth.effects);
   outcome.named_in_three = any_right(answer.effects, truth.effects);
-  outcome.all_named = !truth.effects.empty() && std::ranges::all_of(truth.effects, [&](const Effect& t) {
-    return find(answer.effects, t.name) != nullptr;
-  });
+  outcome.all_named = all_right(answer.effects, truth.effects);
+  outcome.structure_right = is_right_structure(truth, answer.effects);
+  const double floor = root_mean_square(answer.test, truth.floor) / root_mean_square(answer.test, truth.rmse);
+  outcome.against_noise = answer.verdict != "unexplained" && outcome.error_ratio / floor > unexplained_error;
   for (std::size_t i = 0; i < answer.alternatives.size(); ++i) {
     const Alternative& other = answer.alternatives[i];
     const bool right = any_right(other.effects, truth.effects);
@@ -130,23 +159,23 @@ Outcome compare(const Truth& truth, const Answer& answer) {
     outcome.named_first |= right;
     outcome.named_in_three |= right;
     outcome.attached |= any_attached(other.effects, truth.effects);
-    outcome.all_named |= !truth.effects.empty() && std::ranges::all_of(truth.effects, [&](const Effect& t) {
-      return find(other.effects, t.name) != nullptr;
-    });
+    outcome.all_named |= all_right(other.effects, truth.effects);
+    outcome.structure_right |= is_right_structure(truth, other.effects);
   }
   return outcome;
 }
 
 std::string complaint(const Outcome& outcome) {
   const std::string& kind = outcome.truth->kind;
-  if (kind == "nothing") return outcome.detected ? "false alarm" : "";
+  if (kind == "nothing" && outcome.detected) return "false alarm";
+  if (kind == "nothing") return outcome.against_noise ? "error above the noise" : "";
   if (!outcome.detected) return "not detected";
   if (kind == "outside") return outcome.answer.verdict == "unexplained" ? "" : "misnamed";
   if (outcome.answer.verdict == "unexplained" && outcome.answer.effects.empty()) return "unexplained, but has a name";
   if (!outcome.named_first) return outcome.named_in_three ? "right name not first" : "wrong name";
   if (!outcome.attached) return "wrong place";
   if (kind == "two" && !outcome.all_named) return "second effect not named";
-  return "";
+  return outcome.against_noise ? "error above the noise" : "";
 }
 
 }  // namespace score

@@ -4,19 +4,22 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "compare.hpp"
+#include "reliability.hpp"
 #include "table.hpp"
 
 namespace {
 
 constexpr const char* usage =
-    "usage: concealed_score --cases DIR --results [NAME=]DIR [--results [NAME=]DIR]...\n"
+    "usage: concealed_score --cases DIR --results [NAME=]DIR [--results [NAME=]DIR]... [--reliability FILE]\n"
     "DIR of --cases is what concealed_plants wrote (with truth/ in it or beside it); each results DIR holds\n"
-    "case_0001/diagnosis.json and so on. Details are printed for the first results, one table row for each.\n";
+    "case_0001/diagnosis.json and so on. Details are printed for the first results, one table column for each.\n"
+    "--reliability FILE writes the first results' stated probabilities against shares right, for reliability.gp\n";
 
 struct Method {
   std::string name;
@@ -24,7 +27,7 @@ struct Method {
 };
 
 struct Options {
-  std::filesystem::path truth;
+  std::filesystem::path truth, reliability;
   std::vector<Method> methods;
 };
 
@@ -46,6 +49,8 @@ Options parse(int argc, char** argv) {
       if (!std::filesystem::is_directory(folder)) throw std::invalid_argument("no folder " + folder.string());
       const auto last = std::filesystem::absolute(folder / "").parent_path().filename().string();
       options.methods.push_back({equals == std::string::npos ? last : given.substr(0, equals), folder});
+    } else if (option == "--reliability") {
+      options.reliability = given;
     } else {
       throw std::invalid_argument("unknown option " + option);
     }
@@ -63,6 +68,15 @@ std::vector<score::Outcome> outcomes_of(const std::vector<score::Truth>& truths,
   return outcomes;
 }
 
+// Nothing where no probabilities are stated.
+void write_reliability(const std::filesystem::path& file, const std::vector<score::Outcome>& outcomes) {
+  const auto statements = score::statements_of(outcomes);
+  if (file.empty() || statements.empty()) return;
+  std::ofstream stream(file);
+  stream << score::reliability_data(score::bins_of(statements));
+  if (!stream.flush()) throw std::runtime_error("cannot write " + file.string() + ": is there space and permission?");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -72,7 +86,10 @@ int main(int argc, char** argv) {
     std::vector<score::Summary> summaries;
     for (const Method& method : options.methods) {
       const std::vector<score::Outcome> outcomes = outcomes_of(truths, method);
-      if (summaries.empty()) score::print_details(outcomes);
+      if (summaries.empty()) {
+        score::print_details(outcomes);
+        write_reliability(options.reliability, outcomes);
+      }
       summaries.push_back(score::summarize(method.name, outcomes, truths.size()));
     }
     score::print_summaries(summaries);

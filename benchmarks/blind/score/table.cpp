@@ -7,6 +7,8 @@
 #include <map>
 #include <set>
 
+#include "reliability.hpp"
+
 namespace score {
 namespace {
 
@@ -116,6 +118,8 @@ Summary summarize(const std::string& method, const std::vector<Outcome>& outcome
       summary.unexplained.add(outcome.answer.verdict == "unexplained");
       summary.misnamed.add(outcome.answer.verdict == "missing-physics");
     }
+    if (kind != "outside") summary.structure.add(outcome.structure_right);
+    if (std::isfinite(outcome.error_ratio)) summary.against_noise.add(outcome.against_noise);
     if (kind != "one" && kind != "two") continue;
     summary.detected.add(outcome.detected);
     summary.named_first.add(outcome.named_first);
@@ -130,6 +134,9 @@ Summary summarize(const std::string& method, const std::vector<Outcome>& outcome
     ratios.push_back(outcome.error_ratio);
     sizes.push_back(outcome.class_size);
   }
+  const std::vector<Statement> statements = statements_of(outcomes);
+  summary.stated = statements.size();
+  summary.calibration_error = expected_calibration_error(bins_of(statements));
   for (double size : sizes) summary.class_size += size / static_cast<double>(sizes.size());
   summary.parameter_error = median(errors);
   summary.error_ratio = median(ratios);
@@ -170,6 +177,10 @@ void print_summaries(const std::vector<Summary>& summaries) {
   row("outside the library: unexplained", ">= 80 %", [](const Summary& s) { return percent(s.unexplained); });
   row("outside the library: misnamed", "<= 10 %", [](const Summary& s) { return percent(s.misnamed); });
   row("final poses only: four planar effects", ">= 80 %", [](const Summary& s) { return percent(s.final_poses); });
+  row("structure right, first or in the class", "", [](const Summary& s) { return percent(s.structure); });
+  row("called explained above 1.5 x the noise", "0 %", [](const Summary& s) { return percent(s.against_noise); });
+  row("probabilities stated", "", [](const Summary& s) { return std::to_string(s.stated); });
+  row("expected calibration error", "", [](const Summary& s) { return decimal(s.calibration_error, "%.3f"); });
   row("seconds, median", "", [](const Summary& s) { return decimal(s.seconds, "%.2f"); });
   row("seconds, most", "", [](const Summary& s) { return decimal(s.seconds_most, "%.1f"); });
 }

@@ -19,11 +19,15 @@ struct Summary {
   std::string method;
   std::size_t done = 0, cases = 0;
   Share false_alarm, detected, named_first, named_in_three, attached, both_named, no_superfluous;
-  Share unexplained, misnamed;  // cases outside the library
-  Share final_poses;            // walks with final poses only: the four planar effects named first
-  double class_size = 0;        // mean over cases with one or two effects
-  double parameter_error = 0;   // median, relative
-  double error_ratio = 0;       // median
+  Share unexplained, misnamed;   // cases outside the library
+  Share structure;               // cases with nothing, one or two effects
+  Share against_noise;           // all cases whose held-out error is known
+  std::size_t stated = 0;        // probabilities of structures
+  double calibration_error = 0;  // expected: of these probabilities, against shares
+  Share final_poses;             // walks with final poses only: the four planar effects named first
+  double class_size = 0;         // mean over cases with one or two effects
+  double parameter_error = 0;    // median, relative
+  double error_ratio = 0;        // median
   double seconds = 0, seconds_most = 0;
 };
 

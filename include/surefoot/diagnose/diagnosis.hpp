@@ -94,6 +94,18 @@ struct Remark {
   std::string recording, text;
 };
 
+/// A fault of the log, not of the machine, that would pass for missing physics.
+struct LogFault {
+  std::string kind = {};       // sign_flipped, angle_unit, time_unit, columns_swapped, clock_offset, clock_skew, stuck_sensor,
+                          // clipped, dropped_samples or odd_recording
+  std::string recording = {};  // empty: all
+  std::string channel = {};    // input or output; empty: the time, or all of it
+  double size = 0;        // how much a clock is off, a factor, or how many rows
+  std::string unit = {};
+  std::string sentence = {}, cure = {};
+  bool repaired = false;
+};
+
 /// What the noise of an output is like beyond white and of constant size.
 struct NoiseFinding {
   std::string output, name;  // speed_dependent_noise or correlated_noise
@@ -120,11 +132,12 @@ struct ForestResidual {
 
 struct Diagnosis {
   std::string model;
-  bool complete = true;  // false: interrupted
+  bool complete = true;  // false: the search was stopped, or ran out of its budget
   Verdict verdict = Verdict::adequate;
   std::string sentence;
   std::vector<std::string> fit, select, held_out;  // names of recordings
   std::vector<Remark> remarks;
+  std::vector<LogFault> log_faults;
   std::vector<CalibratedParameter> parameters;  // of the model without effects
   std::vector<CalibratedParameter> augmented_parameters;
   std::vector<std::string> correlated;  // pairs of parameters the recordings hardly separate
@@ -143,8 +156,8 @@ struct Diagnosis {
   double held_out_before = 0, held_out_after = 0;
   double held_out_forest = std::numeric_limits<double>::quiet_NaN();  // a forest on residuals instead of effects
   ForestResidual forest_residual;
-  double noise_floor = std::numeric_limits<double>::quiet_NaN();
-  double noise_ratio = std::numeric_limits<double>::quiet_NaN();  // held_out_after / noise_floor; NaN: cannot be told
+  double noise_floor = std::numeric_limits<double>::quiet_NaN();  // NaN: cannot be told
+  double noise_ratio = std::numeric_limits<double>::quiet_NaN();  // held_out_after / noise_floor; NaN: the same
   double gain_low = 0, gain_high = 0;  // 95 % interval of held_out_after / held_out_before over recordings
   std::vector<RecordingFit> per_recording;
   std::vector<Curve> curves;

@@ -21,6 +21,7 @@ struct DiagnoseOptions {
   std::vector<NamedEffect> known = {};     // part of the model already; their parameters are calibrated with the others
   int max_effects = 4;                     // to combine; 0: calibrates and tests only
   double max_seconds = std::numeric_limits<double>::infinity();  // [s] since the begin, until the search ends
+  bool repair = false;  // repairs faults of the log (Diagnosis::log_faults) before anything is concluded from it
   std::size_t starts = 24;  // points of the global search for the nominal parameters, beside these themselves
   /// Told what is being done, the share of the work done (0..1) and the best so far.
   std::function<void(std::string_view stage, double share, std::string_view best)> on_progress = {};

@@ -57,7 +57,7 @@ TEST_CASE("alternatives are listed from the best on, without other forms of the 
   CHECK(found.list[0].indistinguishable);
   CHECK(found.list[1].effects.front().first == "drift");
   CHECK_FALSE(found.list[1].indistinguishable);
-  CHECK(found.ties == std::vector<std::string>{"delay"});
+  CHECK(found.ties == std::vector<std::string>{"delay at level"});
   CHECK(found.indistinguishable.front().hypothesis.effects.front().effect->name == "delay");
 }
 

@@ -67,6 +67,9 @@ TEST_CASE("every verdict has its sentence") {
   Diagnosis diagnosis;
   diagnosis.held_out_before = 2;
   diagnosis.held_out_after = 0.5;
+  diagnosis.noise_ratio = 1.2;
+  diagnosis.per_recording = {{"a", 3, 0.1}, {"b", 0.6, 0.7}};
+  CHECK(verdict_sentence(diagnosis, {}).ends_with("to 1.2 times the noise."));
   CHECK(verdict_sentence(diagnosis, {}).find("with its nominal parameters") != std::string::npos);
   diagnosis.verdict = Verdict::parameters_only;
   CHECK(verdict_sentence(diagnosis, {"lag"}).find("with calibrated parameters") != std::string::npos);
@@ -75,13 +78,19 @@ TEST_CASE("every verdict has its sentence") {
   diagnosis.effects = {effect};
   diagnosis.verdict = Verdict::missing_physics;
   CHECK(verdict_sentence(diagnosis, {"lag"}) ==
-        "Left out of the model: a leak. With that, the error on held-out recordings falls by 75 %. These recordings "
-        "cannot tell it from lag.");
+        "Left out of the model: a leak. With that, the error on held-out recordings falls by 75 %, to 1.2 times the "
+        "noise; 1 of 2 agree. These recordings cannot tell it from lag.");
   diagnosis.verdict = Verdict::unexplained;
+  diagnosis.noise_ratio = 4;
   diagnosis.regions = {{.rule = "level > 2 m"}};
-  CHECK(verdict_sentence(diagnosis, {"lag"}) ==
+  CHECK(verdict_sentence(diagnosis, {}) ==
         "The model leaves something out that no known effect explains; a part of it: a leak; it shows where level > 2 "
-        "m.");
+        "m. With that, the error on held-out recordings falls by 75 %, to 4 times the noise; 1 of 2 agree.");
+  diagnosis.verdict = Verdict::unfinished;
+  CHECK(verdict_sentence(diagnosis, {}).starts_with("The search was not finished"));
+  diagnosis.effects.clear();
+  diagnosis.verdict = Verdict::unexplained;
+  CHECK(verdict_sentence(diagnosis, {}).ends_with("Its error is 4 times the noise."));
 }
 
 TEST_CASE("the next experiment shows one effect, or the other if it has its own") {

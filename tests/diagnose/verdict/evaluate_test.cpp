@@ -33,13 +33,28 @@ TEST_CASE("the noise floor is that of the outputs in their scales") {
   CHECK(noise_floor(outputs, Vec<2>(0.1, 2)) == doctest::Approx(std::sqrt((9 + 16) / 2.0)));
 }
 
+TEST_CASE("the noise of an output is what no lag predicts, unless it is stated") {
+  EstimationSetup setup = toys::tank_setup(toys::noisy_tanks({}, 0.01));
+  const auto noise = [&](double share, double p) {
+    return output_noise(setup.bound, setup.split.training, 0, {.share = share, .p_value = p, .rms = 0.1}, 0.2);
+  };
+  CHECK(noise(0.75, 1e-6) == doctest::Approx(0.05));
+  CHECK(noise(0.75, 0.5) == doctest::Approx(0.1));   // by chance
+  CHECK(noise(1, 1e-6) == doctest::Approx(0.01).epsilon(0.2));  // what differs from row to row is left
+  CHECK(output_noise(setup.bound, setup.split.training, 0, {.rms = 0.1}, 0.02) == 0.02);  // never more than the error
+  setup.bound.info.outputs[0].noise = 0.03;
+  CHECK(noise(0.75, 1e-6) == 0.03);
+}
+
 TEST_CASE("errors, curves and intervals are those of the held-out recordings") {
   const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(rate, 0.01));
   const FittedModel wrong = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
   const FittedModels models{wrong, wrong, fitted_model(setup, toys::with_effects(setup, rate), serially())};
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::missing_physics;
-  evaluate(setup, models, diagnosis, serially(), 1);
+  evaluate_errors(setup, models, diagnosis, 1);
+  offer_forests(setup, models, diagnosis, serially(), 1);
+  CHECK(diagnosis.noise_ratio == doctest::Approx(1).epsilon(0.2));
   CHECK(diagnosis.held_out_after < 0.2 * diagnosis.held_out_before);
   CHECK(diagnosis.training_after < 0.2 * diagnosis.training_before);
   CHECK(diagnosis.gain_low <= diagnosis.held_out_after / diagnosis.held_out_before);
@@ -66,7 +81,9 @@ ForestResidual offered(double wave, Verdict verdict) {
   const FittedModel model = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
   Diagnosis diagnosis;
   diagnosis.verdict = verdict;
-  evaluate(setup, {model, model, model}, diagnosis, serially(), 1);
+  const FittedModels models{model, model, model};
+  evaluate_errors(setup, models, diagnosis, 1);
+  offer_forests(setup, models, diagnosis, serially(), 1);
   return diagnosis.forest_residual;
 }
 

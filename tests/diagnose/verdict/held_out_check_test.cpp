@@ -51,19 +51,5 @@ TEST_CASE("where nothing was chosen nothing is rejected") {
   CHECK_FALSE(check_on_held_out(setup, calibrated, selection_of(setup, {}), held_out_criteria, serially()).rejected);
 }
 
-TEST_CASE("what effects leave beyond noise is a share of what there was, and counts in units of the noise") {
-  EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(toys::extra_inflow(), 0.01));
-  setup.bound.info.outputs[0].noise = 0.01;
-  const FittedModel calibrated = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
-  const auto excess = [&](double value) {
-    const auto half = toys::with_effects(setup, {{"constant_rate", "level", {}, {}, {value}}});
-    return held_out_excess(setup, calibrated, fitted_model(setup, half, serially()), held_out_criteria);
-  };
-  CHECK(excess(0.2).share < 0.01);
-  CHECK(excess(0.2).ratio == doctest::Approx(1).epsilon(0.1));
-  CHECK(excess(0.1).share == doctest::Approx(0.25).epsilon(0.1));  // half the error, a quarter of its square
-  CHECK(excess(0.1).ratio > 3);
-}
-
 }  // namespace
 }  // namespace surefoot::diagnosis

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
+
 namespace surefoot::diagnosis {
 namespace {
 
@@ -71,20 +73,25 @@ TEST_CASE("where process noise accumulates no more structure is tolerated beside
   CHECK(verdict_on(evidence) == Verdict::unexplained);
 }
 
-TEST_CASE("effects that leave much more than noise of the held-out recordings do not explain them") {
+TEST_CASE("nothing is explained, and nothing is adequate, that is further off than one and a half times the noise") {
   VerdictEvidence evidence;
-  evidence.effects_found = true;
-  evidence.held_out_share = 0.21;
-  evidence.held_out_ratio = 3.1;
-  CHECK(verdict_on(evidence) == Verdict::unexplained);
-  evidence.held_out_ratio = 2.9;
-  CHECK(verdict_on(evidence) == Verdict::missing_physics);
-  evidence.held_out_ratio = 30;
-  evidence.held_out_share = 0.19;
-  CHECK(verdict_on(evidence) == Verdict::missing_physics);
-  evidence.held_out_share = 1;
-  evidence.effects_found = false;  // then there is nothing that should have explained it
-  CHECK(verdict_on(evidence) == Verdict::adequate);
+  for (const bool effects : {false, true}) {
+    evidence.effects_found = effects;
+    evidence.noise_ratio = 1.51;
+    CHECK(verdict_on(evidence) == Verdict::unexplained);
+    evidence.noise_ratio = 1.49;
+    CHECK(verdict_on(evidence) == (effects ? Verdict::missing_physics : Verdict::adequate));
+    evidence.noise_ratio = std::numeric_limits<double>::quiet_NaN();  // unknown: it decides nothing
+    CHECK(verdict_on(evidence) == (effects ? Verdict::missing_physics : Verdict::adequate));
+  }
+}
+
+TEST_CASE("a search that was not finished concludes nothing") {
+  VerdictEvidence evidence;
+  evidence.search_finished = false;
+  CHECK(verdict_on(evidence) == Verdict::unfinished);
+  evidence.noise_ratio = 60;
+  CHECK(verdict_on(evidence) == Verdict::unfinished);
 }
 
 TEST_CASE("steps whose errors can be predicted, from the motion or by place, are unexplained") {

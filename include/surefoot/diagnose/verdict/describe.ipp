@@ -119,10 +119,9 @@ SUREFOOT_INLINE std::string next_experiment(const Hypothesis& chosen, const Hypo
   return text;
 }
 
-/// "1.04 times the noise".
+/// "1.04 times the noise", or nothing where that is unknown.
 SUREFOOT_INLINE std::string against_noise(const Diagnosis& diagnosis) {
-  if (!std::isfinite(diagnosis.noise_ratio)) return "";
-  return in_digits(diagnosis.noise_ratio) + " times the noise";
+  return std::isfinite(diagnosis.noise_ratio) ? in_digits(diagnosis.noise_ratio) + " times the noise" : "";
 }
 
 /// Recordings that are further off than noise explains, in a sentence of their own.
@@ -140,10 +139,11 @@ SUREFOOT_INLINE std::string beyond_noise_sentence(const Diagnosis& diagnosis) {
          (count > most ? ", ..." : "") + ".";
 }
 
-/// By how much the error on held-out recordings falls, and in how many of them.
+/// By how much the error on held-out recordings falls, in how many of them, and what is left of it.
 SUREFOOT_INLINE std::string gain_sentence(const Diagnosis& diagnosis) {
-  std::size_t better = 0;
-  for (const RecordingFit& one : diagnosis.per_recording) better += one.after < one.before ? 1 : 0;
+  const auto better = std::ranges::count_if(diagnosis.per_recording, [](const RecordingFit& one) {
+    return one.after < one.before;
+  });
   const std::string noise = against_noise(diagnosis);
   return " With that, the error on held-out recordings falls by " +
          in_digits(100 * (1 - diagnosis.held_out_after / std::max(diagnosis.held_out_before, never_zero))) + " %" +
@@ -157,36 +157,38 @@ SUREFOOT_INLINE std::string clean_sentence(const Diagnosis& diagnosis, const std
          (noise.empty() ? "." : ", to " + noise + ".");
 }
 
+SUREFOOT_INLINE std::string tie_sentence(const std::vector<std::string>& ties) {
+  constexpr std::size_t most = 3;  // that are told in the sentence; the report has all
+  if (ties.empty()) return "";
+  std::string text = " These recordings cannot tell it from " + ties.front();
+  for (std::size_t i = 1; i < std::min(most, ties.size()); ++i) text += "; or from " + ties[i];
+  return text + (ties.size() > most ? "; or from others." : ".");
+}
+
 SUREFOOT_INLINE std::string verdict_sentence(const Diagnosis& diagnosis, const std::vector<std::string>& ties) {
   constexpr std::size_t most_ties = 3;  // that are told in the sentence; the report has all
   std::vector<std::string> effects;
   for (const FoundEffect& effect : diagnosis.effects) effects.push_back(effect.sentence);
-  std::string tied;
-  if (!ties.empty()) {
-    std::vector<std::string> told(ties.begin(), ties.begin() + static_cast<std::ptrdiff_t>(std::min(most_ties, ties.size())));
-    tied = " These recordings cannot tell it from: " + told.front();
-    for (std::size_t i = 1; i < told.size(); ++i) tied += "; or " + told[i];
-    tied += ties.size() > told.size() ? "; and others." : ".";
-  }
-  std::string text;
   switch (diagnosis.verdict) {
     case Verdict::adequate:
       return clean_sentence(diagnosis, "its nominal");
     case Verdict::parameters_only:
       return clean_sentence(diagnosis, "calibrated");
     case Verdict::missing_physics:
-      return "Left out of the model: " + in_list(effects) + "." + gain_sentence(diagnosis) + tied;
+      return "Left out of the model: " + in_list(effects) + "." + gain_sentence(diagnosis) + tie_sentence(ties);
     case Verdict::unfinished:
       return "The search was not finished, so that nothing is concluded" +
              (effects.empty() ? "." : "; the best so far: " + in_list(effects) + "." + gain_sentence(diagnosis));
     case Verdict::unexplained:
       break;
   }
-  text = "The model leaves something out that no known effect explains";
-  if (!effects.empty()) return text + "; a part of it: " + in_list(effects) + "." + gain_sentence(diagnosis) + tied;
+  std::string text = "The model leaves something out that no known effect explains";
+  if (!effects.empty()) text += "; a part of it: " + in_list(effects);
   if (!diagnosis.regions.empty()) text += "; it shows where " + diagnosis.regions.front().rule;
+  text += ".";
+  if (!effects.empty()) return text + gain_sentence(diagnosis) + beyond_noise_sentence(diagnosis) + tie_sentence(ties);
   const std::string noise = against_noise(diagnosis);
-  return text + (noise.empty() ? "." : ". Its error is " + noise + ".") + beyond_noise_sentence(diagnosis);
+  return text + (noise.empty() ? "" : " Its error is " + noise + ".") + beyond_noise_sentence(diagnosis);
 }
 
 }  // namespace surefoot::diagnosis

@@ -49,8 +49,8 @@ std::vector<ChannelMismatch> mismatch_by_output(const EstimationSetup& setup, co
 double noise_floor(const std::vector<ChannelMismatch>& outputs, const Eigen::VectorXd& scale);
 
 /// Fills in errors and curves.
-void evaluate_errors(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
-                     std::uint64_t seed, const EvaluationCriteria& criteria = {});
+void evaluate_errors(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis, std::uint64_t seed,
+                     const EvaluationCriteria& criteria = {});
 
 /// Fills in what forests do, of a diagnosis that has its verdict.
 void offer_forests(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,

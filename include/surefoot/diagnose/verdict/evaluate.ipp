@@ -105,6 +105,13 @@ SUREFOOT_INLINE double output_noise(const BoundSimulator& bound, const std::vect
   return std::min(std::max(fast_noise(bound, recordings, output), unpredictable), error);
 }
 
+/// The same where noise adds up from row to row: as stated, or as far as it is fast.
+SUREFOOT_INLINE double noise_of_steps(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                      Eigen::Index output, double error) {
+  const double stated = bound.info.outputs[static_cast<std::size_t>(output)].noise;
+  return stated > 0 ? stated : std::min(fast_noise(bound, recordings, output), error);
+}
+
 SUREFOOT_INLINE std::vector<ChannelMismatch> mismatch_by_output(const EstimationSetup& setup,
                                                                 const FittedModels& models) {
   const BoundSimulator& bound = setup.bound;
@@ -129,7 +136,10 @@ SUREFOOT_INLINE std::vector<ChannelMismatch> mismatch_by_output(const Estimation
     channel.rmse_nominal = std::sqrt(sums[0] / count);
     channel.rmse_calibrated = std::sqrt(sums[1] / count);
     channel.rmse_after = std::sqrt(sums[2] / count);
-    channel.noise = output_noise(bound, setup.split.training, output, models.chosen.by_output[k], channel.rmse_after);
+    channel.noise =
+        setup.noise == NoiseKind::measurement
+            ? output_noise(bound, setup.split.training, output, models.chosen.by_output[k], channel.rmse_after)
+            : noise_of_steps(bound, setup.split.training, output, channel.rmse_after);
     channel.p_value = models.calibrated.by_output[k].p_value;
     result.push_back(std::move(channel));
   }
@@ -192,6 +202,8 @@ SUREFOOT_INLINE void evaluate_errors(const EstimationSetup& setup, const FittedM
   std::tie(diagnosis.gain_low, diagnosis.gain_high) = ratio_interval(before, after, counts, seed, criteria);
   diagnosis.channels = mismatch_by_output(setup, models);
   diagnosis.noise_floor = noise_floor(diagnosis.channels, scale);
+  if (setup.noise != NoiseKind::measurement || !(diagnosis.noise_floor > 0)) return;  // noise adds up on the way
+  diagnosis.noise_ratio = diagnosis.held_out_after / diagnosis.noise_floor;
 }
 
 SUREFOOT_INLINE void offer_forests(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,

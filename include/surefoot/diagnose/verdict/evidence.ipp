@@ -14,14 +14,18 @@
 namespace surefoot::diagnosis {
 
 SUREFOOT_INLINE VerdictEvidence gather_evidence(const EstimationSetup& setup, const FittedModels& models,
-                                                const Comparison& calibration, const VerdictCriteria& verdict,
-                                                const Parallel& parallel, std::uint64_t seed) {
+                                                const Diagnosis& diagnosis, const Comparison& calibration,
+                                                const VerdictCriteria& verdict, const Parallel& parallel,
+                                                std::uint64_t seed) {
   const auto& [nominal, calibrated, chosen] = models;
   const BoundSimulator& bound = setup.bound;
   const auto& folds = setup.split.folds;
   VerdictEvidence evidence;
   evidence.noise = setup.noise;
   evidence.effects_found = chosen.hypothesis.effects.size() > calibrated.hypothesis.effects.size();
+  evidence.search_finished = diagnosis.complete;
+  evidence.noise_ratio = diagnosis.noise_ratio;
+  for (const RecordingFit& one : diagnosis.per_recording) evidence.recordings_beyond_noise += one.beyond_noise ? 1 : 0;
   evidence.calibration_gain = calibration.gain;
   evidence.calibration_t = calibration.t;
   if (setup.noise == NoiseKind::final_pose) {
@@ -42,18 +46,13 @@ SUREFOOT_INLINE VerdictEvidence gather_evidence(const EstimationSetup& setup, co
   return evidence;
 }
 
-SUREFOOT_INLINE void add_errors(const EstimationSetup& setup, Diagnosis& diagnosis, const VerdictCriteria& verdict,
-                                VerdictEvidence& evidence) {
-  evidence.search_finished = diagnosis.complete;
-  if (setup.noise != NoiseKind::measurement || !(diagnosis.noise_floor > 0)) return;  // noise adds up on the way
-  diagnosis.noise_ratio = diagnosis.held_out_after / diagnosis.noise_floor;
-  evidence.noise_ratio = diagnosis.noise_ratio;
+SUREFOOT_INLINE void mark_beyond_noise(Diagnosis& diagnosis, const VerdictCriteria& verdict) {
+  if (!std::isfinite(diagnosis.noise_ratio)) return;  // noise adds up on the way
   for (RecordingFit& one : diagnosis.per_recording) {
     const double ratio = one.after / diagnosis.noise_floor;
     // the relative standard deviation of a mean square of n independent errors is sqrt(2 / n)
     const double excess = (ratio * ratio - 1) / std::sqrt(2 / std::max(1.0, one.independent));
     one.beyond_noise = ratio > verdict.largest_ratio && excess > verdict.recording_excess;
-    evidence.recordings_beyond_noise += one.beyond_noise ? 1 : 0;
   }
 }
 

@@ -38,6 +38,10 @@ struct RunContext {
 /// if one does not fit the simulator.
 std::vector<Remark> screen_recordings(const SimulatorInfo& info, std::vector<Recording>& recordings);
 
+/// Names faults of the log, and repairs them if that is asked for.
+std::vector<LogFault> examine_recordings(const BindSimulator& bind, std::vector<Recording>& recordings,
+                                         const RunContext& run);
+
 /// All effects that may be named: those of the library and the user's own.
 std::vector<Effect> nameable_effects(const DiagnoseOptions& options);
 

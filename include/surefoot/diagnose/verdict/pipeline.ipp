@@ -17,6 +17,7 @@
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/standard_errors.hpp"
+#include "surefoot/diagnose/log_doctor/examine_log.hpp"
 #include "surefoot/diagnose/residual_tests/noise.hpp"
 #include "surefoot/diagnose/screening.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
@@ -63,6 +64,18 @@ SUREFOOT_INLINE Hypothesis nominal_with_known(const BoundSimulator& bound, const
   return hypothesis;
 }
 
+SUREFOOT_INLINE std::vector<LogFault> examine_recordings(const BindSimulator& bind, std::vector<Recording>& recordings,
+                                                         const RunContext& run) {
+  const auto nominal = [&](const BoundSimulator& bound) { return nominal_with_known(bound, run.options); };
+  LogExamination examined = examine_log({bind, nominal, run.parallel}, recordings);
+  if (run.options.repair) {
+    recordings = std::move(examined.repaired);
+  } else {
+    for (LogFault& fault : examined.faults) fault.repaired = false;
+  }
+  return examined.faults;
+}
+
 SUREFOOT_INLINE std::vector<Recording> cut_few_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
                                                           const RunContext& run) {
   const PreparationCriteria criteria;
@@ -102,7 +115,7 @@ SUREFOOT_INLINE Calibration calibrate_model(EstimationSetup& setup, const RunCon
   bound.integration.restart = noise == NoiseKind::process ? 1 : 0;
   if (noise == NoiseKind::measurement) free_measured_initial_states(bound, split.training);
   problem.integration = bound.integration;
-  if (!nominal.effects.empty()) {  // their bounds are multiples of these
+  if (!nominal.effects.empty()) {  // the bounds of their parameters are multiples of these
     bound.sizes = measure_sizes(bound, nominal, split.training,
                                 simulate_all(bound, nominal, split.training, bound.integration, parallel));
   }
@@ -233,13 +246,13 @@ SUREFOOT_INLINE void evaluate_selection(const EstimationSetup& setup, const Cali
   const FittedModels models{simulate_model(setup, calibration.nominal, run.parallel), calibrated, choice.chosen};
   if (choice.rejected) diagnosis.remarks.push_back({"", rejection_sentence()});
 
-  evaluate_errors(setup, models, diagnosis, run.seed);
   const ErrorSquares nominal =
       error_squares(setup.bound, calibration.nominal, training, setup.bound.integration, problem.scale, run.parallel);
   const Comparison calibration_gain = gain_of(nominal, selection.nominal.errors, 0);
-  VerdictEvidence evidence = gather_evidence(setup, models, calibration_gain, verdict, run.parallel, run.seed);
-  add_errors(setup, diagnosis, verdict, evidence);
-  diagnosis.verdict = decide(evidence, verdict);
+  evaluate_errors(setup, models, diagnosis, run.seed);
+  mark_beyond_noise(diagnosis, verdict);
+  diagnosis.verdict = decide(
+      gather_evidence(setup, models, diagnosis, calibration_gain, verdict, run.parallel, run.seed), verdict);
 
   describe_models(setup, models, choice.selection, run, diagnosis);
   const std::vector<std::string> ties = describe_alternatives(choice.selection, diagnosis);
@@ -249,6 +262,25 @@ SUREFOOT_INLINE void evaluate_selection(const EstimationSetup& setup, const Cali
   diagnosis.sentence = verdict_sentence(diagnosis, ties);
   if (diagnosis.verdict == Verdict::unexplained) return;  // what is left of it would pass for noise
   diagnosis.noise_findings = find_noise(setup.bound, choice.chosen.hypothesis, training, setup.noise, run.parallel);
+}
+
+/// All stages after the recordings were screened and examined.
+SUREFOOT_INLINE void diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
+                                         const RunContext& run, Diagnosis& diagnosis) {
+  recordings = cut_few_recordings(bind, std::move(recordings), run);
+  EstimationSetup setup = hold_out_recordings(bind, std::move(recordings), run);
+  name_recordings(setup, diagnosis);
+
+  run.progress("calibrating", progress_calibration);
+  const Calibration calibration = calibrate_model(setup, run);
+  const SearchProblem problem = search_problem(setup, calibration, run);
+  const std::vector<AttachedEffect> candidates = candidate_effects(setup, calibration, run);
+  const Selection selection = select_effects(setup.bound, calibration.calibrated, problem, candidates, run.parallel);
+  diagnosis.complete = !run.search_has_ended();
+  setup.problem = selection.fit;
+
+  run.progress("evaluating", progress_evaluation);
+  evaluate_selection(setup, calibration, problem, selection, candidates, run, diagnosis);
 }
 
 SUREFOOT_INLINE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorInfo& info,
@@ -262,20 +294,14 @@ SUREFOOT_INLINE Diagnosis run_pipeline(const BindSimulator& bind, const Simulato
 
   run.progress("screening", 0);
   diagnosis.remarks = screen_recordings(info, recordings);
-  recordings = cut_few_recordings(bind, std::move(recordings), run);
-  EstimationSetup setup = hold_out_recordings(bind, std::move(recordings), run);
-  name_recordings(setup, diagnosis);
-
-  run.progress("calibrating", progress_calibration);
-  const Calibration calibration = calibrate_model(setup, run);
-  const SearchProblem problem = search_problem(setup, calibration, run);
-  const std::vector<AttachedEffect> candidates = candidate_effects(setup, calibration, run);
-  const Selection selection = select_effects(setup.bound, calibration.calibrated, problem, candidates, parallel);
-  diagnosis.complete = !run.search_has_ended();
-  setup.problem = selection.fit;
-
-  run.progress("evaluating", progress_evaluation);
-  evaluate_selection(setup, calibration, problem, selection, candidates, run, diagnosis);
+  diagnosis.log_faults = examine_recordings(bind, recordings, run);
+  const std::string warning = caution(diagnosis.log_faults);
+  try {
+    diagnose_recordings(bind, std::move(recordings), run, diagnosis);
+  } catch (const DiagnoseError& error) {  // which may well come of the fault
+    throw DiagnoseError(warning + error.what());
+  }
+  diagnosis.sentence = warning + diagnosis.sentence;
   diagnosis.seconds = run.seconds();
   run.progress("done", 1, diagnosis.sentence);
   return diagnosis;

@@ -1,0 +1,35 @@
+// Faults of clocks: recordings whose outputs are late, or whose time runs at another rate, by more than what lags
+// differently within and between recordings explains. A delay that all recordings share is physics.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "surefoot/diagnose/log_doctor/clock_estimates.hpp"
+
+namespace surefoot::diagnosis {
+
+/// By recording: by how much its clock is off against the others; 0 where it is not.
+struct ClockFault {
+  LogFaultKind kind = LogFaultKind::offset;
+  std::vector<double> amounts;
+};
+
+/// Whether recordings of this fit have clocks that can be compared.
+bool has_clocks(const LogFit& fit, const LogDoctorCriteria& criteria);
+
+/// Probability that estimates differ like this by chance (an F test of the scatter between recordings against that
+/// within them).
+double scatter_by_chance(const std::vector<ClockEstimate>& estimates, const LogDoctorCriteria& criteria);
+
+/// Probability that estimate r lies so far from the others by chance (a t test, on the scatter of the others).
+double outlier_by_chance(const std::vector<ClockEstimate>& estimates, std::size_t r);
+
+std::optional<ClockFault> find_clock_fault(const LogDoctorInputs& inputs, const LogFit& fit);
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/log_doctor/clock_faults.ipp"
+#endif

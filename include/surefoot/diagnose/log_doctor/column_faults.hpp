@@ -1,0 +1,56 @@
+// Faults of columns: signs, units and columns in each other's place, of one recording or of all. Each is a hypothesis
+// that the recordings without it are simulated better.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "surefoot/diagnose/log_doctor/log_fit.hpp"
+#include "surefoot/diagnose/log_doctor/log_repair.hpp"
+
+namespace surefoot::diagnosis {
+
+/// Repairs that are made together.
+using Repairs = std::vector<LogRepair>;
+
+/// A fault that was found, by its repair.
+struct FoundFault {
+  Repairs repairs;
+  std::optional<std::size_t> recording = {};  // none: all
+  std::vector<Repairs> also = {};             // what would cure it about as well
+};
+
+Recording repaired(const BoundSimulator& bound, Recording recording, const Repairs& repairs);
+
+/// [s]
+double median_interval(const Recording& recording);
+
+/// What one recording's repair changes.
+struct RepairEffect {
+  double log_odds = 0;   // of the recording with the repair against without it
+  double log_ratio = 0;  // logarithm of the mean square error before over after, each in the unit of the readings
+  double after = 0;      // mean square error
+};
+
+/// Compares residuals as logged with those after repairs.
+RepairEffect effect_of(const LogFit& fit, std::size_t r, const Repairs& repairs, const ResidualRows& after);
+
+/// All that may be undone in columns: each repair alone, and all angles at once.
+std::vector<Repairs> repairs_to_try(const SimulatorInfo& info);
+
+/// The most likely fault of a single recording, which others do not have.
+std::optional<FoundFault> find_fault_of_one(const LogFit& fit, const LogDoctorCriteria& criteria,
+                                            const Parallel& parallel);
+
+/// Share of its variance that is left of the output that fits worst, in the median recording.
+double worst_output_error(const LogFit& fit);
+
+/// The most likely fault that all recordings have.
+std::optional<FoundFault> find_fault_of_all(const LogDoctorInputs& inputs, const LogFit& fit);
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/log_doctor/column_faults.ipp"
+#endif

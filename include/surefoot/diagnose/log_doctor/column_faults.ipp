@@ -1,0 +1,257 @@
+// Definitions of surefoot/diagnose/log_doctor/column_faults.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/log_doctor/column_faults.hpp"
+
+namespace surefoot::diagnosis {
+
+/// Highest log-likelihood of n independent residuals with this sum of squares, in units of what is typically left,
+/// where recordings differ in the size of theirs: its logarithm is normal with this standard deviation.
+SUREFOOT_INLINE double log_likelihood(double n, double squares, double scatter) {
+  if (!std::isfinite(squares)) return -std::numeric_limits<double>::infinity();
+  const double precision = 1 / (scatter * scatter);
+  constexpr double widest = 50;  // of the logarithm of the size, on both sides: beyond what numbers hold
+  constexpr int halvings = 60;   // of that range, in which the derivative falls, to the last digit
+  double low = -widest, high = widest;
+  for (int round = 0; round < halvings; ++round) {
+    const double middle = 0.5 * (low + high);
+    (squares * std::exp(-2 * middle) - n - precision * middle > 0 ? low : high) = middle;
+  }
+  return -n * low - 0.5 * squares * std::exp(-2 * low) - 0.5 * precision * low * low;
+}
+
+SUREFOOT_INLINE double scatter_of_sizes(const LogFit& fit) {
+  constexpr double normal = 1.4826;  // standard deviation over median absolute deviation of a normal distribution
+  constexpr double least = 0.2;      // recordings of one kind scatter by chance; few alone cannot tell less
+  std::vector<double> logarithms;
+  for (const ResidualRows& residuals : fit.residuals) {
+    const double square = mean_square(residuals, fit.typical);
+    if (square > 0 && std::isfinite(square)) logarithms.push_back(0.5 * std::log(square));
+  }
+  const double middle = median_of(logarithms);
+  for (double& value : logarithms) value = std::abs(value - middle);
+  return std::max(normal * median_of(logarithms), least);
+}
+
+/// Residuals of the outputs that repairs touch; of all where they touch inputs or the time.
+SUREFOOT_INLINE ResidualRows touched(ResidualRows residuals, const Repairs& repairs) {
+  std::vector<bool> keep(static_cast<std::size_t>(residuals.rows()), false);
+  for (const LogRepair& repair : repairs) {
+    if (repair.channel.input || repair.kind == LogFaultKind::time_unit) return residuals;
+    keep[static_cast<std::size_t>(repair.channel.index)] = true;
+    if (repair.kind == LogFaultKind::swap) keep[static_cast<std::size_t>(repair.other.index)] = true;
+  }
+  for (Eigen::Index k = 0; k < residuals.rows(); ++k) {
+    if (keep[static_cast<std::size_t>(k)]) continue;
+    for (Eigen::Index row = 0; row < residuals.cols(); ++row) {
+      residuals(k, row) = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return residuals;
+}
+
+SUREFOOT_INLINE double measured_cells(const ResidualRows& residuals) {
+  double count = 0;
+  for (Eigen::Index i = 0; i < residuals.size(); ++i) count += std::isnan(residuals.data()[i]) ? 0 : 1;
+  return count;
+}
+
+/// Logarithm of how much denser readings lie after they were multiplied by something (the Jacobian of that change).
+SUREFOOT_INLINE double log_density(const ResidualRows& after, const Repairs& repairs) {
+  double sum = 0;
+  for (const LogRepair& repair : repairs) {
+    if (repair.kind != LogFaultKind::degrees || repair.channel.input) continue;
+    sum += std::log(std::abs(repair.amount)) * measured_cells(touched(after, {repair}));
+  }
+  return sum;
+}
+
+SUREFOOT_INLINE RepairEffect effect_of(const LogFit& fit, std::size_t r, const Repairs& repairs,
+                                       const ResidualRows& after) {
+  constexpr double least = 1e-12;  // of an output's variance: as good as no error
+  const ResidualRows& before = fit.residuals[r];
+  RepairEffect effect;
+  effect.after = std::max(mean_square(after, fit.size), least);
+  const double touched_after = std::max(mean_square(touched(after, repairs), fit.size), least);
+  const double touched_before = mean_square(touched(before, repairs), fit.size);
+  effect.log_ratio = std::log(std::max(touched_before, least) / touched_after);
+  const double share = independent_share(after, fit.typical), n = share * measured_cells(after);
+  const double scatter = scatter_of_sizes(fit);
+  const double with = log_likelihood(n, n * mean_square(after, fit.typical), scatter);
+  const double without = log_likelihood(n, n * mean_square(before, fit.typical), scatter);
+  effect.log_odds = std::isfinite(with) ? with + share * log_density(after, repairs) - without : 0;
+  if (std::isnan(effect.log_ratio)) effect.log_ratio = 0;  // both ran away
+  return effect;
+}
+
+SUREFOOT_INLINE std::vector<Repairs> repairs_to_try(const SimulatorInfo& info) {
+  std::vector<Repairs> all;
+  Repairs angles, read_angles;
+  for (const LogRepair& repair : column_repairs(info)) {
+    all.push_back({repair});
+    if (repair.kind != LogFaultKind::degrees) continue;
+    angles.push_back(repair);
+    if (!repair.channel.input) read_angles.push_back(repair);
+  }
+  if (read_angles.size() > 1) all.push_back(read_angles);
+  if (angles.size() > 1 && angles.size() > read_angles.size()) all.push_back(angles);
+  return all;
+}
+
+/// Finer units of time than seconds [s]: milli-, micro- and nanoseconds.
+inline constexpr double time_units[] = {1e-3, 1e-6, 1e-9};
+
+SUREFOOT_INLINE double median_interval(const Recording& recording) {
+  std::vector<double> intervals;
+  for (Eigen::Index row = 1; row < recording.rows(); ++row) {
+    intervals.push_back(recording.time[row] - recording.time[row - 1]);
+  }
+  return median_of(intervals);
+}
+
+/// The time unit that would make the intervals of a recording those of the others, if they are far apart.
+SUREFOOT_INLINE std::vector<Repairs> unit_of_time_repairs(const BoundSimulator& bound, std::size_t r) {
+  constexpr double alike = 10;  // ratio of intervals that different settings of a logger explain
+  if (bound.info.kind != SimulatorKind::ode) return {};
+  std::vector<double> others;
+  for (std::size_t o = 0; o < bound.recordings.size(); ++o) {
+    if (o != r) others.push_back(median_interval(bound.recordings[o]));
+  }
+  const double ratio = median_interval(bound.recordings[r]) / median_of(others);
+  std::vector<Repairs> repairs;
+  for (const double unit : time_units) {
+    if (ratio > alike && ratio * unit < alike && ratio * unit * alike > 1) {
+      repairs.push_back({{.kind = LogFaultKind::time_unit, .amount = unit}});
+    }
+  }
+  return repairs;
+}
+
+SUREFOOT_INLINE Recording repaired(const BoundSimulator& bound, Recording recording, const Repairs& repairs) {
+  for (const LogRepair& repair : repairs) recording = repaired(bound, recording, repair);
+  return recording;
+}
+
+/// Whether one repair is more likely than another; of two that end a simulation's running away, the closer one.
+SUREFOOT_INLINE bool more_likely(const RepairEffect& one, const RepairEffect& other) {
+  return one.log_odds != other.log_odds ? one.log_odds > other.log_odds : one.after < other.after;
+}
+
+/// Repairs of one recording that are about as likely as the best.
+SUREFOOT_INLINE std::vector<Repairs> as_good(const std::vector<Repairs>& tried,
+                                             const std::vector<RepairEffect>& effects, std::size_t best,
+                                             const LogDoctorCriteria& criteria) {
+  std::vector<Repairs> also;
+  for (std::size_t t = 0; t < tried.size(); ++t) {
+    const bool close = effects[t].log_odds - std::log(criteria.significance) > effects[best].log_odds;
+    const bool cures = effects[t].after < criteria.decisive * effects[best].after;
+    if (t != best && close && cures && tried[t].size() == 1) also.push_back(tried[t]);
+  }
+  return also;
+}
+
+SUREFOOT_INLINE std::optional<FoundFault> find_fault_of_one(const LogFit& fit, const LogDoctorCriteria& criteria,
+                                                            const Parallel& parallel) {
+  const std::size_t count = fit.bound.recordings.size();
+  if (count < 2) return std::nullopt;
+  const std::vector<Repairs> columns = repairs_to_try(fit.bound.info);
+  std::vector<std::vector<Repairs>> tried(count, columns);
+  std::vector<std::vector<RepairEffect>> effects(count);
+  for (std::size_t r = 0; r < count; ++r) {
+    const auto times = unit_of_time_repairs(fit.bound, r);
+    tried[r].insert(tried[r].end(), times.begin(), times.end());
+    effects[r].resize(tried[r].size());
+  }
+  parallel(count, [&](std::size_t r) {
+    for (std::size_t t = 0; t < tried[r].size(); ++t) {
+      const Recording version = repaired(fit.bound, fit.bound.recordings[r], tried[r][t]);
+      effects[r][t] = effect_of(fit, r, tried[r][t], resimulate(fit, r, version).residuals);
+    }
+  });
+  const double tests = static_cast<double>(count * columns.size());
+  const double least_odds = std::log(tests / criteria.significance);
+  std::optional<FoundFault> found;
+  RepairEffect best;
+  for (std::size_t r = 0; r < count; ++r) {
+    double others_worst = 0;
+    for (std::size_t o = 0; o < count; ++o) others_worst = std::max(others_worst, o == r ? 0 : fit.error[o]);
+    for (std::size_t t = 0; t < tried[r].size(); ++t) {
+      const RepairEffect& effect = effects[r][t];
+      if (!(effect.log_odds > least_odds && effect.log_ratio > std::log(criteria.decisive))) continue;
+      if (effect.after > criteria.decisive * others_worst) continue;  // still unlike the others
+      std::vector<double> of_others;
+      for (std::size_t o = 0; o < count; ++o) {
+        if (o != r && t < columns.size()) of_others.push_back(effects[o][t].log_ratio);
+      }
+      if (median_of(of_others) > 0) continue;  // physics that all have in common
+      if (found && !more_likely(effect, best)) continue;
+      best = effect;
+      found = FoundFault{tried[r][t], r, as_good(tried[r], effects[r], t, criteria)};
+    }
+  }
+  return found;
+}
+
+/// How much less the error of all recordings together is, as a logarithm; 0 unless it halves, and is less in most.
+SUREFOOT_INLINE double common_gain(const LogFit& before, const LogFit& after, const Repairs& repairs,
+                                   const LogDoctorCriteria& criteria) {
+  constexpr double least = 1e-12, most = 1e12;  // of an output's variance: as good as no error; ran away
+  double better = 0, sum_before = 0, sum_after = 0;
+  for (std::size_t r = 0; r < before.error.size(); ++r) {
+    const double error = std::min(mean_square(touched(before.residuals[r], repairs), before.size), most);
+    const double now = std::clamp(mean_square(touched(after.residuals[r], repairs), after.size), least, most);
+    better += now < error ? 1 : 0;
+    sum_before += error;
+    sum_after += now;
+  }
+  const double gain = std::log(sum_before / sum_after), count = static_cast<double>(before.error.size());
+  const double by_chance = 0.5 * (count + criteria.deviations * std::sqrt(count));  // of recordings, by a fair coin
+  const bool in_most = better >= std::min(criteria.most_of * count, by_chance);
+  return in_most && gain > std::log(criteria.decisive) ? gain : 0;
+}
+
+SUREFOOT_INLINE double worst_output_error(const LogFit& fit) {
+  double worst = 0;
+  for (Eigen::Index k = 0; k < fit.size.size(); ++k) {
+    const double share = fit.typical[k] / fit.size[k];
+    worst = std::max(worst, share * share);
+  }
+  return worst;
+}
+
+SUREFOOT_INLINE std::optional<FoundFault> find_fault_of_all(const LogDoctorInputs& inputs, const LogFit& fit) {
+  const LogDoctorCriteria& criteria = inputs.criteria;
+  if (worst_output_error(fit) < criteria.poor_fit) return std::nullopt;
+  std::vector<Repairs> tried = repairs_to_try(fit.bound.info);
+  if (fit.bound.info.kind == SimulatorKind::ode) {
+    for (const double unit : time_units) tried.push_back({{.kind = LogFaultKind::time_unit, .amount = unit}});
+  }
+  std::vector<double> gains;
+  for (const Repairs& repairs : tried) {
+    std::vector<Recording> recordings;
+    for (const Recording& recording : fit.bound.recordings) {
+      recordings.push_back(repaired(fit.bound, recording, repairs));
+    }
+    gains.push_back(common_gain(fit, fit_log(inputs, std::move(recordings)), repairs, criteria));
+  }
+  const auto best = std::ranges::max_element(gains);
+  if (!(*best > 0)) return std::nullopt;
+  FoundFault found{tried[static_cast<std::size_t>(best - gains.begin())]};
+  for (std::size_t t = 0; t < tried.size(); ++t) {
+    if (gains.begin() + static_cast<std::ptrdiff_t>(t) == best) continue;
+    if (gains[t] > *best - std::log(criteria.decisive) / 2) found.also.push_back(tried[t]);
+  }
+  return found;
+}
+
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,29 @@
+// The log doctor: faults of a log, not of the machine, that would pass for missing physics; named, and repaired.
+//
+// Each fault is a hypothesis about some recordings: without it the model, calibrated lightly, must miss them decisively
+// less, while the others would be missed more. What all recordings share is left to the search for physics. Cost: some
+// hundred simulations of each recording.
+#pragma once
+
+#include <vector>
+
+#include "surefoot/diagnose/diagnosis.hpp"
+#include "surefoot/diagnose/log_doctor/log_fit.hpp"
+
+namespace surefoot::diagnosis {
+
+struct LogExamination {
+  std::vector<LogFault> faults;
+  std::vector<Recording> repaired;  // all recordings, without what could be repaired
+};
+
+LogExamination examine_log(const LogDoctorInputs& inputs, const std::vector<Recording>& recordings);
+
+/// Faults as a caution before anything else that is said; empty if there is none.
+std::string caution(const std::vector<LogFault>& faults);
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/log_doctor/examine_log.ipp"
+#endif

@@ -1,0 +1,148 @@
+// Definitions of surefoot/diagnose/log_doctor/examine_log.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/log_doctor/describe_fault.hpp"
+#include "surefoot/diagnose/log_doctor/examine_log.hpp"
+#include "surefoot/diagnose/log_doctor/reading_faults.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
+
+namespace surefoot::diagnosis {
+
+/// An examination under way: the recordings without the faults so far, and the model calibrated to them.
+struct LogUnderExamination {
+  const LogDoctorInputs& inputs;
+  LogFit fit;
+  std::vector<LogFault> faults;
+
+  void add(std::vector<LogFault> more, bool repaired) {
+    for (LogFault& fault : more) {
+      fault.repaired = repaired;
+      faults.push_back(std::move(fault));
+    }
+  }
+  void calibrate_again(std::vector<Recording> recordings) {
+    fit = fit_log(inputs, std::move(recordings), fit.hypothesis.parameters);
+  }
+};
+
+/// Calibrated from the nominal parameters on, or from others where that fails.
+SUREFOOT_INLINE LogFit first_fit(const LogDoctorInputs& inputs, const std::vector<Recording>& recordings) {
+  LogFit fit = fit_log(inputs, recordings);
+  if (worst_output_error(fit) < inputs.criteria.poor_fit) return fit;
+  LogFit other = fit_log(inputs, recordings, {}, inputs.criteria.search_points);
+  return median_of(other.error) < median_of(fit.error) ? other : fit;
+}
+
+SUREFOOT_INLINE void examine_columns(LogUnderExamination& log) {
+  constexpr int most_of_all = 3;  // faults of the whole log, one after the other
+  for (int round = 0; round < most_of_all; ++round) {
+    const auto found = find_fault_of_all(log.inputs, log.fit);
+    if (!found) break;
+    log.add(describe_fault(log.fit.bound, *found), true);
+    std::vector<Recording> recordings = log.fit.bound.recordings;
+    for (Recording& recording : recordings) recording = repaired(log.fit.bound, recording, found->repairs);
+    log.fit = first_fit(log.inputs, recordings);
+  }
+  for (std::size_t round = 0; 2 * round < log.fit.bound.recordings.size(); ++round) {
+    const auto found = find_fault_of_one(log.fit, log.inputs.criteria, log.inputs.parallel);
+    if (!found) break;
+    log.add(describe_fault(log.fit.bound, *found), true);
+    std::vector<Recording> recordings = log.fit.bound.recordings;
+    Recording& one = recordings[*found->recording];
+    one = repaired(log.fit.bound, one, found->repairs);
+    log.calibrate_again(std::move(recordings));
+  }
+}
+
+/// The longest piece of a recording between gaps. Where it does not begin with the first row it starts from the
+/// readings and the simulated states there, to be estimated.
+SUREFOOT_INLINE Recording longest_piece(const LogFit& fit, std::size_t r, const LogRepair& gaps) {
+  constexpr double initial_share = 0.2;  // of a state's root mean square: by how much it may be off there
+  const Recording& whole = fit.bound.recordings[r];
+  RowRange best{0, 0};
+  Eigen::Index from = 0;
+  for (std::size_t i = 0; i <= gaps.rows.size(); ++i) {
+    const Eigen::Index to = i < gaps.rows.size() ? gaps.rows[i].second : whole.rows();
+    if (to - from > best.second - best.first) best = {from, to};
+    from = to;
+  }
+  if (!fit.runs[r].finite) return whole;
+  Eigen::VectorXd initial = surefoot::detail::column_of(fit.runs[r].states, best.first), scale = initial;
+  for (Eigen::Index i = 0; i < initial.size(); ++i) {
+    scale[i] = initial_share * root_mean_square(surefoot::detail::row_of(fit.runs[r].states, i));
+    const int output = fit.bound.structure.output_of[static_cast<std::size_t>(i)];
+    if (output >= 0 && std::isfinite(whole.outputs(output, best.first))) {
+      initial[i] = whole.outputs(output, best.first);
+    }
+  }
+  Recording piece = part_of(whole, best.first, best.second, initial, scale);
+  piece.name = whole.name;
+  return piece;
+}
+
+SUREFOOT_INLINE void examine_readings(LogUnderExamination& log) {
+  const LogDoctorCriteria& criteria = log.inputs.criteria;
+  const std::vector<FoundFault> found = find_reading_faults(log.fit, criteria);
+  std::vector<Recording> recordings = log.fit.bound.recordings;
+  for (const FoundFault& fault : found) {
+    log.add(describe_fault(log.fit.bound, fault), true);
+    recordings[*fault.recording] = repaired(log.fit.bound, recordings[*fault.recording], fault.repairs);
+  }
+  for (const FoundFault& gaps : find_gaps(log.fit.bound, criteria)) {
+    const std::size_t r = *gaps.recording;
+    const Recording before = std::exchange(log.fit.bound.recordings[r], recordings[r]);
+    recordings[r] = longest_piece(log.fit, r, gaps.repairs.front());
+    log.add(describe_fault(log.fit.bound, gaps), recordings[r].rows() < before.rows());
+  }
+  if (!log.faults.empty()) log.calibrate_again(std::move(recordings));
+}
+
+SUREFOOT_INLINE void examine_clocks(LogUnderExamination& log) {
+  for (std::size_t round = 0; 2 * round < log.fit.bound.recordings.size(); ++round) {
+    const auto fault = find_clock_fault(log.inputs, log.fit);
+    if (!fault) break;
+    log.add(describe_fault(log.fit.bound, *fault), true);
+    std::vector<Recording> recordings = log.fit.bound.recordings;
+    for (std::size_t r = 0; r < recordings.size(); ++r) {
+      if (fault->amounts[r] == 0) continue;
+      recordings[r] = repaired(log.fit.bound, recordings[r], {.kind = fault->kind, .amount = fault->amounts[r]});
+    }
+    log.calibrate_again(std::move(recordings));
+    const auto off = std::ranges::count_if(fault->amounts, [](double amount) { return amount != 0; });
+    if (off > 1) break;  // all were estimated together
+  }
+}
+
+SUREFOOT_INLINE LogExamination examine_log(const LogDoctorInputs& inputs, const std::vector<Recording>& recordings) {
+  LogUnderExamination log{inputs, first_fit(inputs, recordings), {}};
+  examine_columns(log);
+  examine_readings(log);
+  examine_clocks(log);
+  if (const auto odd = find_odd_recording(inputs, log.fit)) log.add({describe_fault(log.fit.bound, *odd)}, false);
+  return {std::move(log.faults), std::move(log.fit.bound.recordings)};
+}
+
+SUREFOOT_INLINE std::string caution(const std::vector<LogFault>& faults) {
+  std::size_t left = 0;
+  const LogFault* first = nullptr;
+  for (const LogFault& fault : faults) {
+    if (fault.repaired) continue;
+    if (first == nullptr) first = &fault;
+    ++left;
+  }
+  if (left == 0) return "";
+  const std::string more = left > 1 ? " (and " + std::to_string(left - 1) + " more)" : "";
+  return "Caution, the log has a fault: " + first->sentence + "; " + first->cure + more + ". ";
+}
+
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,40 @@
+// Faults of readings: sensors that stay at a value while the model moves on, clipped readings, rows that are missing
+// or repeat the ones before. What other recordings show as well is the machine, or how its sensors are.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "surefoot/diagnose/log_doctor/column_faults.hpp"
+
+namespace surefoot::diagnosis {
+
+/// A stretch of equal readings of an output.
+struct ConstantStretch {
+  RowRange rows;             // [first, second)
+  Eigen::Index readings = 0;  // measured
+  double value = 0;
+  double missed = 0;   // how much the model moves meanwhile: standard deviation
+  bool extreme = false;  // the value is the recording's largest or smallest
+  bool beyond = false;   // it is, and the model goes beyond it
+};
+
+/// Stretches of at least `constant_rows` equal readings, while the model moves by more than a sensor can tell.
+std::vector<ConstantStretch> constant_stretches(const LogFit& fit, std::size_t r, Eigen::Index output,
+                                                double resolution, const LogDoctorCriteria& criteria);
+
+/// The smallest difference between readings that follow each other, over all recordings.
+double resolution_of(const std::vector<Recording>& recordings, Eigen::Index output);
+
+/// Intervals without rows, by the rows before them.
+std::vector<FoundFault> find_gaps(const BoundSimulator& bound, const LogDoctorCriteria& criteria);
+
+/// Stuck sensors, clipped readings and repeated rows.
+std::vector<FoundFault> find_reading_faults(const LogFit& fit, const LogDoctorCriteria& criteria);
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/log_doctor/reading_faults.ipp"
+#endif

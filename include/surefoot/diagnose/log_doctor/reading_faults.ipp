@@ -1,0 +1,270 @@
+// Definitions of surefoot/diagnose/log_doctor/reading_faults.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/log_doctor/reading_faults.hpp"
+
+namespace surefoot::diagnosis {
+
+/// The value that one in twenty exceed.
+SUREFOOT_INLINE double high_value(std::vector<double> values) {
+  constexpr std::size_t one_in = 20;  // values is above
+  const auto high = values.begin() + static_cast<std::ptrdiff_t>(values.size() - 1 - (values.size() - 1) / one_in);
+  std::nth_element(values.begin(), high, values.end());
+  return *high;
+}
+
+SUREFOOT_INLINE double resolution_of(const std::vector<Recording>& recordings, Eigen::Index output) {
+  constexpr double rounding = 1e-9;  // of a reading: digits lost in a file are no step
+  double least = std::numeric_limits<double>::infinity();
+  for (const Recording& recording : recordings) {
+    for (Eigen::Index row = 1; row < recording.rows(); ++row) {
+      const double value = recording.outputs(output, row);
+      const double step = std::abs(value - recording.outputs(output, row - 1));
+      if (step > rounding * std::abs(value)) least = std::min(least, step);
+    }
+  }
+  return std::isfinite(least) ? least : 0;
+}
+
+/// How much the model moves over these rows: standard deviation, or what it expects of a step that begins at the
+/// reading.
+SUREFOOT_INLINE double missed_motion(const LogFit& fit, std::size_t r, Eigen::Index output, const RowRange& rows) {
+  const bool steps = fit.bound.integration.restart > 0;
+  double sum = 0, squares = 0, count = 0;
+  for (Eigen::Index row = rows.first; row < rows.second; ++row) {
+    const double value = steps ? fit.residuals[r](output, row) : fit.runs[r].outputs(output, row);
+    if (!std::isfinite(value)) continue;
+    sum += value;
+    squares += value * value;
+    ++count;
+  }
+  if (count < 2) return 0;
+  const double mean = steps ? 0 : sum / count;
+  return std::sqrt(std::max(0.0, squares / count - mean * mean));
+}
+
+/// Whether a stretch is at the recording's largest (1) or smallest (-1) value; 0: neither.
+SUREFOOT_INLINE int end_of_range(const Recording& recording, Eigen::Index output, double value) {
+  bool highest = true, lowest = true;
+  for (Eigen::Index row = 0; row < recording.rows(); ++row) {
+    const double other = recording.outputs(output, row);
+    highest = highest && !(other > value);
+    lowest = lowest && !(other < value);
+  }
+  return highest ? 1 : lowest ? -1 : 0;
+}
+
+/// Whether the model goes beyond the value of a stretch, on that side, for most of it.
+SUREFOOT_INLINE bool goes_beyond(const LogFit& fit, std::size_t r, Eigen::Index output, const ConstantStretch& stretch,
+                                 int side) {
+  Eigen::Index beyond = 0;
+  for (Eigen::Index row = stretch.rows.first; row < stretch.rows.second; ++row) {
+    if (side * (fit.runs[r].outputs(output, row) - stretch.value) > 0) ++beyond;
+  }
+  return 2 * beyond > stretch.rows.second - stretch.rows.first;
+}
+
+SUREFOOT_INLINE std::vector<ConstantStretch> constant_stretches(const LogFit& fit, std::size_t r, Eigen::Index output,
+                                                                double resolution, const LogDoctorCriteria& criteria) {
+  constexpr double steps_missed = 3;  // of the sensor's: less motion than that it may not show
+  const Recording& recording = fit.bound.recordings[r];
+  std::vector<ConstantStretch> stretches;
+  if (!fit.runs[r].finite) return stretches;
+  ConstantStretch now{{0, 0}, 0, std::numeric_limits<double>::quiet_NaN()};
+  const auto close = [&] {
+    if (now.readings < static_cast<Eigen::Index>(criteria.constant_rows)) return;
+    now.missed = missed_motion(fit, r, output, now.rows);
+    const int side = end_of_range(recording, output, now.value);
+    now.extreme = side != 0;
+    now.beyond = side != 0 && goes_beyond(fit, r, output, now, side);
+    if (now.missed > steps_missed * resolution) stretches.push_back(now);
+  };
+  for (Eigen::Index row = 0; row < recording.rows(); ++row) {
+    const double value = recording.outputs(output, row);
+    if (!std::isfinite(value)) continue;
+    if (value != now.value) {
+      close();
+      now = {{row, row}, 0, value};
+    }
+    now.rows.second = row + 1;
+    ++now.readings;
+  }
+  close();
+  return stretches;
+}
+
+/// Motion that is missed in all stretches: their squares, summed.
+SUREFOOT_INLINE double total_missed(const std::vector<ConstantStretch>& stretches) {
+  double sum = 0;
+  for (const ConstantStretch& one : stretches) sum += static_cast<double>(one.readings) * one.missed * one.missed;
+  return sum;
+}
+
+/// Whether a stretch ends with a jump: a machine that sticks moves on from where it was.
+SUREFOOT_INLINE bool ends_in_jump(const LogFit& fit, std::size_t r, Eigen::Index output, const RowRange& rows) {
+  constexpr double jump = 5;  // times the 95 % quantile of the steps in this recording
+  const Recording& recording = fit.bound.recordings[r];
+  std::vector<double> steps;
+  for (Eigen::Index row = 1; row < recording.rows(); ++row) {
+    const double step = std::abs(recording.outputs(output, row) - recording.outputs(output, row - 1));
+    if (std::isfinite(step) && (row < rows.first || row > rows.second)) steps.push_back(step);
+  }
+  if (steps.empty() || rows.second >= recording.rows()) return false;
+  const double step = recording.outputs(output, rows.second) - recording.outputs(output, rows.second - 1);
+  return std::abs(step) > jump * high_value(steps);
+}
+
+/// The stretches of one output and recording that no sensor and no machine explains: clipped or stuck.
+SUREFOOT_INLINE std::optional<FoundFault> constant_fault(const LogFit& fit, std::size_t r, Eigen::Index output,
+                                                         const std::vector<ConstantStretch>& stretches) {
+  LogRepair clipped{.kind = LogFaultKind::clipped, .channel = {false, output}};
+  LogRepair stuck{.kind = LogFaultKind::stuck, .channel = {false, output}};
+  double clipped_rows = 0, stuck_rows = 0;
+  const bool steps = fit.bound.integration.restart > 0;  // then the model is never far beyond
+  for (const ConstantStretch& one : stretches) {
+    const bool jump = ends_in_jump(fit, r, output, one.rows);
+    if ((one.beyond || (one.extreme && steps)) && !jump) {
+      clipped.rows.push_back(one.rows);
+      clipped_rows += static_cast<double>(one.readings);
+    } else if (jump || one.missed > fit.typical[output]) {
+      stuck.rows.push_back(one.rows);
+      stuck_rows += static_cast<double>(one.readings);
+    }
+  }
+  if (clipped.rows.empty() && stuck.rows.empty()) return std::nullopt;
+  return FoundFault{{clipped_rows > stuck_rows ? clipped : stuck}, r};
+}
+
+/// Rows that repeat the reading before although the model moves on by more than the sensor's steps, and all such rows.
+struct RepeatedRows {
+  std::vector<RowRange> rows;
+  double moving = 0;
+};
+
+/// Whether the reading after a repeated one makes up for what was missed since row `from`, as the model moves: a
+/// machine that rests goes on from where it was.
+SUREFOOT_INLINE bool catches_up(const Recording& recording, const Eigen::MatrixXd& simulated, Eigen::Index output,
+                                Eigen::Index row, Eigen::Index from) {
+  if (row + 1 >= recording.rows()) return false;
+  const double step = recording.outputs(output, row + 1) - recording.outputs(output, row);
+  const double whole = simulated(output, row + 1) - simulated(output, from);
+  const double last = simulated(output, row + 1) - simulated(output, row);
+  return std::abs(step - whole) < std::abs(step - last);
+}
+
+SUREFOOT_INLINE RepeatedRows repeated_rows(const LogFit& fit, std::size_t r, Eigen::Index output, double resolution,
+                                           const LogDoctorCriteria& criteria) {
+  constexpr double steps = 2;  // of the sensor: by so much the model must move from row to row
+  const Recording& recording = fit.bound.recordings[r];
+  const Eigen::MatrixXd& simulated = fit.runs[r].outputs;
+  RepeatedRows result;
+  Eigen::Index equal = 0;
+  for (Eigen::Index row = 1; row < recording.rows(); ++row) {
+    const double value = recording.outputs(output, row), before = recording.outputs(output, row - 1);
+    if (!std::isfinite(value) || !std::isfinite(before)) continue;
+    equal = value == before ? equal + 1 : 0;
+    if (!(std::abs(simulated(output, row) - simulated(output, row - 1)) > steps * resolution)) continue;
+    if (equal >= static_cast<Eigen::Index>(criteria.constant_rows)) continue;  // a stretch
+    ++result.moving;
+    if (equal > 0 && catches_up(recording, simulated, output, row, row - equal)) {
+      result.rows.emplace_back(row, row + 1);
+    }
+  }
+  return result;
+}
+
+/// Log-likelihood of a share of rows at its own estimate over that at another share.
+SUREFOOT_INLINE double log_likelihood_ratio(double hits, double rows, double share) {
+  const auto term = [](double part, double own, double other) { return part > 0 ? part * std::log(own / other) : 0; };
+  return rows > 0 ? term(hits, hits / rows, share) + term(rows - hits, 1 - hits / rows, 1 - share) : 0;
+}
+
+SUREFOOT_INLINE std::vector<FoundFault> repeated_row_faults(const LogFit& fit, Eigen::Index output, double resolution,
+                                                            const LogDoctorCriteria& criteria) {
+  const std::size_t count = fit.bound.recordings.size();
+  std::vector<RepeatedRows> repeated(count);
+  double all_hits = 0, all_rows = 0;
+  for (std::size_t r = 0; r < count; ++r) {
+    if (fit.runs[r].finite) repeated[r] = repeated_rows(fit, r, output, resolution, criteria);
+    all_hits += static_cast<double>(repeated[r].rows.size());
+    all_rows += repeated[r].moving;
+  }
+  std::vector<FoundFault> found;
+  const double least_odds = std::log(static_cast<double>(count) / criteria.significance);
+  for (std::size_t r = 0; r < count; ++r) {
+    const double hits = static_cast<double>(repeated[r].rows.size()), rows = repeated[r].moving;
+    const double other_hits = all_hits - hits, other_rows = all_rows - rows;
+    if (!(hits > criteria.repeats * rows) || hits * other_rows <= criteria.decisive * other_hits * rows) continue;
+    const double share = all_hits / all_rows;  // if all recordings repeat alike
+    const double odds =
+        log_likelihood_ratio(hits, rows, share) + log_likelihood_ratio(other_hits, other_rows, share);
+    if (odds < least_odds) continue;
+    found.push_back({{{.kind = LogFaultKind::repeated, .channel = {false, output}, .rows = repeated[r].rows}}, r});
+  }
+  return found;
+}
+
+SUREFOOT_INLINE std::vector<FoundFault> find_reading_faults(const LogFit& fit, const LogDoctorCriteria& criteria) {
+  std::vector<FoundFault> found;
+  const std::size_t count = fit.bound.recordings.size();
+  for (Eigen::Index output = 0; output < static_cast<Eigen::Index>(fit.bound.info.outputs.size()); ++output) {
+    const double resolution = resolution_of(fit.bound.recordings, output);
+    std::vector<std::size_t> repeats(count, 0);
+    if (fit.bound.info.kind == SimulatorKind::ode) {
+      for (const FoundFault& fault : repeated_row_faults(fit, output, resolution, criteria)) {
+        repeats[*fault.recording] = fault.repairs.front().rows.size();
+        found.push_back(fault);
+      }
+    }
+    std::vector<std::vector<ConstantStretch>> stretches(count);
+    std::vector<double> missed(count);
+    for (std::size_t r = 0; r < count; ++r) {
+      stretches[r] = constant_stretches(fit, r, output, resolution, criteria);
+      missed[r] = total_missed(stretches[r]);
+    }
+    for (std::size_t r = 0; r < count; ++r) {
+      double others = 0;
+      for (std::size_t o = 0; o < count; ++o) others = std::max(others, o == r ? 0 : missed[o]);
+      if (!(missed[r] > criteria.decisive * criteria.decisive * others)) continue;
+      Eigen::Index readings = 0;
+      for (const ConstantStretch& one : stretches[r]) readings += one.readings;
+      if (static_cast<std::size_t>(readings) < repeats[r]) continue;  // some of these in a row
+      if (const auto fault = constant_fault(fit, r, output, stretches[r])) found.push_back(*fault);
+    }
+  }
+  return found;
+}
+
+SUREFOOT_INLINE std::vector<FoundFault> find_gaps(const BoundSimulator& bound, const LogDoctorCriteria& criteria) {
+  std::vector<FoundFault> found;
+  if (bound.info.kind != SimulatorKind::ode) return found;
+  for (std::size_t r = 0; r < bound.recordings.size(); ++r) {
+    const Recording& recording = bound.recordings[r];
+    if (recording.rows() < static_cast<Eigen::Index>(criteria.fewest_rows)) continue;
+    std::vector<double> intervals;
+    for (Eigen::Index row = 1; row < recording.rows(); ++row) {
+      intervals.push_back(recording.time[row] - recording.time[row - 1]);
+    }
+    const double middle = median_of(intervals);
+    const double least = std::max(criteria.gap * middle, criteria.gap_against_others * high_value(intervals));
+    LogRepair gaps{.kind = LogFaultKind::gap};
+    for (std::size_t i = 0; i < intervals.size(); ++i) {
+      if (intervals[i] > least) {
+        gaps.rows.emplace_back(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i) + 1);
+      }
+    }
+    if (!gaps.rows.empty()) found.push_back({{gaps}, r});
+  }
+  return found;
+}
+
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,50 @@
+#include "surefoot/diagnose/log_doctor/column_faults.hpp"
+
+#include <doctest/doctest.h>
+
+#include "tests/diagnose/log_doctor/servo_log.hpp"
+
+namespace {
+
+using namespace surefoot::diagnosis;
+
+TEST_SUITE("log_doctor") {
+  TEST_CASE("a fault of one recording is found there, and not where all have it") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    auto log = toys::servo_log(toys::dry_friction());
+    CHECK_FALSE(find_fault_of_one(fit_log(inputs, log), inputs.criteria, parallel));
+    log[1].outputs.row(1) *= -1;
+    const auto found = find_fault_of_one(fit_log(inputs, log), inputs.criteria, parallel);
+    REQUIRE(found);
+    CHECK(*found->recording == 1);
+    CHECK(found->repairs[0].kind == LogFaultKind::sign);
+    CHECK(found->repairs[0].channel.index == 1);
+  }
+
+  TEST_CASE("a log that fits is not searched for faults of all recordings") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    auto log = toys::servo_log(toys::dry_friction());
+    CHECK_FALSE(find_fault_of_all(inputs, fit_log(inputs, log)));
+    for (auto& recording : log) recording.outputs *= 180 / 3.14159265;
+    const auto found = find_fault_of_all(inputs, fit_log(inputs, log));
+    REQUIRE(found);
+    CHECK_FALSE(found->recording);
+    CHECK(found->repairs[0].kind == LogFaultKind::degrees);
+  }
+
+  TEST_CASE("the effect of a repair is the odds for it") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    const auto log = toys::servo_log();
+    const LogFit fit = fit_log(inputs, log);
+    const Repairs flip{{.kind = LogFaultKind::sign, .amount = -1}};
+    const auto version = repaired(fit.bound, log[0], flip);
+    const RepairEffect effect = effect_of(fit, 0, flip, resimulate(fit, 0, version).residuals);
+    CHECK(effect.log_odds < -100);
+    CHECK(effect.log_ratio < 0);
+  }
+}
+
+}  // namespace

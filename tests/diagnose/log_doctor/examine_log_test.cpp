@@ -1,0 +1,169 @@
+#include "surefoot/diagnose/log_doctor/examine_log.hpp"
+
+#include <doctest/doctest.h>
+
+#include <numbers>
+
+#include "tests/diagnose/log_doctor/servo_log.hpp"
+
+namespace {
+
+using surefoot::LogFault;
+using surefoot::Recording;
+using Log = std::vector<Recording>;
+
+/// Exactly one fault, of that kind and recording, in the log and none after the repair.
+LogFault only_fault(const Log& log, const std::string& kind, const std::string& recording) {
+  const auto examined = toys::examined(log);
+  std::string all;
+  for (const LogFault& fault : examined.faults) all += fault.sentence + "\n";
+  INFO(all);
+  REQUIRE(examined.faults.size() == 1);
+  CHECK(examined.faults[0].kind == kind);
+  CHECK(examined.faults[0].recording == recording);
+  CHECK_FALSE(examined.faults[0].cure.empty());
+  CHECK(toys::examined(examined.repaired).faults.empty());
+  return examined.faults[0];
+}
+
+constexpr double degrees = 180 / std::numbers::pi;
+TEST_SUITE("log_doctor") {
+  TEST_CASE("clean logs have no fault, whatever physics the model leaves out") {
+    using Effects = std::vector<surefoot::NamedEffect>;
+    for (const Effects& effects : {Effects{}, toys::dry_friction(),
+                                   Effects{{"input_delay", "goal", {}, {}, {0.05}}},
+                                   Effects{{"sensor_delay", "theta_rad", {}, {}, {0.04}}},
+                                   Effects{{"saturation", "goal", {}, {}, {0.6}}},
+                                   Effects{{"quantization", "theta_rad", {}, {}, {0.05}}}}) {
+      const auto examined = toys::examined(toys::servo_log(effects));
+      INFO((effects.empty() ? "none" : effects[0].name));
+      INFO((examined.faults.empty() ? "" : examined.faults[0].sentence));
+      CHECK(examined.faults.empty());
+    }
+  }
+
+  TEST_CASE("an output of the opposite sign is named with its recording") {
+    Log log = toys::servo_log(toys::dry_friction());
+    log[2].outputs.row(0) *= -1;
+    const LogFault fault = only_fault(log, "sign_flipped", "rec_03.csv");
+    CHECK(fault.channel == "theta_rad");
+    CHECK(fault.sentence == "rec_03.csv: theta_rad has the opposite sign of that in the other recordings");
+  }
+
+  TEST_CASE("degrees for radians are named, in one recording and in all") {
+    Log log = toys::servo_log(toys::dry_friction());
+    log[4].outputs.row(0) *= degrees;
+    CHECK(only_fault(log, "angle_unit", "rec_05.csv").channel == "theta_rad");
+    log = toys::servo_log(toys::dry_friction());
+    for (Recording& recording : log) recording.inputs *= degrees;
+    CHECK(only_fault(log, "angle_unit", "").channel == "goal");
+  }
+
+  TEST_CASE("milliseconds for seconds are named, in one recording and in all") {
+    Log log = toys::servo_log(toys::dry_friction());
+    log[1].time *= 1000;
+    only_fault(log, "time_unit", "rec_02.csv");
+    log = toys::servo_log(toys::dry_friction());
+    for (Recording& recording : log) recording.time *= 1000;
+    only_fault(log, "time_unit", "");
+  }
+
+  TEST_CASE("swapped columns are named, in one recording and in all") {
+    Log log = toys::servo_log(toys::dry_friction());
+    log[0].outputs.row(0).swap(log[0].outputs.row(1));
+    only_fault(log, "columns_swapped", "rec_01.csv");
+    log = toys::servo_log(toys::dry_friction());
+    for (Recording& recording : log) recording.outputs.row(0).swap(recording.outputs.row(1));
+    only_fault(log, "columns_swapped", "");
+  }
+
+  TEST_CASE("clocks that are off by another time in each recording are named, a delay of all is not") {
+    Log log = toys::servo_log(toys::dry_friction());
+    const double late[] = {0.0, 0.08, 0.03, 0.1, 0.01, 0.06};
+    for (std::size_t r = 0; r < log.size(); ++r) toys::delay_outputs(log[r], late[r]);
+    const auto examined = toys::examined(log);
+    REQUIRE(examined.faults.size() == 1);
+    CHECK(examined.faults[0].kind == "clock_offset");
+    CHECK(examined.faults[0].size == doctest::Approx(0.1).epsilon(0.1));
+  }
+
+  TEST_CASE("one late clock is named with its recording") {
+    Log log = toys::servo_log();
+    toys::delay_outputs(log[3], 0.05);
+    const LogFault fault = only_fault(log, "clock_offset", "rec_04.csv");
+    CHECK(fault.size == doctest::Approx(0.05).epsilon(0.1));
+  }
+
+  TEST_CASE("a fast clock is named with its recording") {
+    Log log = toys::servo_log();
+    log[2].time *= 1.02;
+    CHECK(only_fault(log, "clock_skew", "rec_03.csv").size == doctest::Approx(0.02).epsilon(0.15));
+  }
+
+  TEST_CASE("a stuck sensor is named with its recording") {
+    Log log = toys::servo_log(toys::dry_friction());
+    for (Eigen::Index row = 90; row < 150; ++row) log[5].outputs(0, row) = log[5].outputs(0, 89);
+    CHECK(only_fault(log, "stuck_sensor", "rec_06.csv").channel == "theta_rad");
+  }
+
+  TEST_CASE("clipped readings are named with their recording") {
+    Log log = toys::servo_log(toys::dry_friction());
+    const double end = 0.6 * log[1].outputs.row(0).maxCoeff();
+    for (double& value : log[1].outputs.row(0)) value = std::min(value, end);
+    CHECK(only_fault(log, "clipped", "rec_02.csv").channel == "theta_rad");
+  }
+
+  TEST_CASE("missing rows and repeated rows are named with their recording") {
+    Log log = toys::servo_log(toys::dry_friction());
+    Recording& short_one = log[0];
+    const Eigen::Index from = 200, length = 40, rest = 300 - from - length;
+    short_one.time.segment(from, rest) = short_one.time.tail(rest).eval();
+    short_one.inputs.middleCols(from, rest) = short_one.inputs.rightCols(rest).eval();
+    short_one.outputs.middleCols(from, rest) = short_one.outputs.rightCols(rest).eval();
+    short_one.time.conservativeResize(from + rest);
+    short_one.inputs.conservativeResize(1, from + rest);
+    short_one.outputs.conservativeResize(2, from + rest);
+    only_fault(log, "dropped_samples", "rec_01.csv");
+    log = toys::servo_log(toys::dry_friction());
+    for (Eigen::Index row = 3; row < 300; row += 4) log[4].outputs(0, row) = log[4].outputs(0, row - 1);
+    only_fault(log, "dropped_samples", "rec_05.csv");
+  }
+
+  TEST_CASE("a recording of another experiment is named, and stays as it is") {
+    Log log = toys::servo_log(toys::dry_friction());
+    const Log other = toys::servo_log({}, 7);
+    log[3].outputs = -0.6 * other[6].outputs.rowwise().reverse();
+    log[3].outputs.col(0).setZero();
+    const auto examined = toys::examined(log);
+    REQUIRE(examined.faults.size() == 1);
+    CHECK(examined.faults[0].kind == "odd_recording");
+    CHECK(examined.faults[0].recording == "rec_04.csv");
+    CHECK_FALSE(examined.faults[0].repaired);
+  }
+
+  TEST_CASE("two rows, one recording and sparse outputs are no faults") {
+    Log log = toys::servo_log();
+    for (Eigen::Index row = 0; row < 300; ++row) {
+      if (row % 10 != 0) log[2].outputs.col(row).setConstant(std::nan(""));
+    }
+    CHECK(toys::examined(log).faults.empty());
+    CHECK(toys::examined({log[0]}).faults.empty());
+    for (Recording& recording : log) {
+      recording.time.conservativeResize(2);
+      recording.inputs.conservativeResize(1, 2);
+      recording.outputs.conservativeResize(2, 2);
+    }
+    CHECK(toys::examined(log).faults.empty());
+  }
+
+  TEST_CASE("a caution names the first fault that was not repaired") {
+    using surefoot::diagnosis::caution;
+    CHECK(caution({}).empty());
+    LogFault fault{.kind = "clipped", .sentence = "a: is clipped", .cure = "mend it", .repaired = true};
+    CHECK(caution({fault}).empty());
+    fault.repaired = false;
+    CHECK(caution({fault}) == "Caution, the log has a fault: a: is clipped; mend it. ");
+  }
+}
+
+}  // namespace
