@@ -18,7 +18,7 @@ struct ErrorSquares {
   Eigen::MatrixXd mean_squares;  // in units of the square of the scale they were measured with
   Eigen::MatrixXd counts;        // of measured cells
   Eigen::VectorXd memory;        // by output: integrated autocorrelation time of the errors [rows], at least 1
-  Eigen::VectorXd least = {};    // by output: mean square below which differences mean nothing; empty: 0
+  Eigen::VectorXd least = {};    // by output: differences of the mean square that mean nothing; empty: 0
 
   bool empty() const { return mean_squares.size() == 0; }
   /// Root of the mean over all cells.

@@ -31,7 +31,7 @@ struct SelectionCriteria {
   // Predictive density:
   double degrees = 12;        // of freedom of the prior of a recording's own scale: it differs by about a fifth
   double least_error = 1e-3;  // of the output's standard deviation: smaller errors are those of the integration
-  double form_error = 0.02;   // of the error without effects: the form of an effect is never quite that of the machine
+  double form_error = 0.05;   // of the error without effects: the form of an effect is never quite that of the machine
 
   // Decision:
   double named_odds = 20;  // against the model without effects, from which on an effect is named: 5 % to be wrong
@@ -68,8 +68,8 @@ struct SearchEffort {
   double bold_loss = 0.97;                   // it was, if the loss is still above this
   std::size_t more_starts = 2;               // for effects that have no strength
   std::size_t scattered_points = 12;         // for the model's parameters beside the first effect
-  std::size_t paired = 6;                    // proposals that pairs are made of
-  std::size_t pair_finalists = 5;            // fits of pairs that are finished and evaluated
+  std::size_t pairs = 10;                    // of proposals that get a fit
+  std::size_t pair_finalists = 3;            // fits of pairs that are finished and evaluated
   std::size_t compared_shortlist = 8;        // for what may stand in an effect's place
   std::size_t compared_finalists = 3;        // fits of these that are finished and evaluated
 };
@@ -91,6 +91,8 @@ struct SearchProblem {
   Weighting scale;                    // in units of which errors are compared; the same for all hypotheses
   Eigen::VectorXd least;              // as in ErrorSquares, for all hypotheses
   std::vector<std::size_t> screened;  // recordings that screen proposals
+  Hypothesis nominal;     // the same without calibration: a second place to start from
+  bool scatter = true;    // start the model's parameters from elsewhere too, beside a first effect
   std::size_t known = 0;  // effects that are part of the model already: the first ones, never removed
   std::size_t candidates = 1;  // effects and places that may be tried
   /// Whether the residuals of a hypothesis still hold what noise does not; where not, only strong proposals get a fit.
@@ -105,8 +107,7 @@ struct SearchProblem {
 EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, const Fit& fitted, const SearchProblem& problem,
                                  const Parallel& parallel);
 
-/// Mean squares by output below which differences between structures mean nothing: errors of the integration, and of the
-/// form of effects, against the model without any.
+/// Differences of the mean square, by output, that mean nothing: they may come of the form of effects.
 Eigen::VectorXd least_squares_compared(const ErrorSquares& without_effects, const SelectionCriteria& criteria);
 
 /// Log of the prior probability of the effects beyond the first `known` [nat], but for a constant.
@@ -114,7 +115,8 @@ double log_prior(const BoundSimulator& bound, const Hypothesis& hypothesis, std:
                  const SelectionCriteria& criteria);
 
 /// Log density of each recording [nat], but for a constant that is the same for all hypotheses with the same
-/// reference: the best of those to be compared.
+/// reference: the closest of those to be compared. Differences of mean squares up to `reference.least` may be errors of
+/// form, which last for all of a recording: they count as one error.
 std::vector<double> log_densities(const ErrorSquares& errors, const ErrorSquares& reference,
                                   const SelectionCriteria& criteria);
 

@@ -72,9 +72,20 @@ SUREFOOT_INLINE Eigen::VectorXd least_squares_compared(const ErrorSquares& witho
                                                        const SelectionCriteria& criteria) {
   Eigen::VectorXd least = pooled(without_effects);
   for (double& value : least) {
-    value = criteria.least_error * criteria.least_error + criteria.form_error * criteria.form_error * value;
+    value *= criteria.form_error * criteria.form_error;
   }
   return least;
+}
+
+/// `value` nearer to zero by `margin`.
+SUREFOOT_INLINE double shrunk(double value, double margin) {
+  return value > margin ? value - margin : value < -margin ? value + margin : 0;
+}
+
+/// Log density of n errors with a mean square, in units of the square of their scale, that scale being known to some
+/// degrees of freedom: Student's t; but for a constant.
+SUREFOOT_INLINE double log_density(double n, double mean_square, double degrees) {
+  return -0.5 * (n + degrees) * std::log1p(n * mean_square / degrees);
 }
 
 SUREFOOT_INLINE std::vector<double> log_densities(const ErrorSquares& errors, const ErrorSquares& reference,
@@ -85,10 +96,13 @@ SUREFOOT_INLINE std::vector<double> log_densities(const ErrorSquares& errors, co
     for (Eigen::Index k = 0; k < errors.counts.cols(); ++k) {
       const double cells = errors.counts(r, k);
       if (!(cells > 0)) continue;
-      const double n = std::max(1.0, cells / reference.memory[k]), nu = criteria.degrees;
-      const double least = reference.least.size() > 0 ? reference.least[k] : std::numeric_limits<double>::min();
-      const double square = (errors.mean_squares(r, k) + least) / (scale[k] + least);
-      result[static_cast<std::size_t>(r)] -= 0.5 * (n + nu) * std::log1p(n * square / nu);
+      const double unit = std::max(scale[k], criteria.least_error * criteria.least_error);
+      const double margin = reference.least.size() > 0 ? reference.least[k] : 0;
+      const double best = reference.mean_squares(r, k), own = errors.mean_squares(r, k);
+      const double beyond_form = best + shrunk(own - best, margin);
+      result[static_cast<std::size_t>(r)] +=
+          log_density(std::max(1.0, cells / reference.memory[k]), beyond_form / unit, criteria.degrees) +
+          log_density(1, own / unit, criteria.degrees);  // an error of form lasts for all of a recording
     }
   }
   return result;
@@ -117,7 +131,9 @@ SUREFOOT_INLINE std::vector<double> probabilities(const std::vector<EvaluatedHyp
                                                   const SelectionCriteria& criteria) {
   std::vector<double> result(evaluated.size(), 0.0);
   if (evaluated.empty()) return result;
-  const ErrorSquares& reference = evaluated[best_of(evaluated, criteria)].errors;
+  const ErrorSquares& reference = std::ranges::min_element(evaluated, {}, [](const EvaluatedHypothesis& one) {
+                                    return one.errors.rms();
+                                  })->errors;
   std::vector<std::vector<double>> densities;
   for (const EvaluatedHypothesis& one : evaluated) densities.push_back(log_densities(one.errors, reference, criteria));
   const std::size_t recordings = densities.front().size();

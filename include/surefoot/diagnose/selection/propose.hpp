@@ -26,6 +26,11 @@ struct Proposal {
   Eigen::VectorXd tried;                     // the parameters it was screened with
   std::vector<Eigen::VectorXd> more_starts;  // worse ones; for effects without a strength the order means little
   double visible = 0;                        // multiple of those that could just be seen; 0: none
+
+  // For predictions beside others, by strength (or the one column of an effect without any):
+  Eigen::MatrixXd beyond;  // signatures beyond the model's parameters, in units of the root of the open squares
+  Eigen::VectorXd along;   // their products with the open residuals, in units of the same
+  Eigen::VectorXd least_share, most_share;  // limits of the multiple of `tried`
 };
 
 /// Residuals of a fitted hypothesis, and the part of them that its parameters cannot change.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -76,6 +77,25 @@ SUREFOOT_INLINE Eigen::MatrixXd signatures(const BoundSimulator& bound, const Hy
   return result;
 }
 
+/// Limits of the multiples of the signatures: those of the strengths; 0 to 1 where there is none.
+SUREFOOT_INLINE std::pair<Eigen::VectorXd, Eigen::VectorXd> limits_of_shares(const BoundSimulator& bound,
+                                                                             const AttachedEffect& candidate,
+                                                                             const Eigen::VectorXd& start,
+                                                                             Eigen::Index count) {
+  Eigen::VectorXd least = Eigen::VectorXd::Zero(count), most = Eigen::VectorXd::Ones(count);
+  const std::vector<Eigen::Index> strengths = strengths_of(*candidate.effect);
+  for (std::size_t m = 0; m < strengths.size(); ++m) {
+    const Eigen::Index k = strengths[m];
+    const EffectParameter& parameter = candidate.effect->parameters[static_cast<std::size_t>(k)];
+    const double unit = measure_size(bound, candidate, parameter.measure);
+    const double a = parameter.low * unit / start[k], b = parameter.high * unit / start[k];
+    const auto at = static_cast<Eigen::Index>(m);
+    least[at] = candidate.effect->is_impulsive ? 1 : std::min(a, b);
+    most[at] = candidate.effect->is_impulsive ? 1 : std::max(a, b);
+  }
+  return {least, most};
+}
+
 SUREFOOT_INLINE Proposal predict_gain(const BoundSimulator& bound, const OpenResiduals& open,
                                       const AttachedEffect& candidate, const Eigen::VectorXd& start,
                                       const Eigen::MatrixXd& signatures, const ProposalCriteria& criteria) {
@@ -102,26 +122,22 @@ SUREFOOT_INLINE Proposal predict_gain(const BoundSimulator& bound, const OpenRes
   Eigen::VectorXd against = transposed_product(distinct, open.open);
   for (double& value : against) value = -value;
   Eigen::VectorXd share = surefoot::detail::solve_symmetric(gram, against);
+  std::tie(proposal.least_share, proposal.most_share) = limits_of_shares(bound, candidate, start, count);
   const std::vector<Eigen::Index> strengths = strengths_of(*candidate.effect);
   for (Eigen::Index m = 0; m < count; ++m) {
-    if (strengths.empty()) {
-      share[m] = std::clamp(share[m], 0.0, 1.0);
-      continue;
-    }
-    if (candidate.effect->is_impulsive) {
-      share[m] = 1;
-      continue;
-    }
+    share[m] = std::clamp(share[m], proposal.least_share[m], proposal.most_share[m]);
+    if (strengths.empty() || candidate.effect->is_impulsive) continue;
     const Eigen::Index k = strengths[static_cast<std::size_t>(m)];
-    const EffectParameter& parameter = candidate.effect->parameters[static_cast<std::size_t>(k)];
-    const double unit = measure_size(bound, candidate, parameter.measure);
-    const double a = parameter.low * unit / start[k], b = parameter.high * unit / start[k];
-    share[m] = std::clamp(share[m], std::min(a, b), std::max(a, b));
     proposal.start[k] = share[m] * start[k];
   }
   Eigen::VectorXd rest = product(distinct, share);
   for (Eigen::Index i = 0; i < rest.size(); ++i) rest[i] += open.open[i];
   proposal.gain = 1 - sum_of_squares(rest) / open.energy;
+  const double unit = 1 / std::sqrt(open.energy);
+  for (double& value : distinct.reshaped()) value *= unit;
+  for (double& value : against) value *= -unit * unit;
+  proposal.beyond = std::move(distinct);
+  proposal.along = std::move(against);
   return proposal;
 }
 

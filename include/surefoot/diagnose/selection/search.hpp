@@ -36,11 +36,6 @@ std::vector<Fit> fit_children(const BoundSimulator& bound, const Hypothesis& par
                               const std::vector<std::vector<Proposal>>& additions, const SearchProblem& problem,
                               std::size_t keep, const Parallel& parallel);
 
-/// The best proposals beside `base`. Unless its residuals are `structured` only strong ones.
-std::vector<Proposal> shortlisted(const BoundSimulator& bound, const Hypothesis& base, const SearchProblem& problem,
-                                  const std::vector<AttachedEffect>& candidates, std::size_t count, bool structured,
-                                  const Parallel& parallel);
-
 Hypothesis without_effect(const Hypothesis& whole, std::size_t effect);
 
 /// A search under way.
@@ -54,12 +49,17 @@ struct Search {
   EvaluatedHypothesis without(const EvaluatedHypothesis& whole, std::size_t effect) const;
 };
 
-/// The effects that would come next after `parent`, evaluated.
-std::vector<EvaluatedHypothesis> next_effects(const Search& search, const EvaluatedHypothesis& parent,
-                                              std::size_t shortlist, std::size_t finalists, bool structured);
+/// Effects that a parent has not yet, the most promising first.
+std::vector<Proposal> proposals_for(const Search& search, const EvaluatedHypothesis& parent);
 
-/// The same for pairs of the best proposals.
-std::vector<EvaluatedHypothesis> next_pairs(const Search& search, const EvaluatedHypothesis& parent);
+/// The parent with one effect more: the best `finalists` of the first proposals, evaluated.
+std::vector<EvaluatedHypothesis> next_effects(const Search& search, const EvaluatedHypothesis& parent,
+                                              std::vector<Proposal> proposals, std::size_t shortlist,
+                                              std::size_t finalists);
+
+/// The parent with two effects more.
+std::vector<EvaluatedHypothesis> next_pairs(const Search& search, const EvaluatedHypothesis& parent,
+                                            const std::vector<Proposal>& proposals);
 
 /// Puts a hypothesis into the pool, in the place of one of the same structure if it is better; true if it went in.
 bool keep_best_form(std::vector<EvaluatedHypothesis>& pool, const EvaluatedHypothesis& one,
@@ -72,6 +72,10 @@ std::vector<EvaluatedHypothesis> best_structures(std::vector<EvaluatedHypothesis
 /// Weights residuals of further fits by what a hypothesis leaves of each output and recording, and screens proposals on
 /// the recordings that show this best.
 void reweight(Search& search, const EvaluatedHypothesis& best);
+
+/// The children of the nominal parameters: what is missing may have pushed the calibrated ones where no fit finds back
+/// from, and where signatures look otherwise.
+std::vector<EvaluatedHypothesis> extended_from_nominal(Search search);
 
 /// Extends the best structures of a pool, as long as that makes the best one better.
 void grow(Search& search, std::vector<EvaluatedHypothesis>& pool);

@@ -17,6 +17,7 @@
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
+#include "surefoot/diagnose/selection/pairs.hpp"
 #include "surefoot/diagnose/selection/propose.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
 
@@ -33,9 +34,8 @@ SUREFOOT_INLINE Fit fit_child(const BoundSimulator& bound, const Hypothesis& par
   Fit best;
   const FitFunctions without(bound, parent, quick, serially());
   const double parent_loss = mean_loss(without.residuals(without.start()), quick.weighting.robust);
-  const auto attempt = [&](const std::vector<Eigen::VectorXd>& starts, bool settle = false, bool nominal = false) {
+  const auto attempt = [&](const std::vector<Eigen::VectorXd>& starts, bool settle = false) {
     Hypothesis child = parent;
-    if (nominal) child.parameters = nominal_parameters(bound.info);
     for (std::size_t k = 0; k < starts.size(); ++k) {
       child.effects.push_back(additions[k].effect);
       child.values.push_back(starts[k]);
@@ -57,8 +57,6 @@ SUREFOOT_INLINE Fit fit_child(const BoundSimulator& bound, const Hypothesis& par
   const bool scalable = predicted != weak;
   attempt(predicted, !scalable);  // what cannot grow from nothing begins with everything else settled around it
   if (scalable && !(best.loss < effort.bold_loss * parent_loss)) attempt(weak);
-  // what is missing may have pushed the calibrated parameters where no fit finds back from
-  if (parent.effects.size() == problem.known) attempt(predicted, !scalable, true);
   if (!scalable && additions.size() == 1) {
     const auto& others = additions.front().more_starts;
     for (std::size_t k = 0; k < std::min(effort.more_starts, others.size()); ++k) attempt({others[k]}, true);
@@ -85,7 +83,7 @@ SUREFOOT_INLINE std::vector<Fit> fit_children(const BoundSimulator& bound, const
     if (problem.stopped()) return;
     fits[i] = fit(bound, fits[i].hypothesis, problem.fit, serially());
     // what is missing may have pushed the calibrated parameters where no fit finds back from
-    if (parent.effects.size() == problem.known) {
+    if (problem.scatter && parent.effects.size() == problem.known) {
       fits[i] = scattered_fit(bound, fits[i], fits[i].hypothesis, problem.fit, problem.effort.scattered_points,
                               scatter_seed, serially());
     }
@@ -95,32 +93,20 @@ SUREFOOT_INLINE std::vector<Fit> fit_children(const BoundSimulator& bound, const
   return fits;
 }
 
-SUREFOOT_INLINE std::vector<Proposal> shortlisted(const BoundSimulator& bound, const Hypothesis& base,
-                                                  const SearchProblem& problem,
-                                                  const std::vector<AttachedEffect>& candidates, std::size_t count,
-                                                  bool structured, const Parallel& parallel) {
+/// Effects that a parent has not yet, best first.
+SUREFOOT_INLINE std::vector<Proposal> proposals_for(const Search& search, const EvaluatedHypothesis& parent) {
+  const auto& [bound, problem, candidates, parallel] = search;
   FitProblem screened = problem.fit;
   screened.recordings = problem.screened;
   std::vector<AttachedEffect> open;
   for (const AttachedEffect& candidate : candidates) {
-    const bool used = std::any_of(base.effects.begin(), base.effects.end(), [&](const AttachedEffect& effect) {
+    const bool used = std::ranges::any_of(parent.hypothesis.effects, [&](const AttachedEffect& effect) {
       return effect.effect->name == candidate.effect->name && effect.at == candidate.at;
     });
     if (!used) open.push_back(candidate);
   }
-  DBGT("propose")
-  std::vector<Proposal> proposals = propose(bound, base, screened, open, parallel);
-  DBGT("proposed")
-  // A signature that does not help as it is may do so once everything is fitted: such proposals fill what room is left.
-  std::erase_if(proposals, [&](const Proposal& one) {
-    return one.distinct < problem.criteria.least_distinct ||
-           (!structured && one.gain < problem.criteria.unstructured_proposal_gain);
-  });
-  if (proposals.size() > count) proposals.resize(count);
-  if (getenv("DBG2")) for (auto& one : proposals) fprintf(stderr,"   prop %s %s gain %.4g distinct %.3g\n",one.effect.label().c_str(),one.effect.effect->form.c_str(),one.gain,one.distinct);
-  for (Proposal& one : proposals) {
-    if (!(one.gain > 0)) one.start = one.tried;
-  }
+  std::vector<Proposal> proposals = propose(bound, parent.hypothesis, screened, open, parallel);
+  std::erase_if(proposals, [&](const Proposal& one) { return one.distinct < problem.criteria.least_distinct; });
   return proposals;
 }
 
@@ -139,7 +125,7 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> evaluate_children(const Search&
   const auto& [bound, problem, candidates, parallel] = search;
   const std::vector<Fit> fits = fit_children(bound, parent.hypothesis, additions, problem, keep, parallel);
   std::vector<EvaluatedHypothesis> evaluated(fits.size());
-  DBGT("full done")
+
   parallel(fits.size(), [&](std::size_t i) {
     if (!problem.stopped()) evaluated[i] = evaluate_fit(bound, fits[i], problem, serially());
   });
@@ -148,26 +134,27 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> evaluate_children(const Search&
   return evaluated;
 }
 
+/// The parent with one effect more. A signature that does not help as it is may do so once everything is fitted: such
+/// proposals fill what room is left.
 SUREFOOT_INLINE std::vector<EvaluatedHypothesis> next_effects(const Search& search, const EvaluatedHypothesis& parent,
-                                                              std::size_t shortlist, std::size_t finalists,
-                                                              bool structured) {
-  const std::vector<Proposal> proposals = shortlisted(search.bound, parent.hypothesis, search.problem,
-                                                      search.candidates, shortlist, structured, search.parallel);
+                                                              std::vector<Proposal> proposals, std::size_t shortlist,
+                                                              std::size_t finalists) {
+  if (proposals.size() > shortlist) proposals.resize(shortlist);
   std::vector<std::vector<Proposal>> singles;
-  for (const Proposal& proposal : proposals) singles.push_back({proposal});
+  for (Proposal& one : proposals) {
+    if (!(one.gain > 0)) one.start = one.tried;
+    singles.push_back({std::move(one)});
+  }
   return evaluate_children(search, parent, singles, finalists);
 }
 
-SUREFOOT_INLINE std::vector<EvaluatedHypothesis> next_pairs(const Search& search, const EvaluatedHypothesis& parent) {
+/// The parent with two effects more.
+SUREFOOT_INLINE std::vector<EvaluatedHypothesis> next_pairs(const Search& search, const EvaluatedHypothesis& parent,
+                                                            const std::vector<Proposal>& proposals) {
   const SearchEffort& effort = search.problem.effort;
-  const std::vector<Proposal> proposals = shortlisted(search.bound, parent.hypothesis, search.problem,
-                                                      search.candidates, effort.paired, true, search.parallel);
   std::vector<std::vector<Proposal>> pairs;
-  for (std::size_t i = 0; i < proposals.size(); ++i) {
-    for (std::size_t j = i + 1; j < proposals.size(); ++j) {
-      if (proposals[i].effect.effect->name == proposals[j].effect.effect->name) continue;
-      pairs.push_back({proposals[i], proposals[j]});
-    }
+  for (ProposedPair& pair : propose_pairs(proposals, effort.pairs)) {
+    pairs.push_back({std::move(pair.first), std::move(pair.second)});
   }
   return evaluate_children(search, parent, pairs, effort.pair_finalists);
 }
@@ -215,25 +202,47 @@ SUREFOOT_INLINE void reweight(Search& search, const EvaluatedHypothesis& best) {
   search.problem.screened = some_by_error(search.bound, problem.recordings, runs, search.problem.screened.size());
 }
 
+/// The children of one parent into the pool of children.
+SUREFOOT_INLINE void extend(const Search& search, const EvaluatedHypothesis& parent,
+                            std::vector<EvaluatedHypothesis>& children) {
+  const SearchProblem& problem = search.problem;
+  const auto most = static_cast<std::size_t>(problem.criteria.max_effects);
+  const bool structured = problem.structured(parent.hypothesis);
+  std::vector<Proposal> proposals = proposals_for(search, parent);
+  if (!structured) {
+    std::erase_if(proposals,
+                  [&](const Proposal& one) { return one.gain < problem.criteria.unstructured_proposal_gain; });
+  }
+  bool any_better = false;
+  for (const EvaluatedHypothesis& child :
+       next_effects(search, parent, proposals, problem.effort.shortlist, problem.effort.finalists)) {
+    any_better = any_better || log_odds(child, parent, problem.criteria) > 0;
+    keep_best_form(children, child, problem.criteria);
+  }
+  const bool room = search.effects(parent) + 2 <= most, first = search.effects(parent) == 0;
+  if (!structured || !room || (any_better && !first) || problem.stopped()) return;
+  for (const EvaluatedHypothesis& child : next_pairs(search, parent, proposals)) {
+    keep_best_form(children, child, problem.criteria);
+  }
+}
+
 SUREFOOT_INLINE std::vector<EvaluatedHypothesis> extended(const Search& search,
                                                           const std::vector<EvaluatedHypothesis>& beam) {
-  const auto& [bound, problem, candidates, parallel] = search;
-  const auto most = static_cast<std::size_t>(problem.criteria.max_effects);
   std::vector<EvaluatedHypothesis> children;
   for (const EvaluatedHypothesis& parent : beam) {
-    if (problem.stopped()) break;
-    const bool structured = problem.structured(parent.hypothesis);
-    bool any_better = false;
-    for (const EvaluatedHypothesis& child :
-         next_effects(search, parent, problem.effort.shortlist, problem.effort.finalists, structured)) {
-      any_better = any_better || log_odds(child, parent, problem.criteria) > 0;
-      keep_best_form(children, child, problem.criteria);
-    }
-    if (any_better || !structured || search.effects(parent) + 2 > most || problem.stopped()) continue;
-    for (const EvaluatedHypothesis& child : next_pairs(search, parent)) {
-      keep_best_form(children, child, problem.criteria);
-    }
+    if (!search.problem.stopped()) extend(search, parent, children);
   }
+  return children;
+}
+
+SUREFOOT_INLINE std::vector<EvaluatedHypothesis> extended_from_nominal(Search search) {
+  std::vector<EvaluatedHypothesis> children;
+  if (search.problem.stopped()) return children;
+  const Fit start{search.problem.nominal, 0, true};
+  const EvaluatedHypothesis nominal = evaluate_fit(search.bound, start, search.problem, search.parallel);
+  reweight(search, nominal);
+  search.problem.scatter = false;
+  extend(search, nominal, children);
   return children;
 }
 
@@ -246,7 +255,10 @@ SUREFOOT_INLINE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool
     const EvaluatedHypothesis best = pool[best_of(pool, criteria)];
     const auto most = static_cast<std::size_t>(criteria.max_effects);
     std::erase_if(beam, [&](const EvaluatedHypothesis& one) { return search.effects(one) >= most; });
-    const std::vector<EvaluatedHypothesis> children = extended(search, beam);
+    std::vector<EvaluatedHypothesis> children = extended(search, beam);
+    if (depth == 0) {
+      for (const EvaluatedHypothesis& child : extended_from_nominal(search)) keep_best_form(children, child, criteria);
+    }
     for (const EvaluatedHypothesis& child : children) keep_best_form(pool, child, criteria);
     const EvaluatedHypothesis now = pool[best_of(pool, criteria)];
     if (same_structure(now.hypothesis, best.hypothesis)) break;
@@ -287,7 +299,8 @@ SUREFOOT_INLINE void swap_effects(const Search& search, std::vector<EvaluatedHyp
     keep_best_form(pool, rest, problem.criteria);
     if (search.effects(best) == 1) continue;  // its rivals were evaluated when it was chosen
     for (const EvaluatedHypothesis& other :
-         next_effects(search, rest, problem.effort.compared_shortlist, problem.effort.compared_finalists, true)) {
+         next_effects(search, rest, proposals_for(search, rest), problem.effort.compared_shortlist,
+                      problem.effort.compared_finalists)) {
       keep_best_form(pool, other, problem.criteria);
     }
   }

@@ -166,7 +166,6 @@ SUREFOOT_INLINE std::string tie_sentence(const std::vector<std::string>& ties) {
 }
 
 SUREFOOT_INLINE std::string verdict_sentence(const Diagnosis& diagnosis, const std::vector<std::string>& ties) {
-  constexpr std::size_t most_ties = 3;  // that are told in the sentence; the report has all
   std::vector<std::string> effects;
   for (const FoundEffect& effect : diagnosis.effects) effects.push_back(effect.sentence);
   switch (diagnosis.verdict) {

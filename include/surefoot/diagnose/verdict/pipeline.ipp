@@ -163,6 +163,7 @@ SUREFOOT_INLINE SearchProblem search_problem(const EstimationSetup& setup, const
   SearchProblem problem;
   problem.fit = setup.problem;
   problem.scale = {.sigma = error_scale(setup.bound), .whitening = setup.problem.weighting.whitening};
+  problem.nominal = calibration.nominal;
   problem.known = run.options.known.size();
   problem.criteria.max_effects = run.options.max_effects;
   SearchEffort& effort = problem.effort;
