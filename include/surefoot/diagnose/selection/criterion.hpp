@@ -31,7 +31,7 @@ struct SelectionCriteria {
   // Predictive density:
   double degrees = 12;        // of freedom of the prior of a recording's own scale: it differs by about a fifth
   double least_error = 1e-3;  // of the output's standard deviation: smaller errors are those of the integration
-  double form_error = 0.05;   // of the error without effects: the form of an effect is never quite that of the machine
+  double form_error = 0.1;    // of the error without effects: the form of an effect is never quite that of the machine
 
   // Decision:
   double named_odds = 20;  // against the model without effects, from which on an effect is named: 5 % to be wrong
@@ -69,6 +69,7 @@ struct SearchEffort {
   std::size_t more_starts = 2;               // for effects that have no strength
   std::size_t scattered_points = 12;         // for the model's parameters beside the first effect
   std::size_t pairs = 10;                    // of proposals that get a fit
+  std::size_t combined = 6;                  // single effects that are tried with each other
   std::size_t pair_finalists = 3;            // fits of pairs that are finished and evaluated
   std::size_t compared_shortlist = 8;        // for what may stand in an effect's place
   std::size_t compared_finalists = 3;        // fits of these that are finished and evaluated

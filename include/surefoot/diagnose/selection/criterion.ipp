@@ -36,6 +36,7 @@ SUREFOOT_INLINE EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, co
 
 SUREFOOT_INLINE double log_prior(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t known,
                                  std::size_t candidates, const SelectionCriteria& criteria) {
+  constexpr double middle = 0.5;  // of a range
   double sum = 0;
   for (std::size_t e = known; e < hypothesis.effects.size(); ++e) {
     const Effect& effect = *hypothesis.effects[e].effect;
@@ -48,7 +49,7 @@ SUREFOOT_INLINE double log_prior(const BoundSimulator& bound, const Hypothesis& 
     Hypothesis copy = hypothesis;
     const double low = to_search(variable, variable.low), high = to_search(variable, variable.high);
     const double share = (to_search(variable, value_of(copy, variable)) - low) / (high - low);
-    const bool natural = variable.low == 0 && share < 0.5;  // a strength near zero is told by the densities
+    const bool natural = variable.low == 0 && share < middle;  // a strength near zero is told by the densities
     if (!natural && (share < criteria.bound_share || share > 1 - criteria.bound_share)) sum -= criteria.bound_cost;
   }
   return sum;

@@ -1,7 +1,7 @@
 // Selection of effects by a beam search: the best structures found so far are each extended by a further effect, or by a
 // pair where no single one is worth its parameters; then effects of the best are taken away and replaced in turn. Every
-// structure that was fitted is ranked in the end (see criterion.hpp), whatever way led to it. Each fit starts from that
-// of its parent; weights follow what the best one so far leaves.
+// structure that was fitted is ranked in the end (see criterion.hpp), whatever way led to it. Weights follow what the best
+// one so far leaves.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
+#include "surefoot/diagnose/selection/children.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
-#include "surefoot/diagnose/selection/propose.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -26,48 +26,9 @@ struct Selection {
   FitProblem fit;                                 // as the choice was fitted in the end
 };
 
-/// Fits a parent with some proposals added, on the recordings for screening, from several starts; not ok if none of
-/// them can be simulated.
-Fit fit_child(const BoundSimulator& bound, const Hypothesis& parent, const std::vector<Proposal>& additions,
-              const SearchProblem& problem);
-
-/// Fits parent plus proposals, all at once in parallel; the weakest are given up after a few iterations.
-std::vector<Fit> fit_children(const BoundSimulator& bound, const Hypothesis& parent,
-                              const std::vector<std::vector<Proposal>>& additions, const SearchProblem& problem,
-                              std::size_t keep, const Parallel& parallel);
-
-Hypothesis without_effect(const Hypothesis& whole, std::size_t effect);
-
-/// A search under way.
-struct Search {
-  const BoundSimulator& bound;
-  SearchProblem problem;
-  const std::vector<AttachedEffect>& candidates;
-  const Parallel& parallel;
-
-  std::size_t effects(const EvaluatedHypothesis& one) const { return one.hypothesis.effects.size() - problem.known; }
-  EvaluatedHypothesis without(const EvaluatedHypothesis& whole, std::size_t effect) const;
-};
-
-/// Effects that a parent has not yet, the most promising first.
-std::vector<Proposal> proposals_for(const Search& search, const EvaluatedHypothesis& parent);
-
-/// The parent with one effect more: the best `finalists` of the first proposals, evaluated.
-std::vector<EvaluatedHypothesis> next_effects(const Search& search, const EvaluatedHypothesis& parent,
-                                              std::vector<Proposal> proposals, std::size_t shortlist,
-                                              std::size_t finalists);
-
-/// The parent with two effects more.
-std::vector<EvaluatedHypothesis> next_pairs(const Search& search, const EvaluatedHypothesis& parent,
-                                            const std::vector<Proposal>& proposals);
-
 /// Puts a hypothesis into the pool, in the place of one of the same structure if it is better; true if it went in.
 bool keep_best_form(std::vector<EvaluatedHypothesis>& pool, const EvaluatedHypothesis& one,
                     const SelectionCriteria& criteria);
-
-/// The most plausible ones, best first, and none that is `hopeless` behind the best [nat].
-std::vector<EvaluatedHypothesis> best_structures(std::vector<EvaluatedHypothesis> pool, std::size_t count,
-                                                 double hopeless, const SelectionCriteria& criteria);
 
 /// Weights residuals of further fits by what a hypothesis leaves of each output and recording, and screens proposals on
 /// the recordings that show this best.

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdio>
-#include <cstdlib>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -17,152 +15,9 @@
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
-#include "surefoot/diagnose/selection/pairs.hpp"
-#include "surefoot/diagnose/selection/propose.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
 
-#include <ctime>
-#define DBGT(name) if (getenv("DBG")) fprintf(stderr, "  t %.1f %s\n", (double)clock()/CLOCKS_PER_SEC, name);
 namespace surefoot::diagnosis {
-
-SUREFOOT_INLINE Fit fit_child(const BoundSimulator& bound, const Hypothesis& parent,
-                              const std::vector<Proposal>& additions, const SearchProblem& problem) {
-  const SearchEffort& effort = problem.effort;
-  FitProblem quick = problem.fit;
-  quick.recordings = problem.screened;
-  quick.max_iterations = effort.first_iterations;
-  Fit best;
-  const FitFunctions without(bound, parent, quick, serially());
-  const double parent_loss = mean_loss(without.residuals(without.start()), quick.weighting.robust);
-  const auto attempt = [&](const std::vector<Eigen::VectorXd>& starts, bool settle = false) {
-    Hypothesis child = parent;
-    for (std::size_t k = 0; k < starts.size(); ++k) {
-      child.effects.push_back(additions[k].effect);
-      child.values.push_back(starts[k]);
-    }
-    if (settle) {
-      FitProblem around = quick;
-      around.free = Free::all_but_effects;
-      child = fit(bound, child, around, serially()).hypothesis;
-    }
-    const Fit one = fit(bound, child, quick, serially());
-    if (one.ok && one.loss < best.loss) best = one;
-  };
-  std::vector<Eigen::VectorXd> predicted, weak;
-  for (const Proposal& addition : additions) {
-    predicted.push_back(addition.start);
-    weak.push_back(addition.start);
-    for (const Eigen::Index k : strengths_of(*addition.effect.effect)) weak.back()[k] *= effort.weak_start;
-  }
-  const bool scalable = predicted != weak;
-  attempt(predicted, !scalable);  // what cannot grow from nothing begins with everything else settled around it
-  if (scalable && !(best.loss < effort.bold_loss * parent_loss)) attempt(weak);
-  if (!scalable && additions.size() == 1) {
-    const auto& others = additions.front().more_starts;
-    for (std::size_t k = 0; k < std::min(effort.more_starts, others.size()); ++k) attempt({others[k]}, true);
-  }
-  return best;
-}
-
-SUREFOOT_INLINE std::vector<Fit> fit_children(const BoundSimulator& bound, const Hypothesis& parent,
-                                              const std::vector<std::vector<Proposal>>& additions,
-                                              const SearchProblem& problem, std::size_t keep,
-                                              const Parallel& parallel) {
-  constexpr std::uint64_t scatter_seed = 1;
-  const auto by_loss = [](const Fit& a, const Fit& b) { return a.loss < b.loss; };
-  std::vector<Fit> fits(additions.size());
-  parallel(additions.size(), [&](std::size_t i) {
-    if (!problem.stopped()) fits[i] = fit_child(bound, parent, additions[i], problem);
-  });
-  if (getenv("DBG2")) for (auto& f : fits) { fprintf(stderr,"   quick %d loss %.4g ",(int)f.ok,f.loss); if(f.ok) for (size_t i=0;i<f.hypothesis.effects.size();++i){ fprintf(stderr," %s[",f.hypothesis.effects[i].label().c_str()); for(double v: f.hypothesis.values[i]) fprintf(stderr,"%.4g ",v); fprintf(stderr,"]");} fprintf(stderr," | "); for(double v: f.hypothesis.parameters) fprintf(stderr,"%.4g ",v); fprintf(stderr,"\n"); }
-  DBGT("quick done")
-  std::erase_if(fits, [](const Fit& one) { return !one.ok; });
-  sort_items(fits, by_loss);
-  if (fits.size() > keep) fits.resize(keep);
-  parallel(fits.size(), [&](std::size_t i) {
-    if (problem.stopped()) return;
-    fits[i] = fit(bound, fits[i].hypothesis, problem.fit, serially());
-    // what is missing may have pushed the calibrated parameters where no fit finds back from
-    if (problem.scatter && parent.effects.size() == problem.known) {
-      fits[i] = scattered_fit(bound, fits[i], fits[i].hypothesis, problem.fit, problem.effort.scattered_points,
-                              scatter_seed, serially());
-    }
-  });
-  sort_items(fits, by_loss);
-  if (getenv("DBG2")) for (auto& f : fits) { fprintf(stderr,"   full %d loss %.4g ",(int)f.ok,f.loss); if(f.ok) for (size_t i=0;i<f.hypothesis.effects.size();++i){ fprintf(stderr," %s[",f.hypothesis.effects[i].label().c_str()); for(double v: f.hypothesis.values[i]) fprintf(stderr,"%.4g ",v); fprintf(stderr,"]");} fprintf(stderr," | "); for(double v: f.hypothesis.parameters) fprintf(stderr,"%.4g ",v); fprintf(stderr,"\n"); }
-  return fits;
-}
-
-/// Effects that a parent has not yet, best first.
-SUREFOOT_INLINE std::vector<Proposal> proposals_for(const Search& search, const EvaluatedHypothesis& parent) {
-  const auto& [bound, problem, candidates, parallel] = search;
-  FitProblem screened = problem.fit;
-  screened.recordings = problem.screened;
-  std::vector<AttachedEffect> open;
-  for (const AttachedEffect& candidate : candidates) {
-    const bool used = std::ranges::any_of(parent.hypothesis.effects, [&](const AttachedEffect& effect) {
-      return effect.effect->name == candidate.effect->name && effect.at == candidate.at;
-    });
-    if (!used) open.push_back(candidate);
-  }
-  std::vector<Proposal> proposals = propose(bound, parent.hypothesis, screened, open, parallel);
-  std::erase_if(proposals, [&](const Proposal& one) { return one.distinct < problem.criteria.least_distinct; });
-  return proposals;
-}
-
-SUREFOOT_INLINE Hypothesis without_effect(const Hypothesis& whole, std::size_t effect) {
-  Hypothesis rest = whole;
-  rest.effects.erase(rest.effects.begin() + static_cast<std::ptrdiff_t>(effect));
-  rest.values.erase(rest.values.begin() + static_cast<std::ptrdiff_t>(effect));
-  return rest;
-}
-
-/// Fits parent plus proposals, and evaluates the best of them.
-SUREFOOT_INLINE std::vector<EvaluatedHypothesis> evaluate_children(const Search& search,
-                                                                   const EvaluatedHypothesis& parent,
-                                                                   const std::vector<std::vector<Proposal>>& additions,
-                                                                   std::size_t keep) {
-  const auto& [bound, problem, candidates, parallel] = search;
-  const std::vector<Fit> fits = fit_children(bound, parent.hypothesis, additions, problem, keep, parallel);
-  std::vector<EvaluatedHypothesis> evaluated(fits.size());
-
-  parallel(fits.size(), [&](std::size_t i) {
-    if (!problem.stopped()) evaluated[i] = evaluate_fit(bound, fits[i], problem, serially());
-  });
-  DBGT("evaluated")
-  std::erase_if(evaluated, [](const EvaluatedHypothesis& one) { return one.errors.empty(); });
-  return evaluated;
-}
-
-/// The parent with one effect more. A signature that does not help as it is may do so once everything is fitted: such
-/// proposals fill what room is left.
-SUREFOOT_INLINE std::vector<EvaluatedHypothesis> next_effects(const Search& search, const EvaluatedHypothesis& parent,
-                                                              std::vector<Proposal> proposals, std::size_t shortlist,
-                                                              std::size_t finalists) {
-  if (proposals.size() > shortlist) proposals.resize(shortlist);
-  std::vector<std::vector<Proposal>> singles;
-  for (Proposal& one : proposals) {
-    if (!(one.gain > 0)) one.start = one.tried;
-    singles.push_back({std::move(one)});
-  }
-  return evaluate_children(search, parent, singles, finalists);
-}
-
-/// The parent with two effects more.
-SUREFOOT_INLINE std::vector<EvaluatedHypothesis> next_pairs(const Search& search, const EvaluatedHypothesis& parent,
-                                                            const std::vector<Proposal>& proposals) {
-  const SearchEffort& effort = search.problem.effort;
-  std::vector<std::vector<Proposal>> pairs;
-  for (ProposedPair& pair : propose_pairs(proposals, effort.pairs)) {
-    pairs.push_back({std::move(pair.first), std::move(pair.second)});
-  }
-  return evaluate_children(search, parent, pairs, effort.pair_finalists);
-}
-
-SUREFOOT_INLINE EvaluatedHypothesis Search::without(const EvaluatedHypothesis& whole, std::size_t effect) const {
-  const Fit rest = fit(bound, without_effect(whole.hypothesis, effect), problem.fit, parallel);
-  return evaluate_fit(bound, rest, problem, parallel);
-}
 
 SUREFOOT_INLINE bool keep_best_form(std::vector<EvaluatedHypothesis>& pool, const EvaluatedHypothesis& one,
                                     const SelectionCriteria& criteria) {
@@ -174,19 +29,6 @@ SUREFOOT_INLINE bool keep_best_form(std::vector<EvaluatedHypothesis>& pool, cons
   }
   pool.push_back(one);
   return true;
-}
-
-SUREFOOT_INLINE std::vector<EvaluatedHypothesis> best_structures(std::vector<EvaluatedHypothesis> pool,
-                                                                 std::size_t count, double hopeless,
-                                                                 const SelectionCriteria& criteria) {
-  std::vector<EvaluatedHypothesis> best;
-  while (best.size() < count && !pool.empty()) {
-    const std::size_t next = best_of(pool, criteria);
-    if (!best.empty() && log_odds(pool[next], best.front(), criteria) < -hopeless) break;
-    best.push_back(pool[next]);
-    pool.erase(pool.begin() + static_cast<std::ptrdiff_t>(next));
-  }
-  return best;
 }
 
 SUREFOOT_INLINE void reweight(Search& search, const EvaluatedHypothesis& best) {
@@ -258,6 +100,12 @@ SUREFOOT_INLINE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool
     std::vector<EvaluatedHypothesis> children = extended(search, beam);
     if (depth == 0) {
       for (const EvaluatedHypothesis& child : extended_from_nominal(search)) keep_best_form(children, child, criteria);
+      const bool leaves_something =
+          criteria.max_effects > 1 && !children.empty() &&
+          search.problem.structured(children[best_of(children, criteria)].hypothesis);
+      if (leaves_something) {
+        for (const EvaluatedHypothesis& pair : combined(search, children)) keep_best_form(children, pair, criteria);
+      }
     }
     for (const EvaluatedHypothesis& child : children) keep_best_form(pool, child, criteria);
     const EvaluatedHypothesis now = pool[best_of(pool, criteria)];
@@ -307,6 +155,8 @@ SUREFOOT_INLINE void swap_effects(const Search& search, std::vector<EvaluatedHyp
 }
 
 SUREFOOT_INLINE Comparison gain_of(const ErrorSquares& before, const ErrorSquares& after, double log_odds) {
+  constexpr double least_ratio = 1e-6;  // of errors: below, the second one is exact
+  constexpr double largest_odds = 700;  // [nat]: exp would overflow
   Comparison result;
   const double a = before.rms(), b = after.rms();
   if (!(a > 0)) return result;
@@ -321,16 +171,15 @@ SUREFOOT_INLINE Comparison gain_of(const ErrorSquares& before, const ErrorSquare
   }
   double cells = 0;
   for (const double count : before.counts.reshaped()) cells += count;
-  result.stderr_ = std::sqrt(squares) / (cells * a * a) / (2 * std::max(b / a, 1e-6));
+  result.stderr_ = std::sqrt(squares) / (cells * a * a) / (2 * std::max(b / a, least_ratio));
   result.t = result.stderr_ > 0 ? result.gain / result.stderr_ : 0;
-  result.p_value = 1 / (1 + std::exp(std::clamp(log_odds, -700.0, 700.0)));
+  result.p_value = 1 / (1 + std::exp(std::clamp(log_odds, -largest_odds, largest_odds)));
   return result;
 }
 
 SUREFOOT_INLINE Selection ranked(const Search& search, const std::vector<EvaluatedHypothesis>& pool) {
   const SelectionCriteria& criteria = search.problem.criteria;
   const std::vector<double> share = probabilities(pool, criteria);
-  if (getenv("DBG")) for (auto& e : pool) { fprintf(stderr,"%8.4f rms %.5g prior %.1f loss %.4g mem",share[&e-&pool[0]],e.errors.rms(),e.log_prior,e.loss); for (double m : e.errors.memory) fprintf(stderr," %.1f",m); fprintf(stderr," odds %.1f ",log_odds(e,pool[best_of(pool,criteria)],criteria)); for (size_t i=0;i<e.hypothesis.effects.size();++i){ fprintf(stderr," %s[",e.hypothesis.effects[i].label().c_str()); for(double v: e.hypothesis.values[i]) fprintf(stderr,"%.4g ",v); fprintf(stderr,"]");} fprintf(stderr," | "); for(double v: e.hypothesis.parameters) fprintf(stderr,"%.4g ",v); fprintf(stderr,"\n"); }
   std::vector<std::size_t> order(pool.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   sort_items(order, [&](std::size_t a, std::size_t b) { return share[a] > share[b]; });
@@ -388,7 +237,6 @@ SUREFOOT_INLINE Selection select_effects(const BoundSimulator& bound, const Fit&
     search.problem.least = least_squares_compared(evaluate_fit(bound, calibrated, search.problem, parallel).errors, criteria);
     pool = fitted_again(search, pool);
   }
-  DBGT("rank")
   Selection selection = ranked(search, pool);
   for (std::size_t e = search.problem.known; e < selection.chosen.hypothesis.effects.size(); ++e) {
     const EvaluatedHypothesis rest =

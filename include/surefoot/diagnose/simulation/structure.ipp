@@ -59,6 +59,13 @@ SUREFOOT_INLINE void refute(StructureSearch& search, const Eigen::VectorXd& x, c
   }
 }
 
+/// Whether a state in this unit is a speed, although the model may have no state that it is the rate of.
+SUREFOOT_INLINE bool is_speed_unit(const std::string& unit) {
+  constexpr std::array<const char*, 9> speeds{"m/s",   "cm/s", "mm/s",    "km/h", "rad/s",
+                                               "deg/s", "rpm",  "rev/min", "rev/s"};
+  return std::ranges::find(speeds, unit) != speeds.end();
+}
+
 /// Fills in what remains true.
 SUREFOOT_INLINE void conclude_structure(const StructureSearch& search, const SimulatorInfo& info,
                                         SimulatorStructure& structure) {
@@ -77,8 +84,9 @@ SUREFOOT_INLINE void conclude_structure(const StructureSearch& search, const Sim
     structure.all_states_measured = structure.all_states_measured && structure.output_of[i] >= 0;
   }
   for (std::size_t i = 0; i < n; ++i) {
-    structure.velocity[i] =
-        info.kind == SimulatorKind::ode && (structure.position_of[i] >= 0 || !info.states[i].effort_unit.empty());
+    const StateInfo& state = info.states[i];
+    structure.velocity[i] = info.kind == SimulatorKind::ode && (structure.position_of[i] >= 0 ||
+                                                                !state.effort_unit.empty() || is_speed_unit(state.unit));
   }
 }
 

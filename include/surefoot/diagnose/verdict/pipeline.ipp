@@ -265,6 +265,18 @@ SUREFOOT_INLINE void evaluate_selection(const EstimationSetup& setup, const Cali
   diagnosis.noise_findings = find_noise(setup.bound, choice.chosen.hypothesis, training, setup.noise, run.parallel);
 }
 
+/// Effects may need finer steps than the model without them: these are chosen anew, by what the effects leave.
+SUREFOOT_INLINE void refine_integration(EstimationSetup& setup, Selection& selection, const RunContext& run) {
+  auto& [bound, split, noise, problem] = setup;
+  Hypothesis& chosen = selection.chosen.hypothesis;
+  if (chosen.effects.size() == selection.nominal.hypothesis.effects.size()) return;
+  const Integration finer =
+      choose_integration(bound, chosen, problem.weighting.sigma, bound.integration, split.training.front());
+  if (finer.order <= bound.integration.order && finer.step >= bound.integration.step) return;
+  bound.integration = problem.integration = finer;
+  chosen = fit(bound, chosen, problem, run.parallel).hypothesis;
+}
+
 /// All stages after the recordings were screened and examined.
 SUREFOOT_INLINE void diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
                                          const RunContext& run, Diagnosis& diagnosis) {
@@ -276,9 +288,10 @@ SUREFOOT_INLINE void diagnose_recordings(const BindSimulator& bind, std::vector<
   const Calibration calibration = calibrate_model(setup, run);
   const SearchProblem problem = search_problem(setup, calibration, run);
   const std::vector<AttachedEffect> candidates = candidate_effects(setup, calibration, run);
-  const Selection selection = select_effects(setup.bound, calibration.calibrated, problem, candidates, run.parallel);
+  Selection selection = select_effects(setup.bound, calibration.calibrated, problem, candidates, run.parallel);
   diagnosis.complete = !run.search_has_ended();
   setup.problem = selection.fit;
+  refine_integration(setup, selection, run);
 
   run.progress("evaluating", progress_evaluation);
   evaluate_selection(setup, calibration, problem, selection, candidates, run, diagnosis);
