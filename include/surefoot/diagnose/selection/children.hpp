@@ -1,0 +1,63 @@
+// Children of a structure in the search: the same with one effect more, or two. Each fit starts from that of its parent;
+// many begin, the best are finished and evaluated.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "surefoot/diagnose/selection/criterion.hpp"
+#include "surefoot/diagnose/selection/propose.hpp"
+
+namespace surefoot::diagnosis {
+
+/// Fits a parent with some proposals added, on the recordings for screening, from several starts; not ok if none of
+/// them can be simulated.
+Fit fit_child(const BoundSimulator& bound, const Hypothesis& parent, const std::vector<Proposal>& additions,
+              const SearchProblem& problem);
+
+Hypothesis without_effect(const Hypothesis& whole, std::size_t effect);
+
+/// A search under way.
+struct Search {
+  const BoundSimulator& bound;
+  SearchProblem problem;
+  const std::vector<AttachedEffect>& candidates;
+  const Parallel& parallel;
+
+  std::size_t effects(const EvaluatedHypothesis& one) const { return one.hypothesis.effects.size() - problem.known; }
+  EvaluatedHypothesis without(const EvaluatedHypothesis& whole, std::size_t effect) const;
+};
+
+/// Finishes the `keep` best of some fits that have begun, and evaluates them.
+std::vector<EvaluatedHypothesis> finished(const Search& search, std::vector<Fit> fits, std::size_t keep);
+
+/// Fits the parent plus each of some sets of proposals, all at once in parallel; the weakest are given up after a few
+/// iterations, the others are evaluated.
+std::vector<EvaluatedHypothesis> evaluate_children(const Search& search, const EvaluatedHypothesis& parent,
+                                                   const std::vector<std::vector<Proposal>>& additions,
+                                                   std::size_t keep);
+
+/// Effects that a parent has not yet, the most promising first.
+std::vector<Proposal> proposals_for(const Search& search, const EvaluatedHypothesis& parent);
+
+/// The parent with one effect more: the best `finalists` of the first proposals, evaluated.
+std::vector<EvaluatedHypothesis> next_effects(const Search& search, const EvaluatedHypothesis& parent,
+                                              std::vector<Proposal> proposals, std::size_t shortlist,
+                                              std::size_t finalists);
+
+/// The parent with two effects more.
+std::vector<EvaluatedHypothesis> next_pairs(const Search& search, const EvaluatedHypothesis& parent,
+                                            const std::vector<Proposal>& proposals);
+
+/// The most plausible ones, best first, and none that is `hopeless` behind the best [nat].
+std::vector<EvaluatedHypothesis> best_structures(std::vector<EvaluatedHypothesis> pool, std::size_t count,
+                                                 double hopeless, const SelectionCriteria& criteria);
+
+/// Pairs of the best single effects: neither may be the one that would be chosen alone.
+std::vector<EvaluatedHypothesis> combined(const Search& search, const std::vector<EvaluatedHypothesis>& singles);
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/selection/children.ipp"
+#endif

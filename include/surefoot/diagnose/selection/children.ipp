@@ -1,0 +1,194 @@
+// Definitions of surefoot/diagnose/selection/children.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/calibrate.hpp"
+#include "surefoot/diagnose/estimation/sort_items.hpp"
+#include "surefoot/diagnose/selection/children.hpp"
+#include "surefoot/diagnose/selection/criterion.hpp"
+#include "surefoot/diagnose/selection/pairs.hpp"
+#include "surefoot/diagnose/selection/propose.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE Hypothesis without_effect(const Hypothesis& whole, std::size_t effect) {
+  Hypothesis rest = whole;
+  rest.effects.erase(rest.effects.begin() + static_cast<std::ptrdiff_t>(effect));
+  rest.values.erase(rest.values.begin() + static_cast<std::ptrdiff_t>(effect));
+  return rest;
+}
+
+SUREFOOT_INLINE EvaluatedHypothesis Search::without(const EvaluatedHypothesis& whole, std::size_t effect) const {
+  const Fit rest = fit(bound, without_effect(whole.hypothesis, effect), problem.fit, parallel);
+  return evaluate_fit(bound, rest, problem, parallel);
+}
+
+SUREFOOT_INLINE Fit fit_child(const BoundSimulator& bound, const Hypothesis& parent,
+                              const std::vector<Proposal>& additions, const SearchProblem& problem) {
+  const SearchEffort& effort = problem.effort;
+  FitProblem quick = problem.fit;
+  quick.recordings = problem.screened;
+  quick.max_iterations = effort.first_iterations;
+  Fit best;
+  const FitFunctions without(bound, parent, quick, serially());
+  const double parent_loss = mean_loss(without.residuals(without.start()), quick.weighting.robust);
+  const auto attempt = [&](const std::vector<Eigen::VectorXd>& starts, bool settle = false) {
+    Hypothesis child = parent;
+    for (std::size_t k = 0; k < starts.size(); ++k) {
+      child.effects.push_back(additions[k].effect);
+      child.values.push_back(starts[k]);
+    }
+    if (settle) {
+      FitProblem around = quick;
+      around.free = Free::all_but_effects;
+      child = fit(bound, child, around, serially()).hypothesis;
+    }
+    const Fit one = fit(bound, child, quick, serially());
+    if (one.ok && one.loss < best.loss) best = one;
+  };
+  std::vector<Eigen::VectorXd> predicted, weak;
+  for (const Proposal& addition : additions) {
+    predicted.push_back(addition.start);
+    weak.push_back(addition.start);
+    for (const Eigen::Index k : strengths_of(*addition.effect.effect)) weak.back()[k] *= effort.weak_start;
+  }
+  const bool scalable = predicted != weak;
+  attempt(predicted, !scalable);  // what cannot grow from nothing begins with everything else settled around it
+  if (scalable && !(best.loss < effort.bold_loss * parent_loss)) attempt(weak);
+  if (!scalable && additions.size() == 1) {
+    const auto& others = additions.front().more_starts;
+    for (std::size_t k = 0; k < std::min(effort.more_starts, others.size()); ++k) attempt({others[k]}, true);
+  }
+  return best;
+}
+
+/// Effects that a parent has not yet, best first.
+SUREFOOT_INLINE std::vector<Proposal> proposals_for(const Search& search, const EvaluatedHypothesis& parent) {
+  const auto& [bound, problem, candidates, parallel] = search;
+  FitProblem screened = problem.fit;
+  screened.recordings = problem.screened;
+  std::vector<AttachedEffect> open;
+  for (const AttachedEffect& candidate : candidates) {
+    const bool used = std::ranges::any_of(parent.hypothesis.effects, [&](const AttachedEffect& effect) {
+      return effect.effect->name == candidate.effect->name && effect.at == candidate.at;
+    });
+    if (!used) open.push_back(candidate);
+  }
+  std::vector<Proposal> proposals = propose(bound, parent.hypothesis, screened, open, parallel);
+  std::erase_if(proposals, [&](const Proposal& one) { return one.distinct < problem.criteria.least_distinct; });
+  return proposals;
+}
+
+SUREFOOT_INLINE std::vector<EvaluatedHypothesis> finished(const Search& search, std::vector<Fit> fits,
+                                                          std::size_t keep) {
+  constexpr std::uint64_t scatter_seed = 1;
+  const auto& [bound, problem, candidates, parallel] = search;
+  std::erase_if(fits, [](const Fit& one) { return !one.ok; });
+  sort_items(fits, [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
+  if (fits.size() > keep) fits.resize(keep);
+  std::vector<EvaluatedHypothesis> evaluated(fits.size());
+  parallel(fits.size(), [&](std::size_t i) {
+    if (problem.stopped()) return;
+    Fit one = fit(bound, fits[i].hypothesis, problem.fit, serially());
+    // what is missing may have pushed the calibrated parameters where no fit finds back from
+    if (problem.scatter && one.hypothesis.effects.size() == problem.known + 1) {
+      one = scattered_fit(bound, one, one.hypothesis, problem.fit, problem.effort.scattered_points, scatter_seed,
+                          serially());
+    }
+    if (!problem.stopped()) evaluated[i] = evaluate_fit(bound, one, problem, serially());
+  });
+  std::erase_if(evaluated, [](const EvaluatedHypothesis& one) { return one.errors.empty(); });
+  return evaluated;
+}
+
+SUREFOOT_INLINE std::vector<EvaluatedHypothesis> evaluate_children(const Search& search,
+                                                                   const EvaluatedHypothesis& parent,
+                                                                   const std::vector<std::vector<Proposal>>& additions,
+                                                                   std::size_t keep) {
+  const SearchProblem& problem = search.problem;
+  std::vector<Fit> fits(additions.size());
+  search.parallel(additions.size(), [&](std::size_t i) {
+    if (!problem.stopped()) fits[i] = fit_child(search.bound, parent.hypothesis, additions[i], problem);
+  });
+  return finished(search, std::move(fits), keep);
+}
+
+/// The parent with one effect more. A signature that does not help as it is may do so once everything is fitted: such
+/// proposals fill what room is left.
+SUREFOOT_INLINE std::vector<EvaluatedHypothesis> next_effects(const Search& search, const EvaluatedHypothesis& parent,
+                                                              std::vector<Proposal> proposals, std::size_t shortlist,
+                                                              std::size_t finalists) {
+  if (proposals.size() > shortlist) proposals.resize(shortlist);
+  std::vector<std::vector<Proposal>> singles;
+  for (Proposal& one : proposals) {
+    if (!(one.gain > 0)) one.start = one.tried;
+    singles.push_back({std::move(one)});
+  }
+  return evaluate_children(search, parent, singles, finalists);
+}
+
+/// The parent with two effects more.
+SUREFOOT_INLINE std::vector<EvaluatedHypothesis> next_pairs(const Search& search, const EvaluatedHypothesis& parent,
+                                                            const std::vector<Proposal>& proposals) {
+  const SearchEffort& effort = search.problem.effort;
+  std::vector<std::vector<Proposal>> pairs;
+  for (ProposedPair& pair : propose_pairs(proposals, effort.pairs)) {
+    pairs.push_back({std::move(pair.first), std::move(pair.second)});
+  }
+  return evaluate_children(search, parent, pairs, effort.pair_finalists);
+}
+
+SUREFOOT_INLINE std::vector<EvaluatedHypothesis> best_structures(std::vector<EvaluatedHypothesis> pool,
+                                                                 std::size_t count, double hopeless,
+                                                                 const SelectionCriteria& criteria) {
+  std::vector<EvaluatedHypothesis> best;
+  while (best.size() < count && !pool.empty()) {
+    const std::size_t next = best_of(pool, criteria);
+    if (!best.empty() && log_odds(pool[next], best.front(), criteria) < -hopeless) break;
+    best.push_back(pool[next]);
+    pool.erase(pool.begin() + static_cast<std::ptrdiff_t>(next));
+  }
+  return best;
+}
+
+/// Both effects of two hypotheses with the parameters of the first, each at half of its strength.
+SUREFOOT_INLINE Hypothesis half_of_each(const Hypothesis& a, const Hypothesis& b, std::size_t known) {
+  constexpr double half = 0.5;  // as if they shared what each explains alone
+  Hypothesis both = a;
+  both.effects.push_back(b.effects[known]);
+  both.values.push_back(b.values[known]);
+  for (std::size_t e = known; e < both.effects.size(); ++e) {
+    for (const Eigen::Index k : strengths_of(*both.effects[e].effect)) both.values[e][k] *= half;
+  }
+  return both;
+}
+
+SUREFOOT_INLINE std::vector<EvaluatedHypothesis> combined(const Search& search,
+                                                          const std::vector<EvaluatedHypothesis>& singles) {
+  const auto& [bound, problem, candidates, parallel] = search;
+  std::vector<EvaluatedHypothesis> best = singles;
+  std::erase_if(best, [&](const EvaluatedHypothesis& one) { return search.effects(one) != 1; });
+  constexpr double none_is_hopeless = std::numeric_limits<double>::infinity();
+  best = best_structures(best, problem.effort.combined, none_is_hopeless, problem.criteria);
+  std::vector<Fit> fits;
+  for (std::size_t i = 0; i < best.size(); ++i) {
+    for (std::size_t j = i + 1; j < best.size(); ++j) {
+      fits.push_back({half_of_each(best[i].hypothesis, best[j].hypothesis, problem.known)});
+    }
+  }
+  FitProblem quick = problem.fit;
+  quick.recordings = problem.screened;
+  parallel(fits.size(), [&](std::size_t i) {
+    if (!problem.stopped()) fits[i] = fit(bound, fits[i].hypothesis, quick, serially());
+  });
+  return finished(search, std::move(fits), problem.effort.pair_finalists);
+}
+
+}  // namespace surefoot::diagnosis
