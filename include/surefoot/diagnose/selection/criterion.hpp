@@ -31,10 +31,10 @@ struct SelectionCriteria {
   // Predictive density:
   double degrees = 12;        // of freedom of the prior of a recording's own scale: it differs by about a fifth
   double least_error = 1e-3;  // of the output's standard deviation: smaller errors are those of the integration
-  double form_error = 0.1;    // of the error without effects: the form of an effect is never quite that of the machine
+  double form_error = 0.05;   // of the error without effects: the form of an effect is never quite that of the machine
 
   // Decision:
-  double named_odds = 20;  // against the model without effects, from which on an effect is named: 5 % to be wrong
+  double named_odds = 20;  // that something is missing, from which on it is named: 5 % to be wrong
   double tie_odds = 8;     // of the best structure against another one, below which they cannot be told apart
   std::uint32_t rounds = 400;  // of the bootstrap over recordings: shares are off by 2.5 % at most
   std::uint64_t seed = 1;      // of the same: always the same draws

@@ -191,7 +191,8 @@ SUREFOOT_INLINE Selection ranked(const Search& search, const std::vector<Evaluat
     selection.nominal = pool[i];
     without = share[i];
   }
-  const bool named = share[order.front()] > criteria.named_odds * without;
+  const bool something = 1 - without > criteria.named_odds * without;
+  const bool named = something && search.effects(pool[order.front()]) > 0;
   selection.chosen = named ? pool[order.front()] : selection.nominal;
   selection.probability = named ? share[order.front()] : without;
   for (const std::size_t i : order) {
