@@ -37,7 +37,10 @@ std::optional<CommandLine> parse_command_line(int argc, const char* const* argv,
   program.add_option("--max-effects", line.max_effects, "effects to combine at most")
       ->check(CLI::Range(0, 16))
       ->capture_default_str();
-  program.add_option("--budget", line.budget, "seconds after which the search for effects ends; 0: no limit")
+  program.add_option("--max-rows", line.max_rows, "rows to use of all recordings together; of more, the first of each")
+      ->check(CLI::Range(std::size_t{2}, std::size_t{1000000000}))
+      ->capture_default_str();
+  program.add_option("--budget", line.budget, "seconds after which calibration and search end; 0: no limit")
       ->check(CLI::NonNegativeNumber);
   program.add_option("--seed", line.seed, "of all randomness; the same seed gives the same result")
       ->capture_default_str();

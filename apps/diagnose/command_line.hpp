@@ -18,6 +18,7 @@ struct CommandLine {
   std::vector<std::string> effects;
   double test_share = 0;
   int max_effects = 4;
+  std::size_t max_rows = 40000;
   double budget = 0;  // [s], 0: none
   std::uint64_t seed = 1;
   std::size_t threads = 0;  // 0: as many as the machine has

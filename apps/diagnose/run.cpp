@@ -39,6 +39,7 @@ int run(const surefoot::SimulatorInfo& info, const surefoot_apps::DiagnoseFuncti
   options.held_out_share = line.test_share;
   options.effects = line.effects;
   options.max_effects = line.max_effects;
+  options.max_rows = line.max_rows;
   options.repair = line.repair;
   if (line.budget > 0) options.max_seconds = line.budget;
   prepare_folder(line.out);

@@ -14,7 +14,7 @@
 namespace surefoot {
 
 struct DiagnoseOptions {
-  std::vector<std::string> held_out = {};  // names of recordings that are held out; empty: a random share
+  std::vector<std::string> held_out = {};  // names of recordings that are held out of everything; empty: see below
   double held_out_share = 0;  // [0..1] of the recordings, if none is named; 0: each is held out once (cross-fitting)
   std::vector<std::string> effects = {};   // names of effects to consider; empty: all
   std::vector<Effect> more_effects = {};   // of the user's own
@@ -22,6 +22,7 @@ struct DiagnoseOptions {
   int max_effects = 4;                     // to combine; 0: calibrates and tests only
   double max_seconds = std::numeric_limits<double>::infinity();  // [s] since the begin, until the search ends
   bool repair = false;  // repairs faults of the log (Diagnosis::log_faults) before anything is concluded from it
+  std::size_t max_rows = 40000;  // of all recordings together; of more, only the first rows of each are used
   std::size_t starts = 24;  // points of the global search for the nominal parameters, beside these themselves
   /// Told what is being done, the share of the work done (0..1) and the best so far.
   std::function<void(std::string_view stage, double share, std::string_view best)> on_progress = {};

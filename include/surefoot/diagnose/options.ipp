@@ -52,6 +52,10 @@ SUREFOOT_INLINE void check(const DiagnoseOptions& options) {
     fail("max_effects must not be negative; 0 looks for no effects, and " + std::to_string(options.max_effects) +
          " was given");
   }
+  if (options.max_rows < 2) {
+    fail("max_rows must be 2 at least, and " + std::to_string(options.max_rows) + " was given; its default is " +
+         std::to_string(DiagnoseOptions{}.max_rows));
+  }
   if (!(options.max_seconds > 0)) {
     fail("max_seconds must be above 0; leave it at infinity for no limit");
   }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -25,6 +26,7 @@ struct FitProblem {
   Free free = Free::everything;
   int max_iterations = 12;
   double tolerance = 1e-4;  // relative decrease of the loss at which it ends
+  std::function<bool()> stopped = [] { return false; };  // asked before each iteration
 };
 
 struct Fit {

@@ -140,8 +140,11 @@ SUREFOOT_INLINE Fit fit(const BoundSimulator& bound, const Hypothesis& start, co
     }
     return there;
   };
-  const auto fitted = least_squares(residuals, z, options,
-                                    [&](const Eigen::VectorXd& x) { return functions.jacobian(x, residuals(x)); });
+  const auto jacobian = [&](const Eigen::VectorXd& x) -> Eigen::MatrixXd {
+    if (problem.stopped()) return Eigen::MatrixXd::Zero(first.size(), x.size());  // nothing to gain: it ends here
+    return functions.jacobian(x, residuals(x));
+  };
+  const auto fitted = least_squares(residuals, z, options, jacobian);
   result.hypothesis = functions.at(fitted.x);
   result.loss = mean_loss(fitted.residuals, problem.weighting.robust);
   return result;

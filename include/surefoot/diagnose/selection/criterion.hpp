@@ -58,7 +58,8 @@ struct SearchEffort {
   std::size_t max_shortlist = 50;            // of small problems
   double shortlist_rows = 6000;              // of the recordings, up to which the list is longer in proportion
   std::size_t rows = 4000;                   // of the recordings that the search looks at; what it finds is fitted to all
-  std::size_t finalists = 6;                 // fits that are finished and evaluated
+  std::size_t finalists = 6;                 // fits of a first effect that are finished and evaluated
+  std::size_t further_finalists = 3;         // the same beside effects that were found
   std::size_t beam = 2;                      // structures that are each extended by a further effect
   double hopeless = 15;                      // [nat] behind the best one: not extended, not fitted again
   std::size_t screening = 5;                 // recordings that proposals are made from

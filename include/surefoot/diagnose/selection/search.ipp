@@ -55,13 +55,15 @@ SUREFOOT_INLINE void extend(const Search& search, const EvaluatedHypothesis& par
     std::erase_if(proposals,
                   [&](const Proposal& one) { return one.gain < problem.criteria.unstructured_proposal_gain; });
   }
+  const bool first = search.effects(parent) == 0;
+  const std::size_t finalists = first ? problem.effort.finalists : problem.effort.further_finalists;
   bool any_better = false;
   for (const EvaluatedHypothesis& child :
-       next_effects(search, parent, proposals, problem.effort.shortlist, problem.effort.finalists)) {
+       next_effects(search, parent, proposals, problem.effort.shortlist, finalists)) {
     any_better = any_better || log_odds(child, parent, problem.criteria) > 0;
     keep_best_form(children, child, problem.criteria);
   }
-  const bool room = search.effects(parent) + 2 <= most, first = search.effects(parent) == 0;
+  const bool room = search.effects(parent) + 2 <= most;
   if (!structured || !room || (any_better && !first) || problem.stopped()) return;
   for (const EvaluatedHypothesis& child : next_pairs(search, parent, proposals)) {
     keep_best_form(children, child, problem.criteria);

@@ -84,6 +84,7 @@ SUREFOOT_INLINE std::vector<Recording> cut_few_recordings(const BindSimulator& b
     FitProblem problem;
     for (std::size_t r = 0; r < recordings.size(); ++r) problem.recordings.push_back(r);
     problem.integration = whole.integration;
+    problem.stopped = [run] { return run.search_has_ended(); };
     const Fit fitted =
         calibrate(whole, nominal_with_known(whole, run.options), problem, run.options.starts, run.seed, run.parallel);
     const auto runs = simulate_all(whole, fitted.hypothesis, problem.recordings, whole.integration, run.parallel);
@@ -115,6 +116,7 @@ SUREFOOT_INLINE Calibration calibrate_model(EstimationSetup& setup, const RunCon
   bound.integration.restart = noise == NoiseKind::process ? 1 : 0;
   if (noise == NoiseKind::measurement) free_measured_initial_states(bound, split.training);
   problem.integration = bound.integration;
+  problem.stopped = [run] { return run.search_has_ended(); };
   if (!nominal.effects.empty()) {  // the bounds of their parameters are multiples of these
     bound.sizes = measure_sizes(bound, nominal, split.training,
                                 simulate_all(bound, nominal, split.training, bound.integration, parallel));
@@ -277,6 +279,11 @@ SUREFOOT_INLINE void refine_integration(EstimationSetup& setup, Selection& selec
   chosen = fit(bound, chosen, problem, run.parallel).hypothesis;
 }
 
+SUREFOOT_INLINE std::string shortening_sentence(Eigen::Index rows) {
+  return "of so many rows only the first " + std::to_string(rows) +
+         " of each recording were used; max_rows (--max-rows) takes more, in proportionally more time";
+}
+
 /// All stages after the recordings were screened and examined.
 SUREFOOT_INLINE void diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
                                          const RunContext& run, Diagnosis& diagnosis) {
@@ -308,6 +315,8 @@ SUREFOOT_INLINE Diagnosis run_pipeline(const BindSimulator& bind, const Simulato
 
   run.progress("screening", 0);
   diagnosis.remarks = screen_recordings(info, recordings);
+  const Eigen::Index kept = shorten_recordings(recordings, options.max_rows);
+  if (kept > 0) diagnosis.remarks.push_back({"", shortening_sentence(kept)});
   diagnosis.log_faults = examine_recordings(bind, recordings, run);
   const std::string warning = caution(diagnosis.log_faults);
   try {

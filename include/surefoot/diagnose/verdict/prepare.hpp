@@ -31,6 +31,10 @@ std::vector<Recording> cut_recordings(const BoundSimulator& bound, const Hypothe
 void free_measured_initial_states(BoundSimulator& bound, const std::vector<std::size_t>& training,
                                   const PreparationCriteria& criteria = {});
 
+/// Of more rows than `most` each recording keeps only the first ones, short recordings all of theirs. Returns how many
+/// rows the longest has left, 0 if none was shortened.
+Eigen::Index shorten_recordings(std::vector<Recording>& recordings, std::size_t most);
+
 /// At most `count` recordings, evenly chosen.
 std::vector<std::size_t> some_of(const std::vector<std::size_t>& recordings, std::size_t count);
 

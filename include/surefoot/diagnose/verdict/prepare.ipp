@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -57,6 +58,44 @@ SUREFOOT_INLINE void free_measured_initial_states(BoundSimulator& bound, const s
       if (noise > criteria.least_noise * deviation) recording.initial_scale[state] = noise;
     }
   }
+}
+
+/// Whether the first rows hold about their share of the measurements: not where only the end was measured.
+SUREFOOT_INLINE bool measured_early(const Recording& one, Eigen::Index rows) {
+  constexpr double about = 0.5;
+  double early = 0, all = 0;
+  for (Eigen::Index row = 0; row < one.outputs.cols(); ++row) {
+    for (Eigen::Index k = 0; k < one.outputs.rows(); ++k) {
+      const bool measured = std::isfinite(one.outputs(k, row));
+      all += measured ? 1 : 0;
+      early += measured && row < rows ? 1 : 0;
+    }
+  }
+  return early > about * all * static_cast<double>(rows) / static_cast<double>(one.rows());
+}
+
+SUREFOOT_INLINE Eigen::Index shorten_recordings(std::vector<Recording>& recordings, std::size_t most) {
+  std::vector<std::size_t> rows;
+  for (const Recording& one : recordings) rows.push_back(static_cast<std::size_t>(one.rows()));
+  std::sort(rows.begin(), rows.end());
+  std::size_t left = most, limit = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {  // from the shortest on, each may take an equal share of what is left
+    limit = left / (rows.size() - i);
+    if (rows[i] > limit) break;
+    left -= rows[i];
+    limit = 0;
+  }
+  if (limit == 0) return 0;
+  const auto kept = static_cast<Eigen::Index>(limit);
+  bool any = false;
+  for (Recording& one : recordings) {
+    if (one.rows() <= kept || !measured_early(one, kept)) continue;
+    const std::string name = one.name;
+    one = part_of(one, 0, kept, one.initial, one.initial_scale);
+    one.name = name;
+    any = true;
+  }
+  return any ? kept : 0;
 }
 
 SUREFOOT_INLINE std::vector<std::size_t> some_of(const std::vector<std::size_t>& recordings, std::size_t count) {
