@@ -39,7 +39,7 @@ TEST_CASE("some recordings are those that are missed most, least and in between"
   const BoundSimulator bound = bind_simulator(SlidingBlock{}, std::vector<Recording>(5, recording));
   std::vector<SimulatedRun> runs;
   for (const double off : {3, 5, 1, 4}) {
-    runs.push_back({Eigen::MatrixXd::Zero(2, 5), Eigen::MatrixXd::Constant(2, 5, off)});
+    runs.push_back({Eigen::MatrixXd::Constant(2, 5, off), Eigen::MatrixXd::Zero(2, 5)});
   }
   const std::vector<std::size_t> recordings{4, 1, 2, 3};  // off by 3, 5, 1 and 4
   CHECK(some_by_error(bound, recordings, runs, 2) == std::vector<std::size_t>{1, 2});

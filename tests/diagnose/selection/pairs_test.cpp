@@ -18,7 +18,7 @@ Proposal proposal(const std::string& name, const Eigen::MatrixXd& beyond, const 
   Proposal one;
   one.tried.resize(beyond.cols());
   for (Eigen::Index m = 0; m < beyond.cols(); ++m) {
-    effect.parameters.push_back({.name = "strength", .strength = true});
+    effect.parameters.push_back({.name = "strength", .starts = {}, .strength = true});
     one.tried[m] = 2 * static_cast<double>(m + 1);
   }
   one.effect = {std::make_shared<const Effect>(effect), 0, -1, "level", 0};

@@ -8,8 +8,6 @@
 namespace surefoot::diagnosis {
 namespace {
 
-const std::vector<NamedEffect> rate{{"constant_rate", "level", {}, {}, {0.2}}};
-
 TEST_CASE("the interval of a ratio is narrow where all recordings agree, and wide where they do not") {
   const auto [low, high] = ratio_interval({1, 1, 1, 1}, {0.5, 0.5, 0.5, 0.5}, {60, 60, 60, 60}, 1);
   CHECK(low == doctest::Approx(0.5));
@@ -47,9 +45,9 @@ TEST_CASE("the noise of an output is what no lag predicts, unless it is stated")
 }
 
 TEST_CASE("errors, curves and intervals are those of the held-out recordings") {
-  const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(rate, 0.01));
+  const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(toys::extra_inflow(), 0.01));
   const FittedModel wrong = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
-  const FittedModels models{wrong, wrong, fitted_model(setup, toys::with_effects(setup, rate), serially())};
+  const FittedModels models{wrong, wrong, fitted_model(setup, toys::with_effects(setup, toys::extra_inflow()), serially())};
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::missing_physics;
   evaluate_errors(setup, models, diagnosis, 1);

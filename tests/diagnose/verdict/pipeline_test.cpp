@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "surefoot/diagnose/diagnose.hpp"
+#include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "tests/diagnose/verdict/tank_setup.hpp"
 
 namespace surefoot::diagnosis {
