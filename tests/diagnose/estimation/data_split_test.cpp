@@ -23,8 +23,9 @@ std::vector<Recording> named(std::size_t count) {
 
 TEST_CASE("folds partition the training recordings, and with those held out they are all recordings, once each") {
   for (std::size_t count = 2; count < 14; ++count) {
-    for (const double share : {0.0, 0.25, 0.9, 1.0}) {
+    for (const double share : {0.01, 0.25, 0.9, 1.0}) {
       const RecordingSplit split = split_recordings(named(count), {}, share, 4, count);
+      CHECK_FALSE(split.cross_fitted);
       CHECK_FALSE(split.held_out.empty());
       CHECK_FALSE(split.training.empty());
       CHECK(split.folds.size() == (split.training.size() <= 6 ? split.training.size() : 4));
@@ -45,6 +46,21 @@ TEST_CASE("folds partition the training recordings, and with those held out they
   }
 }
 
+TEST_CASE("with a share of 0 every recording is for the fit, and held out once with its fold") {
+  for (std::size_t count = 2; count < 14; ++count) {
+    const RecordingSplit split = split_recordings(named(count), {}, 0, 4, count);
+    std::vector<std::size_t> every(count), dealt;
+    std::iota(every.begin(), every.end(), std::size_t{0});
+    CHECK(split.cross_fitted);
+    CHECK(split.training == every);
+    CHECK(split.held_out == every);
+    CHECK(split.folds.size() >= 2);  // so that there is always something to fit to
+    for (const auto& fold : split.folds) dealt.insert(dealt.end(), fold.begin(), fold.end());
+    std::sort(dealt.begin(), dealt.end());
+    CHECK(dealt == every);
+  }
+}
+
 TEST_CASE("the share of held-out recordings is the one asked for") {
   CHECK(split_recordings(named(20), {}, 0.25, 4, 1).held_out.size() == 5);
   CHECK(split_recordings(named(3), {}, 0.25, 4, 1).held_out.size() == 1);
@@ -54,6 +70,8 @@ TEST_CASE("recordings that are named are held out, and never in a fold") {
   const RecordingSplit split = split_recordings(named(6), {"r4", "r1"}, 0.9, 3, 1);
   CHECK(split.held_out == std::vector<std::size_t>{1, 4});
   CHECK(split.training == std::vector<std::size_t>{0, 2, 3, 5});
+  CHECK_FALSE(split.cross_fitted);
+  CHECK(split_recordings(named(6), {"r4"}, 0, 3, 1).held_out == std::vector<std::size_t>{4});
 }
 
 TEST_CASE("names that do not exist, and tests that leave nothing, are refused") {

@@ -1,106 +1,261 @@
-// What is believed of hypotheses on held-out recordings, and what of their parameters.
+// Posterior probabilities of structures: priors, densities, and what these say together.
 #include "surefoot/diagnose/selection/criterion.hpp"
 
 #include <doctest/doctest.h>
 
-#include "surefoot/diagnose/effects/constant_rate.hpp"
-#include "surefoot/diagnose/effects/sensor_drift.hpp"
-#include "surefoot/diagnose/selection/candidates.hpp"
-#include "tests/diagnose/small_simulators.hpp"
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "tests/diagnose/verdict/tank_setup.hpp"
 
 namespace surefoot::diagnosis {
 namespace {
 
-EvaluatedHypothesis evaluated(std::size_t parameters, double loss, double gain, double p) {
+const SelectionCriteria selection_criteria;
+
+// Errors of one output, with this mean square in each of some recordings of 100 cells.
+ErrorSquares errors_of(const std::vector<double>& mean_squares, double cells = 100, double memory = 1) {
+  const auto rows = static_cast<Eigen::Index>(mean_squares.size());
+  return {Eigen::Map<const Eigen::VectorXd>(mean_squares.data(), rows), Eigen::VectorXd::Constant(rows, cells),
+          Eigen::VectorXd::Constant(1, memory)};
+}
+
+EvaluatedHypothesis evaluated(const std::vector<double>& mean_squares, double log_prior = 0) {
   EvaluatedHypothesis one;
-  one.hypothesis.values.emplace_back(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters)));
-  one.hypothesis.effects.emplace_back();
-  for (int block = 0; block < 20; ++block) one.cross_validated.blocks.push_back(loss * (1 + 0.2 * (block % 3)));
-  one.cross_validated.counts.assign(20, 60.0);
-  one.gain = {.gain = gain, .stderr_ = 0.01, .t = gain / 0.01, .p_value = p};
+  one.errors = errors_of(mean_squares);
+  one.log_prior = log_prior;
   return one;
 }
 
-TEST_CASE("fewer parameters win a tie, and lose a clear case") {
-  CHECK(most_plausible({evaluated(3, 1.00, 0.500, 1e-9), evaluated(1, 1.005, 0.499, 1e-9)}) == 1);
-  CHECK(most_plausible({evaluated(3, 1.00, 0.500, 1e-9), evaluated(1, 2.00, 0.290, 1e-9)}) == 0);
+// By how much more probable the reference is than errors of one recording [nat].
+double behind(double mean_square, double cells, double memory, double least) {
+  ErrorSquares reference = errors_of({1}, cells, memory);
+  reference.least = Eigen::VectorXd::Constant(1, least);
+  return log_densities(reference, reference, selection_criteria)[0] -
+         log_densities(errors_of({mean_square}, cells, memory), reference, selection_criteria)[0];
 }
 
-TEST_CASE("a gain must be large enough and beyond chance, and the best that is not believed stands in nobody's way") {
-  const SelectionCriteria options;
-  CHECK(accepted({.gain = 0.3, .stderr_ = 0.02, .t = 15, .p_value = 1e-9}, 60, 1, options));
-  CHECK_FALSE(accepted({.gain = 0.3, .stderr_ = 0.2, .t = 1.5, .p_value = 0.07}, 60, 1, options));
-  CHECK_FALSE(accepted({.gain = 0.01, .stderr_ = 0.001, .t = 10, .p_value = 1e-9}, 60, 1, options));
-  const auto choice =
-      most_plausible_accepted({evaluated(1, 1.0, 0.5, 0.2), evaluated(1, 1.3, 0.4, 1e-9)}, 60, 1, options);
-  REQUIRE(choice);
-  CHECK(*choice == 1);
-  CHECK_FALSE(most_plausible_accepted({evaluated(1, 1.0, 0.5, 0.2)}, 60, 1, options));
+TEST_CASE("the larger the errors, the less probable they are, and the more so the more of them there are") {
+  CHECK(behind(1, 100, 1, 0) == 0);
+  CHECK(behind(0.9, 100, 1, 0) < 0);
+  CHECK(behind(1.1, 100, 1, 0) > 0);
+  CHECK(behind(1.2, 100, 1, 0) > behind(1.1, 100, 1, 0));
+  CHECK(behind(1.1, 1000, 1, 0) > behind(1.1, 100, 1, 0));
 }
 
-TEST_CASE("an effect whose parameter cannot be told from zero is not determined") {
-  std::vector<Recording> recordings{toys::tank_recording(0, 200), toys::tank_recording(1, 200)};
-  Rng rng(1);
-  for (Recording& recording : recordings) {
-    recording.outputs =
-        simulate_augmented(toys::LeakyTank{}, toys::machine({1, 1}, {{"constant_rate", "level", {}, {}, {0.2}}}),
-                           recording)
-            .outputs;
-    for (double& value : recording.outputs.reshaped()) value += 0.02 * rng.normal();
+TEST_CASE("of errors that depend on each other only as many count as are independent") {
+  CHECK(behind(1.5, 1000, 10, 0) == doctest::Approx(behind(1.5, 100, 1, 0)));
+  CHECK(behind(1.5, 1000, 1, 0) > 1.1 * behind(1.5, 1000, 10, 0));
+}
+
+TEST_CASE("a difference that may come of the form of effects counts as one error, however many cells there are") {
+  const double small = behind(1.1, 100, 1, 0.2);
+  CHECK(small > 0);
+  CHECK(small < 0.1);
+  CHECK(behind(1.1, 1e6, 1, 0.2) == doctest::Approx(small));
+  CHECK(behind(0.9, 1e6, 1, 0.2) > -0.1);
+  CHECK(behind(1.4, 100, 1, 0.2) > 10 * small);  // beyond it
+  CHECK(behind(1.4, 100, 1, 0.2) < behind(1.4, 100, 1, 0));
+}
+
+TEST_CASE("the scale of a recording is its own in part: errors that differ from one to the next are no worse for it") {
+  const ErrorSquares even = errors_of({1, 1}), uneven = errors_of({0.5, 1.5});
+  const auto total = [&](const ErrorSquares& errors) {
+    const auto of = log_densities(errors, even, selection_criteria);
+    return std::accumulate(of.begin(), of.end(), 0.0);
+  };
+  CHECK(total(uneven) > total(even));  // with one scale for all only the mean over all would count
+}
+
+TEST_CASE("each recording has its own density, and what was not measured has none") {
+  ErrorSquares reference = errors_of({1, 1, 1}), errors = errors_of({1, 4, 9});
+  reference.counts(2, 0) = errors.counts(2, 0) = 0;
+  const auto densities = log_densities(errors, reference, selection_criteria), best = log_densities(reference, reference, selection_criteria);
+  REQUIRE(densities.size() == 3);
+  CHECK(densities[0] == best[0]);
+  CHECK(densities[1] < best[1]);
+  CHECK(densities[2] == 0);
+}
+
+TEST_CASE("errors far below those of the integration are as good as each other") {
+  const double tiny = 1e-6 * selection_criteria.least_error * selection_criteria.least_error;
+  const ErrorSquares reference = errors_of({tiny});
+  const double nine_times = log_densities(reference, reference, selection_criteria)[0] -
+                            log_densities(errors_of({9 * tiny}), reference, selection_criteria)[0];
+  CHECK(nine_times < 0.01);
+}
+
+TEST_CASE("errors of form are a share of the error without effects, by output") {
+  ErrorSquares without{Eigen::MatrixXd{{4, 1}, {2, 1}}, Eigen::MatrixXd{{10, 10}, {10, 0}}, Eigen::VectorXd::Ones(2)};
+  const Eigen::VectorXd least = least_squares_compared(without, selection_criteria);
+  REQUIRE(least.size() == 2);
+  CHECK(least[0] == doctest::Approx(3 * selection_criteria.form_error * selection_criteria.form_error));
+  CHECK(least[1] == doctest::Approx(selection_criteria.form_error * selection_criteria.form_error));
+}
+
+TEST_CASE("odds are those of the densities and of the priors, and the other way round they are opposite") {
+  const EvaluatedHypothesis good = evaluated({1, 1, 1}), bad = evaluated({2, 2, 2}), rare = evaluated({1, 1, 1}, -5);
+  CHECK(log_odds(good, bad, selection_criteria) > 10);
+  CHECK(log_odds(bad, good, selection_criteria) == doctest::Approx(-log_odds(good, bad, selection_criteria)));
+  CHECK(log_odds(good, rare, selection_criteria) == doctest::Approx(5));
+  CHECK(log_odds(good, good, selection_criteria) == 0);
+}
+
+TEST_CASE("the best one has the best of both: errors and prior") {
+  CHECK(best_of({evaluated({2, 2, 2}), evaluated({1, 1, 1}, -1), evaluated({1, 1, 1}, -2)}, selection_criteria) == 1);
+  CHECK(best_of({evaluated({2, 2, 2}), evaluated({1, 1, 1}, -1e4)}, selection_criteria) == 0);
+  CHECK(best_of({evaluated({1})}, selection_criteria) == 0);
+}
+
+TEST_CASE("probabilities add up to 1; a clearly better structure has nearly all, and two equal ones share") {
+  const std::vector<double> good(8, 1.0), bad(8, 2.0);
+  const auto clear = probabilities({evaluated(bad), evaluated(good), evaluated(bad)}, selection_criteria);
+  CHECK(clear[1] > 0.999);
+  CHECK(std::accumulate(clear.begin(), clear.end(), 0.0) == doctest::Approx(1));
+  const auto equal = probabilities({evaluated(good), evaluated(bad), evaluated(good)}, selection_criteria);
+  CHECK(equal[0] == doctest::Approx(0.5));
+  CHECK(equal[2] == doctest::Approx(0.5));
+  CHECK(probabilities({}, selection_criteria).empty());
+  CHECK(probabilities({evaluated(good)}, selection_criteria).at(0) == doctest::Approx(1));
+}
+
+TEST_CASE("between equals the prior decides, by its odds") {
+  const std::vector<double> same(8, 1.0);
+  const auto share = probabilities({evaluated(same, std::log(3.0)), evaluated(same)}, selection_criteria);
+  CHECK(share[0] == doctest::Approx(0.75));
+}
+
+TEST_CASE("what one recording alone decides stays uncertain, and what all agree on does not") {
+  std::vector<double> better_in_one(8, 1.07), worse_in_one(8, 1.0);
+  better_in_one[3] = 1;
+  worse_in_one[3] = 2;
+  const EvaluatedHypothesis one = evaluated(better_in_one), other = evaluated(worse_in_one),
+                            good = evaluated(std::vector<double>(8, 1.0)), bad = evaluated(std::vector<double>(8, 1.04));
+  CHECK(log_odds(one, other, selection_criteria) > std::log(100));
+  CHECK(log_odds(good, bad, selection_criteria) > std::log(100));
+  const double alone = probabilities({one, other}, selection_criteria)[0],
+               agreed = probabilities({good, bad}, selection_criteria)[0];
+  CHECK(alone > 0.2);
+  CHECK(alone < 0.8);
+  CHECK(agreed > 0.99);
+}
+
+TEST_CASE("the same seed draws the same recordings, and more rounds change little") {
+  const std::vector<EvaluatedHypothesis> two{evaluated({1, 1, 1.3, 1}), evaluated({1, 1.2, 1, 1})};
+  CHECK(probabilities(two, selection_criteria) == probabilities(two, selection_criteria));
+  SelectionCriteria thorough = selection_criteria, other = selection_criteria;
+  thorough.rounds = 20 * selection_criteria.rounds;
+  other.seed = selection_criteria.seed + 1;
+  const double share = probabilities(two, thorough)[0];
+  CHECK(probabilities(two, selection_criteria)[0] == doctest::Approx(share).epsilon(0.1));
+  CHECK(probabilities(two, other)[0] != probabilities(two, selection_criteria)[0]);
+}
+
+TEST_CASE("structures are the same with their effects in another order or form, but not at another place") {
+  const auto attached = [](const std::string& name, const std::string& form, const std::string& place) {
+    Effect effect;
+    effect.name = name;
+    effect.form = form;
+    return AttachedEffect{std::make_shared<const Effect>(effect), 0, -1, place, 0};
+  };
+  Hypothesis one, other;
+  one.effects = {attached("lag", "", "valve"), attached("leak", "", "level")};
+  other.effects = {attached("leak", "hole", "level"), attached("lag", "", "valve")};
+  CHECK(same_structure(one, other));
+  other.effects[0].place = "second level";
+  CHECK_FALSE(same_structure(one, other));
+  other.effects[0] = other.effects[1];
+  CHECK_FALSE(same_structure(one, other));
+  CHECK(same_structure({}, {}));
+  CHECK_FALSE(same_structure(one, {}));
+}
+
+TEST_CASE("every parameter counts that an effect has") {
+  EvaluatedHypothesis one;
+  CHECK(one.parameter_count() == 0);
+  one.hypothesis.values = {Eigen::VectorXd::Zero(2), Eigen::VectorXd::Zero(1)};
+  CHECK(one.parameter_count() == 3);
+}
+
+// A tank with effects that are told by their parameters alone.
+struct PriorBench {
+  EstimationSetup setup = toys::tank_setup(toys::noisy_tanks({}, 0.01));
+  std::size_t candidates = 30;
+
+  /// The prior of effects with one parameter between these multiples of its size, and this value.
+  double of(const std::vector<double>& values, std::size_t known = 0, double low = -1, double high = 1,
+            int memories = 0) const {
+    Effect effect;
+    effect.name = "wind";
+    effect.place = Place::state;
+    effect.parameters = {{.name = "size", .low = low, .high = high, .starts = {0.1}, .strength = true}};
+    effect.hidden_states = memories;
+    Hypothesis hypothesis = nominal_hypothesis(setup.bound);
+    for (const double value : values) {
+      hypothesis.effects.push_back({std::make_shared<const Effect>(effect), 0, -1, "level", 0});
+      hypothesis.values.emplace_back(Eigen::VectorXd::Constant(1, value));
+    }
+    return log_prior(setup.bound, hypothesis, known, candidates, selection_criteria);
   }
-  const BoundSimulator bound = bind_simulator(toys::LeakyTank{}, recordings);
-  FitProblem problem;
-  problem.recordings = {0, 1};
-  problem.weighting.sigma.setConstant(1, 0.02);
-  Hypothesis start = nominal_hypothesis(bound);
-  start.effects = attachments(bound, {effects::constant_rate()}, {});
-  start.values.emplace_back(Eigen::VectorXd::Constant(1, 0.1));
-  CHECK(determined(bound, fit(bound, start, problem, serially()).hypothesis, 0, problem, serially()));
-  start.effects.push_back(attachments(bound, {effects::sensor_drift()}, {}).front());
-  start.values.emplace_back(Eigen::VectorXd::Constant(1, 0.0));
-  const Hypothesis both = fit(bound, start, problem, serially()).hypothesis;
-  CHECK_FALSE(determined(bound, both, 0, problem, serially()));
-  CHECK(determined(bound, both, 2, problem, serially()));  // what is known already is not questioned
+};
+
+TEST_CASE("each effect costs the choice among all candidates, and the length of its formula") {
+  const PriorBench bench;
+  const double choice = std::log(static_cast<double>(bench.candidates));
+  CHECK(bench.of({}) == 0);
+  CHECK(bench.of({0.3}) == doctest::Approx(-choice - selection_criteria.form_cost));
+  CHECK(bench.of({0.3, 0.4}) == doctest::Approx(-2 * (choice + selection_criteria.form_cost)));
+  CHECK(bench.of({0.3}, 0, -1, 1, 2) == doctest::Approx(-choice - 2 * selection_criteria.form_cost));  // it remembers something
+  CHECK(bench.of({0.3, 0.4}, 1) == doctest::Approx(bench.of({0.3})));  // one was known before
+  PriorBench none;
+  none.candidates = 0;
+  CHECK(none.of({0.3}) == doctest::Approx(-selection_criteria.form_cost));
 }
 
-TEST_CASE("few of many tests are passed by chance alone, so that each must be passed by more") {
-  const SelectionCriteria criteria;
-  const Comparison gain{.gain = 0.05, .stderr_ = 0.01, .t = 4, .p_value = 1e-3};
-  CHECK(accepted(gain, 10, 1, criteria));
-  CHECK_FALSE(accepted(gain, 100, 1, criteria));
-  CHECK(accepted({.gain = 0.2, .stderr_ = 0.05, .t = 4, .p_value = 1e-2}, 100, 1, criteria));  // large: believed
+TEST_CASE("a parameter at its bound costs so much that it is never chosen") {
+  const PriorBench bench;
+  const double plain = bench.of({0.3}), near = selection_criteria.bound_share;
+  CHECK(bench.of({1}) == doctest::Approx(plain - selection_criteria.bound_cost));
+  CHECK(bench.of({-1}) == doctest::Approx(plain - selection_criteria.bound_cost));
+  CHECK(bench.of({1 - near}) == doctest::Approx(plain - selection_criteria.bound_cost));
+  CHECK(bench.of({1 - 3 * near}) == doctest::Approx(plain));
+  CHECK(bench.of({1}, 1) == 0);
 }
 
-TEST_CASE("what is gained of a small rest counts only if it is most of it") {
-  const SelectionCriteria criteria;
-  const Comparison some{.gain = 0.3, .stderr_ = 0.01, .t = 30, .p_value = 1e-12};
-  CHECK(accepted(some, 60, 0.2, criteria));
-  CHECK_FALSE(accepted(some, 60, 0.05, criteria));  // 1.5 % of the error without effects
-  CHECK(accepted({.gain = 0.6, .stderr_ = 0.01, .t = 60, .p_value = 1e-12}, 60, 0.01, criteria));
+TEST_CASE("a strength that cannot be negative may be small, but not at its upper bound") {
+  const PriorBench bench;
+  const double plain = bench.of({0.3}, 0, 0);
+  CHECK(bench.of({0.0}, 0, 0) == doctest::Approx(plain));
+  CHECK(bench.of({1.0}, 0, 0) == doctest::Approx(plain - selection_criteria.bound_cost));
 }
 
-TEST_CASE("an effect is idle if it gains little, or may have gained nothing") {
-  const SelectionCriteria criteria;
-  CHECK(idle({.gain = 0.01, .t = 9}, criteria));
-  CHECK(idle({.gain = 0.2, .t = 1}, criteria));
-  CHECK_FALSE(idle({.gain = 0.02, .t = 2}, criteria));
-}
-
-TEST_CASE("an effect is replaced by one that is clearly ahead, as measured by the error without effects too") {
-  const SelectionCriteria criteria;
-  CHECK(replaces({.gain = 0.05, .t = 3}, 0.5, criteria));
-  CHECK_FALSE(replaces({.gain = 0.05, .t = 3}, 0.2, criteria));
-  CHECK_FALSE(replaces({.gain = 0.05, .t = 1.9}, 0.5, criteria));
-  CHECK_FALSE(replaces({.gain = 0.02, .t = 3}, 1, criteria));
-}
-
-TEST_CASE("of effects with as many parameters the one earlier in the catalogue is simpler") {
-  Hypothesis early = evaluated(2, 1, 0, 1).hypothesis, late = early, longer = evaluated(3, 1, 0, 1).hypothesis;
-  early.effects[0].rank = 1;
-  late.effects[0].rank = 2;
-  CHECK(simpler(early, late));
-  CHECK_FALSE(simpler(late, early));
-  CHECK(simpler(late, longer));
+TEST_CASE("a fit is evaluated on all its recordings, with what its parameters cost") {
+  const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(toys::extra_inflow(), 0.01));
+  SearchProblem problem;
+  problem.fit = setup.problem;
+  problem.scale.sigma = Eigen::VectorXd::Constant(1, 0.01);
+  problem.least = Eigen::VectorXd::Constant(1, 0.25);
+  problem.candidates = 10;
+  const auto measured = [&](const std::vector<NamedEffect>& effects) {
+    const Fit fitted = fit(setup.bound, toys::with_effects(setup, effects), problem.fit, serially());
+    const EvaluatedHypothesis one = evaluate_fit(setup.bound, fitted, problem, serially());
+    CHECK(one.loss == fitted.loss);
+    CHECK(one.errors.mean_squares.rows() == 4);
+    CHECK(one.errors.least == problem.least);
+    const Hypothesis& hypothesis = fitted.hypothesis;
+    CHECK(one.log_prior ==
+          doctest::Approx(log_prior(setup.bound, hypothesis, 0, problem.candidates, selection_criteria) +
+                          log_occam_factor(setup.bound, hypothesis, problem.fit, serially())));
+    return one;
+  };
+  const EvaluatedHypothesis without = measured({}), with = measured(toys::extra_inflow());
+  CHECK(with.errors.rms() == doctest::Approx(1).epsilon(0.1));  // in units of the noise
+  CHECK(with.log_prior < without.log_prior - std::log(10));
+  CHECK(log_odds(with, without, selection_criteria) > std::log(selection_criteria.named_odds));
 }
 
 }  // namespace

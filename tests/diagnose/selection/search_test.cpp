@@ -1,139 +1,175 @@
-// The search for effects: what is taken back, and what takes the place of what.
+// The search for effects as a whole: with what it ends, and how sure it is of that.
 #include "surefoot/diagnose/selection/search.hpp"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <string>
 #include <vector>
 
-#include "surefoot/diagnose/effects/constant_rate.hpp"
-#include "surefoot/diagnose/effects/sensor_bias.hpp"
-#include "surefoot/diagnose/effects/sensor_drift.hpp"
-#include "surefoot/diagnose/selection/candidates.hpp"
-#include "tests/diagnose/small_simulators.hpp"
+#include "tests/diagnose/selection/tank_bench.hpp"
 
 namespace surefoot::diagnosis {
 namespace {
 
-// Six tanks that these effects act on, with noise of 1 cm, and the search in them.
-struct TankBench {
-  BoundSimulator bound;
-  SearchProblem problem;
-  std::vector<AttachedEffect> candidates;
-  Parallel parallel = serially();
-  Search search{bound, problem, candidates, parallel};
-
-  explicit TankBench(const std::vector<NamedEffect>& truth) {
-    std::vector<Recording> recordings;
-    Rng rng(1);
-    for (int r = 0; r < 6; ++r) {
-      Recording recording = toys::tank_recording(r, 120);
-      recording.outputs = simulate_augmented(toys::LeakyTank{}, toys::machine({1, 1}, truth), recording).outputs;
-      for (double& level : recording.outputs.reshaped()) level += 0.01 * rng.normal();
-      recordings.push_back(std::move(recording));
-    }
-    bound = bind_simulator(toys::LeakyTank{}, recordings);
-    problem.fit.recordings = problem.screened = {0, 1, 2, 3, 4, 5};
-    problem.fit.weighting.sigma.setConstant(1, 0.01);
-    problem.folds = {{0, 1}, {2, 3}, {4, 5}};
-    const Hypothesis nominal = nominal_hypothesis(bound);
-    const auto runs = simulate_all(bound, nominal, problem.fit.recordings, {}, parallel);
-    bound.sizes = measure_sizes(bound, nominal, problem.fit.recordings, runs);
-    candidates = attachments(bound, {effects::constant_rate(), effects::sensor_drift(), effects::sensor_bias()},
-                             std::vector<bool>(2, true));
-  }
-  TankBench(const TankBench&) = delete;
-  TankBench& operator=(const TankBench&) = delete;
-
-  /// A fit with these effects, as it is evaluated.
-  EvaluatedHypothesis with(const std::vector<std::string>& names) const {
-    Hypothesis start = nominal_hypothesis(bound);
-    for (const std::string& name : names) {
-      const auto of_name = [&](const AttachedEffect& one) { return one.effect->name == name; };
-      start.effects.push_back(*std::find_if(candidates.begin(), candidates.end(), of_name));
-      start.values.emplace_back(Eigen::VectorXd::Constant(1, 0.01));
-    }
-    return evaluate_fit(bound, fit(bound, start, problem.fit, parallel), problem, parallel);
-  }
-};
-
-std::string names_in(const EvaluatedHypothesis& evaluated) {
-  std::vector<std::string> names;
-  for (const AttachedEffect& one : evaluated.hypothesis.effects) names.push_back(one.effect->name);
-  std::sort(names.begin(), names.end());
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
-}
-
-const NamedEffect rate{"constant_rate", "level", {}, {}, {0.2}}, drift{"sensor_drift", "level_m", {}, {}, {0.05}};
-
-TEST_CASE("an effect that another one made idle is dropped") {
-  const TankBench bench({rate});
-  EvaluatedHypothesis chosen = bench.with({"sensor_drift", "constant_rate"});
-  drop_idle_effects(bench.search, chosen);
-  CHECK(names_in(chosen) == "constant_rate");
-}
-
-TEST_CASE("two effects that both do something stay") {
-  const TankBench bench({rate, drift});
-  EvaluatedHypothesis chosen = bench.with({"sensor_drift", "constant_rate"});
-  drop_idle_effects(bench.search, chosen);
-  CHECK(names_in(chosen) == "constant_rate, sensor_drift");
-}
-
-TEST_CASE("a pair takes the place of one effect that leaves something open") {
-  const TankBench bench({rate, drift});
-  Selection selection;
-  selection.nominal = bench.with({});
-  selection.chosen = bench.with({"sensor_bias"});
-  try_pair_instead(bench.search, selection);
-  CHECK(names_in(selection.chosen) == "constant_rate, sensor_drift");
-}
-
-TEST_CASE("an effect that stands where another one does better is replaced, until none does") {
-  const TankBench bench({rate, drift});
-  Selection selection;
-  selection.nominal = bench.with({});
-  selection.chosen = bench.with({"constant_rate", "sensor_bias"});
-  int rounds = 0;
-  while (rounds < 5 && compare_with_others(bench.search, selection, true)) ++rounds;
-  CHECK(rounds > 0);
-  CHECK(rounds < 5);
-  CHECK(names_in(selection.chosen) == "constant_rate, sensor_drift");
-  CHECK(selection.evidence.size() == 2);
-}
-
-TEST_CASE("the search ends with the effects that act, and with none where none acts") {
-  const TankBench both({rate, drift}), none({});
-  const auto found = [](const TankBench& bench) {
-    const Fit calibrated = fit(bench.bound, nominal_hypothesis(bench.bound), bench.problem.fit, bench.parallel);
-    return select_effects(bench.bound, calibrated, bench.problem, bench.candidates, bench.parallel);
-  };
-  const Selection two = found(both);
+TEST_CASE("the search ends with the two effects that act") {
+  const TankBench bench({rate_in_tank, drift_in_tank});
+  const Selection two = bench.found();
   CHECK(names_in(two.chosen) == "constant_rate, sensor_drift");
-  CHECK(two.evidence.size() == 2);
+  CHECK(names_in(two.nominal).empty());
+  CHECK(two.probability > 0.9);
   CHECK(two.candidates == 3);
-  CHECK(names_in(found(none).chosen).empty());
+  CHECK(two.fit.recordings == bench.problem.fit.recordings);
+  REQUIRE(two.evidence.size() == 2);
+  for (const Comparison& one : two.evidence) {
+    CHECK(one.gain > 0.5);
+    CHECK(one.p_value < 1e-3);
+  }
+  const auto value = [&](const std::string& name) {
+    const auto& effects = two.chosen.hypothesis.effects;
+    const auto place = std::ranges::find(effects, name, [](const AttachedEffect& one) { return one.effect->name; });
+    return two.chosen.hypothesis.values.at(static_cast<std::size_t>(place - effects.begin()))[0];
+  };
+  CHECK(value("constant_rate") == doctest::Approx(0.2).epsilon(0.1));
+  CHECK(value("sensor_drift") == doctest::Approx(0.05).epsilon(0.2));
+}
+
+TEST_CASE("probabilities of the choice and of its alternatives add up to 1, the most probable first") {
+  const Selection selection = TankBench({rate_in_tank}).found();
+  const auto& others = selection.alternative_probabilities;
+  CHECK(selection.probability + std::accumulate(others.begin(), others.end(), 0.0) == doctest::Approx(1));
+  REQUIRE(others.size() == selection.alternatives.size());
+  CHECK(std::ranges::is_sorted(others, std::ranges::greater{}));
+  CHECK(names_in(selection.chosen) == "constant_rate");
+  for (const EvaluatedHypothesis& one : selection.alternatives) CHECK(names_in(one) != "constant_rate");
+}
+
+TEST_CASE("where no effect acts none is chosen") {
+  const Selection selection = TankBench({}).found();
+  CHECK(names_in(selection.chosen).empty());
+  CHECK(selection.evidence.empty());
+  CHECK(selection.probability > 0.5);
+  CHECK_FALSE(selection.alternatives.empty());  // they were tried
+}
+
+TEST_CASE("of residuals that look like noise only strong proposals get a fit") {
+  TankBench bench({});
+  bench.problem.structured = [](const Hypothesis&) { return false; };
+  CHECK(bench.found().alternatives.empty());
+  TankBench strong({rate_in_tank});
+  strong.problem.structured = [](const Hypothesis&) { return false; };
+  CHECK(names_in(strong.found().chosen) == "constant_rate");
 }
 
 TEST_CASE("a search that is stopped at once chooses nothing") {
-  TankBench bench({rate});
+  TankBench bench({rate_in_tank});
   bench.problem.stopped = [] { return true; };
-  const Fit calibrated = fit(bench.bound, nominal_hypothesis(bench.bound), bench.problem.fit, bench.parallel);
-  CHECK(names_in(select_effects(bench.bound, calibrated, bench.problem, bench.candidates, bench.parallel).chosen)
-            .empty());
+  const Selection selection = bench.found();
+  CHECK(names_in(selection.chosen).empty());
+  CHECK(selection.probability == doctest::Approx(1));
 }
 
-TEST_CASE("of residuals that look like noise only strong proposals are worth a fit") {
+TEST_CASE("effects that are known already are kept, not counted, and not chosen") {
+  TankBench bench({rate_in_tank, drift_in_tank});
+  bench.problem.known = 1;
+  bench.problem.nominal = bench.start({"constant_rate"});
+  const Selection selection = bench.found();
+  CHECK(names_in(selection.nominal) == "constant_rate");
+  CHECK(names_in(selection.chosen) == "constant_rate, sensor_drift");
+  CHECK(selection.evidence.size() == 1);
+}
+
+TEST_CASE("the search is the same however its work is shared out") {
+  TankBench one({rate_in_tank}), other({rate_in_tank});
+  other.parallel = [](std::size_t count, const std::function<void(std::size_t)>& job) {
+    for (std::size_t i = count; i > 0; --i) job(i - 1);
+  };
+  const Selection a = one.found(), b = other.found();
+  CHECK(a.probability == b.probability);
+  CHECK(a.alternative_probabilities == b.alternative_probabilities);
+  CHECK(a.chosen.hypothesis.values == b.chosen.hypothesis.values);
+}
+
+TEST_CASE("a search in many recordings looks at some that differ, and fits to all what it finds") {
+  TankBench bench({rate_in_tank});
+  bench.problem.screened = {0, 1};
+  const Hypothesis nominal = bench.problem.nominal;
+  CHECK(informative(bench.bound, nominal, bench.problem, bench.parallel) == bench.problem.fit.recordings);
+  bench.problem.effort.rows = 400;
+  const auto some = informative(bench.bound, nominal, bench.problem, bench.parallel);
+  CHECK(some.size() == 4);
+  CHECK(std::ranges::is_sorted(some));
+  bench.problem.effort.rows = 1;
+  CHECK(informative(bench.bound, nominal, bench.problem, bench.parallel).size() == 2);  // as many as are screened
+  const Selection selection = bench.found();
+  CHECK(names_in(selection.chosen) == "constant_rate");
+  CHECK(selection.fit.recordings.size() == 6);
+  CHECK(selection.chosen.errors.mean_squares.rows() == 6);
+  CHECK(selection.nominal.errors.mean_squares.rows() == 6);
+}
+
+// A structure with these mean squares in recordings of 100 cells.
+EvaluatedHypothesis made_up(const TankBench& bench, const std::vector<std::string>& names, double mean_square,
+                            double log_prior = 0) {
+  EvaluatedHypothesis one;
+  one.hypothesis = bench.start(names);
+  one.errors = {Eigen::MatrixXd::Constant(6, 1, mean_square), Eigen::MatrixXd::Constant(6, 1, 100),
+                Eigen::VectorXd::Ones(1)};
+  one.log_prior = log_prior;
+  return one;
+}
+
+TEST_CASE("the most probable structure is named if its odds against none are high enough") {
   const TankBench bench({});
-  const Hypothesis nominal = nominal_hypothesis(bench.bound);
-  const auto some = shortlisted(bench.bound, nominal, bench.problem, bench.candidates, 10, true, bench.parallel);
-  CHECK_FALSE(some.empty());
-  CHECK(shortlisted(bench.bound, nominal, bench.problem, bench.candidates, 10, false, bench.parallel).empty());
-  CHECK(shortlisted(bench.bound, nominal, bench.problem, bench.candidates, 1, true, bench.parallel).size() == 1);
+  const SelectionCriteria& criteria = bench.problem.criteria;
+  const double needed = std::log(criteria.named_odds);
+  const auto chosen_with = [&](double log_prior) {
+    return ranked(bench.search(), {made_up(bench, {}, 1), made_up(bench, {"sensor_bias"}, 1, log_prior)});
+  };
+  const Selection named = chosen_with(needed + 0.1), unsure = chosen_with(needed - 0.1);
+  CHECK(names_in(named.chosen) == "sensor_bias");
+  CHECK(named.probability > criteria.named_odds / (1 + criteria.named_odds));
+  CHECK(names_in(unsure.chosen).empty());
+  CHECK(unsure.probability < 0.5);  // though it is less probable than the effect
+  REQUIRE(unsure.alternatives.size() == 1);
+  CHECK(names_in(unsure.alternatives[0]) == "sensor_bias");
+}
+
+TEST_CASE("all that was evaluated is ranked, whatever way led to it") {
+  const TankBench bench({});
+  const Selection selection =
+      ranked(bench.search(), {made_up(bench, {"sensor_bias"}, 2), made_up(bench, {}, 9),
+                              made_up(bench, {"constant_rate", "sensor_drift"}, 1), made_up(bench, {"sensor_drift"}, 3)});
+  CHECK(names_in(selection.nominal).empty());
+  CHECK(names_in(selection.chosen) == "constant_rate, sensor_drift");
+  REQUIRE(selection.alternatives.size() == 3);
+  CHECK(names_in(selection.alternatives[0]) == "sensor_bias");
+  CHECK(selection.candidates == 3);
+}
+
+TEST_CASE("a gain is the share of the error that goes, and its standard error that over recordings") {
+  ErrorSquares before{Eigen::MatrixXd::Constant(4, 1, 4), Eigen::MatrixXd::Constant(4, 1, 100),
+                      Eigen::VectorXd::Ones(1)};
+  ErrorSquares after = before;
+  after.mean_squares.setConstant(1);
+  const Comparison even = gain_of(before, after, 0);
+  CHECK(even.gain == doctest::Approx(0.5));
+  CHECK(even.stderr_ == doctest::Approx(0));
+  CHECK(even.p_value == doctest::Approx(0.5));
+  after.mean_squares.col(0) << 0.6, 1.4, 0.6, 1.4;
+  const Comparison uneven = gain_of(before, after, std::log(99));
+  CHECK(uneven.gain == doctest::Approx(0.5));
+  // ratio of the squares 1/4, with a standard error of sqrt(4) 100 * 0.4 / 1600; that of its root is the same, as 2 * 1/2
+  CHECK(uneven.stderr_ == doctest::Approx(0.05));
+  CHECK(uneven.t == doctest::Approx(10));
+  CHECK(uneven.p_value == doctest::Approx(0.01));
+  CHECK(gain_of(before, after, 1e9).p_value >= 0);
+  CHECK(gain_of(before, after, -1e9).p_value <= 1);
+  before.mean_squares.setZero();
+  CHECK(gain_of(before, after, 5).p_value == 1);  // there was nothing to gain
 }
 
 }  // namespace

@@ -3,102 +3,112 @@
 
 #include <doctest/doctest.h>
 
+#include <cstddef>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::diagnosis {
 namespace {
 
-const AlternativeCriteria alternative_criteria;
+const SelectionCriteria tie_criteria;
 
-// Attached to the first state, with losses that differ from block to block by a tenth.
-EvaluatedHypothesis with_effect(const std::string& name, double loss, int turn = 0) {
+// Effects at the first state, with a root mean square error.
+EvaluatedHypothesis with_effects_named(const std::vector<std::string>& names, double error = 1) {
   EvaluatedHypothesis one;
-  if (!name.empty()) {
+  for (const std::string& name : names) {
     Effect effect;
     effect.name = name;
     one.hypothesis.effects.push_back({std::make_shared<const Effect>(effect), 0, -1, "level", 0});
     one.hypothesis.values.emplace_back(Eigen::VectorXd::Zero(1));
   }
-  for (int block = 0; block < 24; ++block) {
-    one.cross_validated.blocks.push_back(loss * (1 + 0.05 * ((block + turn) % 3)));
-    one.cross_validated.counts.push_back(60);
-  }
+  one.errors = {Eigen::MatrixXd::Constant(1, 1, error * error), Eigen::MatrixXd::Constant(1, 1, 100),
+                Eigen::VectorXd::Ones(1)};
   return one;
 }
 
-Selection selection_of(const EvaluatedHypothesis& chosen, std::vector<EvaluatedHypothesis> alternatives) {
+// A choice and what might have been chosen instead, with probabilities.
+Selection choice_of(const std::vector<std::string>& chosen, double probability,
+                    const std::vector<std::pair<std::vector<std::string>, double>>& alternatives) {
   Selection selection;
-  selection.nominal = with_effect("", 100);
-  selection.chosen = chosen;
-  selection.alternatives = std::move(alternatives);
-  selection.candidates = 10;
+  selection.nominal = with_effects_named({}, 9);
+  selection.chosen = with_effects_named(chosen);
+  selection.probability = probability;
+  for (const auto& [names, share] : alternatives) {
+    selection.alternatives.push_back(with_effects_named(names, 2));
+    selection.alternative_probabilities.push_back(share);
+  }
   return selection;
 }
 
-TEST_CASE("what the choice is far ahead of, or surely ahead of, can be told from it") {
-  CHECK_FALSE(indistinguishable({.gain = 0.11, .t = 1}, 0.8, 0.5, alternative_criteria));
-  CHECK_FALSE(indistinguishable({.gain = 0.05, .t = 3}, 0.8, 0.5, alternative_criteria));
-  CHECK(indistinguishable({.gain = 0.05, .t = 1}, 0.8, 0.5, alternative_criteria));
-  CHECK(indistinguishable({.gain = 0.009, .t = 30}, 0.8, 0.5, alternative_criteria));
+TEST_CASE("effects are named with their places, in words") {
+  CHECK(names_of({}) == "no effect at all");
+  const Hypothesis two = with_effects_named({"input_delay", "lag"}).hypothesis;
+  CHECK(names_of(two) == "input delay at level and lag at level");
+  CHECK(names_of(two, 1) == "lag at level");
 }
 
-TEST_CASE("what has nearly all of the gain is a tie, however surely the choice is ahead") {
-  CHECK(indistinguishable({.gain = 0.2, .t = 20}, 0.9, 0.88, alternative_criteria));
-  CHECK_FALSE(indistinguishable({.gain = 0.2, .t = 20}, 0.9, 0.87, alternative_criteria));
-}
-
-TEST_CASE("alternatives are listed from the best on, without other forms of the choice") {
-  const Alternatives found = find_alternatives(selection_of(
-      with_effect("lag", 1), {with_effect("drift", 50), with_effect("delay", 1.001, 1), with_effect("lag", 1.1)}));
-  REQUIRE(found.list.size() == 2);
-  CHECK(found.list[0].effects.front().first == "delay");
+TEST_CASE("what is not much less probable than the choice cannot be told from it") {
+  const double chosen = 0.6, limit = chosen / tie_criteria.tie_odds;
+  const Alternatives found = find_alternatives(
+      choice_of({"lag"}, chosen, {{{"delay"}, 1.01 * limit}, {{"drift"}, 0.99 * limit}, {{}, 0.1}}), tie_criteria);
+  REQUIRE(found.list.size() == 2);  // and no effect at all is no alternative
+  CHECK(found.list[0].effects.front() == std::pair<std::string, std::string>{"delay", "level"});
+  CHECK(found.list[0].probability == 1.01 * limit);
+  CHECK(found.list[0].cross_validated_rmse == doctest::Approx(2));
   CHECK(found.list[0].indistinguishable);
-  CHECK(found.list[1].effects.front().first == "drift");
   CHECK_FALSE(found.list[1].indistinguishable);
   CHECK(found.ties == std::vector<std::string>{"delay at level"});
+  REQUIRE(found.indistinguishable.size() == 1);
   CHECK(found.indistinguishable.front().hypothesis.effects.front().effect->name == "delay");
 }
 
 TEST_CASE("where nothing was chosen nothing is a tie") {
-  const Alternatives found = find_alternatives(selection_of(with_effect("", 100), {with_effect("lag", 100)}));
+  const Alternatives found = find_alternatives(choice_of({}, 0.5, {{{"lag"}, 0.5}}), tie_criteria);
   REQUIRE(found.list.size() == 1);
   CHECK_FALSE(found.list[0].indistinguishable);
   CHECK(found.ties.empty());
 }
 
-TEST_CASE("the bootstrap is sure of what is better in every block, and of nothing between equals") {
-  const EvaluatedHypothesis good = with_effect("lag", 1), twin = with_effect("delay", 1.0, 1),
-                            bad = with_effect("drift", 9);
-  const BlockLosses parent = with_effect("", 100).cross_validated;
-  CHECK(bootstrap_confidence(good, parent, {bad}, 1) == 1);
-  CHECK(bootstrap_confidence(bad, parent, {good}, 1) == 0);
-  const double undecided = bootstrap_confidence(good, parent, {twin}, 1);
-  CHECK(undecided > 0.2);
-  CHECK(undecided < 0.8);
-  CHECK(bootstrap_confidence(good, parent, {twin}, 1) == undecided);  // the same seed
+TEST_CASE("effects that were known before are no part of an alternative") {
+  Selection selection = choice_of({"leak", "lag"}, 0.6, {{{"leak", "delay"}, 0.3}, {{"leak"}, 0.1}});
+  selection.nominal = with_effects_named({"leak"});
+  const Alternatives found = find_alternatives(selection, tie_criteria);
+  REQUIRE(found.list.size() == 1);
+  REQUIRE(found.list[0].effects.size() == 1);
+  CHECK(found.list[0].effects[0].first == "delay");
+  CHECK(found.ties == std::vector<std::string>{"delay at level"});
 }
 
-TEST_CASE("an alternative with more parameters has to be better by one per cent") {
-  EvaluatedHypothesis longer = with_effect("backlash", 0.995);
-  longer.hypothesis.values[0] = Eigen::VectorXd::Zero(3);
-  const BlockLosses parent = with_effect("", 100).cross_validated;
-  CHECK(bootstrap_confidence(with_effect("lag", 1), parent, {longer}, 1) == 1);
-  CHECK(bootstrap_confidence(with_effect("lag", 1), parent, {with_effect("delay", 0.995)}, 1) == 0);
+TEST_CASE("no more alternatives are told than anyone reads, the most probable ones") {
+  std::vector<std::pair<std::vector<std::string>, double>> many;
+  for (int k = 0; k < 100; ++k) many.push_back({{"lag " + std::to_string(k)}, 0.01});
+  const Alternatives found = find_alternatives(choice_of({"lag"}, 0.5, many), tie_criteria);
+  CHECK(found.list.size() < 50);
+  CHECK(found.list.at(0).effects[0].first == "lag 0");
 }
 
-TEST_CASE("evidence pays for the number of candidates, and rivals with other counts of effects are left out") {
-  Selection selection = selection_of(with_effect("lag", 1), {with_effect("drift", 9)});
-  EvaluatedHypothesis pair = with_effect("drift", 0.1);
-  pair.hypothesis.effects.push_back(pair.hypothesis.effects.front());
-  selection.alternatives.push_back(pair);
+TEST_CASE("an effect is as probable as all structures together that it is part of") {
+  Selection selection = choice_of({"lag", "leak"}, 0.5, {{{"lag"}, 0.2}, {{"leak", "delay"}, 0.15}, {{"drift"}, 0.1}});
   selection.evidence = {{.gain = 0.4, .stderr_ = 0.02, .t = 20, .p_value = 0.003}};
-  const Evidence evidence = evidence_for(selection, 0, 1);
-  CHECK(evidence.gain == 0.4);
-  CHECK(evidence.p_value == doctest::Approx(0.03));
-  CHECK(evidence.confidence == 1);
-  CHECK(evidence_for(selection, 1, 1).p_value == 1);  // never compared: no evidence
+  const Evidence lag = evidence_for(selection, 0), leak = evidence_for(selection, 1);
+  CHECK(lag.gain == 0.4);
+  CHECK(lag.gain_stderr == 0.02);
+  CHECK(lag.p_value == 0.003);
+  CHECK(lag.confidence == doctest::Approx(0.7));
+  CHECK(leak.confidence == doctest::Approx(0.65));
+  CHECK(leak.p_value == 1);  // never compared: no evidence
+  selection.nominal = with_effects_named({"lag"});
+  CHECK(evidence_for(selection, 0).confidence == doctest::Approx(0.65));  // lag was known before
+}
+
+TEST_CASE("the same effect at another place is another one") {
+  Selection selection = choice_of({"lag"}, 0.5, {{{"lag"}, 0.3}});
+  selection.alternatives[0].hypothesis.effects[0].at = 1;
+  CHECK(evidence_for(selection, 0).confidence == doctest::Approx(0.5));
 }
 
 }  // namespace

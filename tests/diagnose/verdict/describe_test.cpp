@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <memory>
+#include <string>
 
 #include "tests/diagnose/verdict/tank_setup.hpp"
 
@@ -93,6 +94,27 @@ TEST_CASE("every verdict has its sentence") {
   CHECK(verdict_sentence(diagnosis, {}).ends_with("Its error is 4 times the noise."));
 }
 
+TEST_CASE("recordings that are further off than noise explains are named, three of them at most") {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::unexplained;
+  diagnosis.per_recording = {{"a", 1, 1}, {"b", 9, 9, 100, true}};
+  CHECK(verdict_sentence(diagnosis, {})
+            .ends_with(" 1 of 2 held-out recordings are further off than noise explains: b."));
+  diagnosis.effects.resize(1);
+  CHECK(verdict_sentence(diagnosis, {"lag"}).find("explains: b. These recordings cannot tell") != std::string::npos);
+  for (const char* name : {"c", "d", "e"}) diagnosis.per_recording.push_back({name, 9, 9, 100, true});
+  const std::string many = verdict_sentence(diagnosis, {});
+  CHECK(many.find("4 of 5 held-out recordings") != std::string::npos);
+  CHECK(many.find("explains: b, c and d, ...") != std::string::npos);
+}
+
+TEST_CASE("of all that cannot be told from the choice three are named in the sentence") {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::missing_physics;
+  CHECK(verdict_sentence(diagnosis, {"a", "b", "c"}).ends_with("cannot tell it from a; or from b; or from c."));
+  CHECK(verdict_sentence(diagnosis, {"a", "b", "c", "d"}).ends_with("or from c; or from others."));
+}
+
 TEST_CASE("the next experiment shows one effect, or the other if it has its own") {
   const auto one = [](const std::string& name, const std::string& experiment) {
     Effect effect;
@@ -106,6 +128,13 @@ TEST_CASE("the next experiment shows one effect, or the other if it has its own"
         "step the input: separates lag from delay; or send pulses");
   CHECK(next_experiment(one("lag", "step the input"), one("delay", "step the input")) ==
         "step the input: separates lag from delay");
+  Hypothesis both = one("lag", "step the input");
+  both.effects.push_back(one("leak", "wait").effects.front());
+  Hypothesis other = one("delay", "send pulses");
+  other.effects.push_back(both.effects.back());
+  CHECK(next_experiment(both, other) == "step the input: separates lag from delay; or send pulses");  // both leak
+  CHECK(next_experiment(both, one("lag", "step the input")) == "wait: separates leak from lag; or step the input");
+  CHECK(next_experiment(one("lag", "step the input"), one("lag", "step the input")) == "step the input");
 }
 
 TEST_CASE("each kind of noise is told apart") {

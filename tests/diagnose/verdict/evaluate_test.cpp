@@ -8,8 +8,6 @@
 namespace surefoot::diagnosis {
 namespace {
 
-const std::vector<NamedEffect> rate{{"constant_rate", "level", {}, {}, {0.2}}};
-
 TEST_CASE("the interval of a ratio is narrow where all recordings agree, and wide where they do not") {
   const auto [low, high] = ratio_interval({1, 1, 1, 1}, {0.5, 0.5, 0.5, 0.5}, {60, 60, 60, 60}, 1);
   CHECK(low == doctest::Approx(0.5));
@@ -47,9 +45,9 @@ TEST_CASE("the noise of an output is what no lag predicts, unless it is stated")
 }
 
 TEST_CASE("errors, curves and intervals are those of the held-out recordings") {
-  const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(rate, 0.01));
+  const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(toys::extra_inflow(), 0.01));
   const FittedModel wrong = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
-  const FittedModels models{wrong, wrong, fitted_model(setup, toys::with_effects(setup, rate), serially())};
+  const FittedModels models{wrong, wrong, fitted_model(setup, toys::with_effects(setup, toys::extra_inflow()), serially())};
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::missing_physics;
   evaluate_errors(setup, models, diagnosis, 1);
@@ -57,6 +55,11 @@ TEST_CASE("errors, curves and intervals are those of the held-out recordings") {
   CHECK(diagnosis.noise_ratio == doctest::Approx(1).epsilon(0.2));
   CHECK(diagnosis.held_out_after < 0.2 * diagnosis.held_out_before);
   CHECK(diagnosis.training_after < 0.2 * diagnosis.training_before);
+  REQUIRE(diagnosis.per_recording.size() == 2);
+  for (const RecordingFit& one : diagnosis.per_recording) {
+    CHECK(one.independent > 40);  // of 119 that were measured: white noise, as far as can be seen
+    CHECK(one.independent <= 119);
+  }
   CHECK(diagnosis.gain_low <= diagnosis.held_out_after / diagnosis.held_out_before);
   CHECK(diagnosis.gain_high >= diagnosis.held_out_after / diagnosis.held_out_before);
   REQUIRE(diagnosis.curves.size() == 2);
@@ -71,13 +74,14 @@ TEST_CASE("errors, curves and intervals are those of the held-out recordings") {
 }
 
 // Tanks whose measured level is off by a wave of the true level that no effect in the tank explains.
-ForestResidual offered(double wave, Verdict verdict) {
+ForestResidual offered(double wave, Verdict verdict, bool cross_fitted = false) {
   auto recordings = toys::noisy_tanks({}, 0.01, 8);
   for (Recording& recording : recordings) {
     for (double& level : recording.outputs.reshaped()) level += wave * std::sin(20 * level);
   }
   EstimationSetup setup = toys::tank_setup(recordings);
   setup.split = {{0, 1, 2, 3, 4, 5}, {6, 7}, {{0, 1}, {2, 3}, {4, 5}}};
+  if (cross_fitted) setup.split = {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 1, 2, 3, 4, 5, 6, 7}, {{0, 1, 2, 3}, {4, 5, 6, 7}}, true};
   const FittedModel model = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
   Diagnosis diagnosis;
   diagnosis.verdict = verdict;
@@ -98,6 +102,16 @@ TEST_CASE(
   CHECK(noise.tried);
   CHECK_FALSE(noise.kept);
   CHECK_FALSE(offered(0.05, Verdict::missing_physics).tried);
+}
+
+TEST_CASE("where each recording is held out once no forest corrects what it was trained on") {
+  const ForestResidual helps = offered(0.05, Verdict::unexplained, true);
+  CHECK(helps.kept);
+  CHECK(helps.held_out_after < 0.8 * helps.held_out_before);
+  const ForestResidual noise = offered(0, Verdict::unexplained, true);
+  CHECK(noise.tried);
+  CHECK(noise.held_out_after > 0.97 * noise.held_out_before);  // one that knew the noise by heart would be far below
+  CHECK_FALSE(noise.kept);
 }
 
 }  // namespace

@@ -3,6 +3,11 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
 #include "surefoot/diagnose/verdict/evaluate.hpp"
 #include "tests/diagnose/verdict/tank_setup.hpp"
 
@@ -35,6 +40,50 @@ TEST_CASE("what the calibration gained is handed on") {
   const VerdictEvidence evidence = evidence_of({}, {});
   CHECK(evidence.calibration_gain == 0.1);
   CHECK(decide(evidence, {}) == Verdict::parameters_only);
+}
+
+// Whether a held-out recording with this error [of the noise] and so many independent errors is marked.
+bool marked(double error, double independent, double noise_ratio = 1) {
+  Diagnosis diagnosis;
+  diagnosis.noise_floor = 0.5;
+  diagnosis.noise_ratio = noise_ratio;
+  diagnosis.per_recording = {{"usual", 1, 0.5, 100}, {"asked", 1, 0.5 * error, independent}};
+  mark_beyond_noise(diagnosis, {});
+  CHECK_FALSE(diagnosis.per_recording[0].beyond_noise);
+  return diagnosis.per_recording[1].beyond_noise;
+}
+
+TEST_CASE("a recording is beyond the noise if its error is large, and surely so") {
+  const VerdictCriteria criteria;
+  const double large = criteria.largest_ratio;
+  CHECK(marked(1.01 * large, 1e4));
+  CHECK_FALSE(marked(0.99 * large, 1e9));  // sure, but small
+  const double larger = 1.05 * large, enough = 2 * std::pow(criteria.recording_excess / (larger * larger - 1), 2);
+  REQUIRE(enough > 2);
+  CHECK(marked(larger, 1.1 * enough));
+  CHECK_FALSE(marked(larger, 0.9 * enough));  // large, but may be chance
+  CHECK_FALSE(marked(0.1, 1e4));
+}
+
+TEST_CASE("where the noise is unknown no recording is beyond it") {
+  CHECK_FALSE(marked(100, 1e4, std::numeric_limits<double>::quiet_NaN()));
+}
+
+TEST_CASE("recordings beyond the noise are counted as evidence, and are unexplained") {
+  auto recordings = toys::noisy_tanks(toys::extra_inflow(), 0.01);
+  for (double& level : recordings[5].outputs.reshaped()) level *= 1.2;
+  const EstimationSetup setup = toys::tank_setup(recordings);
+  const FittedModel model = fitted_model(setup, toys::with_effects(setup, toys::extra_inflow()), serially());
+  const FittedModels models{model, model, model};
+  Diagnosis diagnosis;
+  evaluate_errors(setup, models, diagnosis, 1);
+  mark_beyond_noise(diagnosis, {});
+  REQUIRE(diagnosis.per_recording.size() == 2);
+  CHECK_FALSE(diagnosis.per_recording[0].beyond_noise);
+  CHECK(diagnosis.per_recording[1].beyond_noise);
+  const VerdictEvidence evidence = gather_evidence(setup, models, diagnosis, {}, {}, serially(), 1);
+  CHECK(evidence.recordings_beyond_noise == 1);
+  CHECK(decide(evidence, {}) == Verdict::unexplained);
 }
 
 }  // namespace

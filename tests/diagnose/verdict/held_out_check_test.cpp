@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <vector>
+
 #include "tests/diagnose/verdict/tank_setup.hpp"
 
 namespace surefoot::diagnosis {
@@ -11,15 +13,17 @@ namespace {
 const HeldOutCriteria held_out_criteria;
 
 TEST_CASE("effects are confirmed if they lower the error, and do not raise that of whole recordings") {
-  CHECK(confirmed({1, 1}, {0.97, 1.01}, held_out_criteria));
-  CHECK_FALSE(confirmed({1, 1}, {0.99, 0.5}, held_out_criteria));
-  CHECK_FALSE(confirmed({1, 1}, {0.5, 1.03}, held_out_criteria));
+  const double less = held_out_criteria.error_ratio, whole = held_out_criteria.whole_error_ratio;
+  CHECK(confirmed({2, 3}, {2 * less - 0.01, 3 * whole - 0.01}, held_out_criteria));
+  CHECK_FALSE(confirmed({2, 3}, {2 * less + 0.01, 1.5}, held_out_criteria));
+  CHECK_FALSE(confirmed({2, 3}, {1, 3 * whole + 0.01}, held_out_criteria));
 }
 
 Selection selection_of(const EstimationSetup& setup, const std::vector<NamedEffect>& effects) {
   Selection selection;
   selection.nominal.hypothesis = nominal_hypothesis(setup.bound);
   selection.chosen.hypothesis = toys::with_effects(setup, effects);
+  selection.evidence.resize(effects.size());
   return selection;
 }
 
@@ -43,6 +47,21 @@ TEST_CASE("a choice that they do not confirm is rejected, and becomes the altern
   CHECK(choice.selection.chosen.hypothesis.effects.empty());
   REQUIRE(choice.selection.alternatives.size() == 1);
   CHECK(choice.selection.alternatives[0].hypothesis.effects[0].effect->name == "constant_rate");
+  CHECK(choice.selection.alternative_probabilities == std::vector<double>{0});
+  CHECK(choice.selection.evidence.empty());
+}
+
+TEST_CASE("recordings that are each held out once can reject as well") {
+  const auto checked = [](const std::vector<NamedEffect>& truth) {
+    EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(truth, 0.01));
+    setup.split = {{0, 1, 2, 3, 4, 5}, {0, 1, 2, 3, 4, 5}, {{0, 1, 2}, {3, 4, 5}}, true};
+    setup.problem.recordings = setup.split.training;
+    const FittedModel calibrated = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
+    return check_on_held_out(setup, calibrated, selection_of(setup, toys::extra_inflow()), held_out_criteria,
+                             serially());
+  };
+  CHECK_FALSE(checked(toys::extra_inflow()).rejected);
+  CHECK(checked({}).rejected);
 }
 
 TEST_CASE("where nothing was chosen nothing is rejected") {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "surefoot/diagnose/diagnose.hpp"
+#include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "tests/diagnose/verdict/tank_setup.hpp"
 
 namespace surefoot::diagnosis {
@@ -97,13 +98,41 @@ TEST_CASE("candidates are the effects that were asked for, at every place that t
 TEST_CASE("small problems get a longer list of proposals, and the search ends when its time is over") {
   DiagnoseOptions options;
   const Parallel parallel = serially();
-  const EstimationSetup setup = hold_out_recordings(bind_tank, toys::noisy_tanks({}, 0.01), {options, parallel});
-  const SearchProblem problem = search_problem(setup, {options, parallel});
-  CHECK(problem.effort.shortlist == 50);
-  CHECK(problem.screened.size() <= 5);
+  options.starts = 2;
+  EstimationSetup setup = hold_out_recordings(bind_tank, toys::noisy_tanks({}, 0.01), {options, parallel});
+  const Calibration calibration = calibrate_model(setup, {options, parallel});
+  const SearchProblem problem = search_problem(setup, calibration, {options, parallel});
+  CHECK(problem.effort.shortlist == SearchEffort{}.max_shortlist);
+  CHECK(problem.screened.size() == SearchEffort{}.screening);
+  CHECK(problem.scale.sigma == error_scale(setup.bound));
+  CHECK(problem.nominal.parameters == calibration.nominal.parameters);
   CHECK_FALSE(problem.stopped());
   options.max_seconds = 1e-9;
-  CHECK(search_problem(setup, {options, parallel}).stopped());
+  CHECK(search_problem(setup, calibration, {options, parallel}).stopped());
+}
+
+TEST_CASE("residuals are searched for more as long as they hold what noise does not") {
+  DiagnoseOptions options;
+  options.starts = 2;
+  const Parallel parallel = serially();
+  EstimationSetup setup =
+      hold_out_recordings(bind_tank, toys::noisy_tanks(toys::extra_inflow(), 0.01), {options, parallel});
+  const Calibration calibration = calibrate_model(setup, {options, parallel});
+  const SearchProblem problem = search_problem(setup, calibration, {options, parallel});
+  CHECK(problem.structured(calibration.calibrated.hypothesis));
+  CHECK_FALSE(problem.structured(toys::with_effects(setup, toys::extra_inflow())));
+}
+
+TEST_CASE("by default every recording is for the fit, and held out once") {
+  DiagnoseOptions options;
+  const Parallel parallel = serially();
+  const EstimationSetup setup = hold_out_recordings(bind_tank, toys::noisy_tanks({}, 0.01), {options, parallel});
+  CHECK(setup.split.cross_fitted);
+  CHECK(setup.split.training.size() == 6);
+  Diagnosis diagnosis;
+  name_recordings(setup, diagnosis);
+  CHECK(diagnosis.fit.size() == 6);
+  CHECK(diagnosis.held_out == diagnosis.fit);
 }
 
 TEST_CASE("the pipeline names what is missing, and tells how far it is") {
@@ -118,6 +147,10 @@ TEST_CASE("the pipeline names what is missing, and tells how far it is") {
   REQUIRE(diagnosis.effects.size() == 1);
   CHECK(diagnosis.effects[0].name == "constant_rate");
   CHECK(diagnosis.effects[0].parameters[0].value == doctest::Approx(0.2).epsilon(0.1));
+  CHECK(diagnosis.effects[0].evidence.confidence > 0.9);
+  CHECK(diagnosis.effects[0].evidence.confidence >= diagnosis.probability);
+  CHECK(diagnosis.probability > 0.5);
+  CHECK(diagnosis.per_recording.size() == 6);
   CHECK(diagnosis.complete);
   CHECK(shares.front() == 0);
   CHECK(shares.back() == 1);
