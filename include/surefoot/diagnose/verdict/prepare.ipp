@@ -62,7 +62,7 @@ SUREFOOT_INLINE void free_measured_initial_states(BoundSimulator& bound, const s
 
 /// Whether the first rows hold about their share of the measurements: not where only the end was measured.
 SUREFOOT_INLINE bool measured_early(const Recording& one, Eigen::Index rows) {
-  constexpr double about = 0.5;
+  constexpr double about = 0.5;  // of their share
   double early = 0, all = 0;
   for (Eigen::Index row = 0; row < one.outputs.cols(); ++row) {
     for (Eigen::Index k = 0; k < one.outputs.rows(); ++k) {
