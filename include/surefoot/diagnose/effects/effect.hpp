@@ -100,7 +100,7 @@ struct Effect {
   std::function<void(const EffectContext&, Values p, HiddenStates hidden)> advance = {};
   /// What becomes of an input or a signal.
   std::function<double(const EffectContext&, Values p, Values hidden)> signal = {};
-  /// Delay of an input [s, or steps].
+  /// Delay of an input or a signal [s, or steps].
   std::function<double(Values p)> delay = {};
   /// Starting values of the first parameter, in place of `starts`, that readings suggest: those of the sensor attached
   /// to, or of one that reads the state attached to (for a velocity: what it is the speed of).

@@ -1,4 +1,4 @@
-// An input that comes late: u(t - delay); delay in seconds, for maps in steps.
+// An input that comes late, or a signal inside the equations: u(t - delay); delay in seconds, for maps in steps.
 // Confusable with a lag (the near twin), with a late sensor, and at one amplitude with backlash.
 #pragma once
 

@@ -101,7 +101,7 @@ SUREFOOT_INLINE std::vector<AttachedEffect> attachments(const BoundSimulator& bo
         break;
       case Place::input:
         for (std::size_t i = 0; i < distinct.size(); ++i) {
-          if (!distinct[i] || (effect.delay && i >= info.inputs.size())) continue;
+          if (!distinct[i]) continue;
           attach(i, i < info.inputs.size() ? info.inputs[i].name : info.signals[i - info.inputs.size()]);
         }
         break;

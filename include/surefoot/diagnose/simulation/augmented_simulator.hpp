@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "surefoot/diagnose/simulation/effect_slots.hpp"
+#include "surefoot/diagnose/simulation/signal_history.hpp"
 #include "surefoot/diagnose/simulation/small_vectors.hpp"
 #include "surefoot/diagnose/simulation/structure.hpp"
 
@@ -27,6 +28,7 @@ struct AugmentedSimulator {
   EffectSlots slots;
   double start = 0;             // time of the first row
   std::vector<double> raw;      // by effect: the input or signal that it last saw
+  std::vector<SignalHistory> past = {};  // by effect: of the signal that it makes come late
   bool driven_signals = false;  // some signal inside the equations depends on the inputs
 };
 
@@ -64,6 +66,7 @@ double through(AugmentedSimulator<S>& m, const EffectSlot& slot, double value, c
   EffectContext now = context(m, value, t, h);
   now.drive = value;
   m.raw[slot.number] = value;
+  if (slot.effect->delay) return m.past[slot.number].delayed(t, value, slot.effect->delay(slot.p));
   if (slot.effect->hidden_rate) slot.effect->hidden_rate(now, slot.p, slot.hidden(z), slot.hidden(dz));
   return slot.effect->signal(now, slot.p, slot.hidden(z));
 }

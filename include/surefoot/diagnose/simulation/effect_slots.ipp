@@ -40,7 +40,7 @@ SUREFOOT_INLINE EffectSlots assign_slots(const Augmentation& augmentation, const
     }
     if (effect.delay && attached.at < inputs) slots.delays.push_back(slot);
     if (effect.signal && attached.at < inputs) slots.commands.push_back(slot);
-    if (effect.signal && attached.at >= inputs) {
+    if ((effect.signal || effect.delay) && attached.at >= inputs) {
       slots.taps.push_back(slot);
       slots.taps.back().at -= inputs;
     }

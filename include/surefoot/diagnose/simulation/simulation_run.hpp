@@ -38,7 +38,8 @@ class SimulationRun {
            .p = p,
            .slots = assign_slots(augmentation, info, structure, sizes),
            .start = recording.time[0],
-           .raw = std::vector<double>(augmentation.effects.size())},
+           .raw = std::vector<double>(augmentation.effects.size()),
+           .past = std::vector<SignalHistory>(augmentation.effects.size())},
         u_(info, recording),
         modes_(m_.slots.dry.size()) {
     m_.driven_signals = has_tap<S> && std::any_of(structure.driven_signal.begin(), structure.driven_signal.end(),
