@@ -78,8 +78,9 @@ struct RecordingFit {
   std::string recording;
   double before = 0,
          after = 0;  // error in units of the noise, or of the output's standard deviation where that is unknown
+  double fitted = 0;          // error after, where its own readings took part in the fit; else the same as `after`
   double independent = 0;     // count of independent errors: of all, those beyond their autocorrelation
-  bool beyond_noise = false;  // significantly further off than noise explains
+  bool beyond_noise = false;  // `fitted` is significantly further off than noise explains
 };
 
 /// One held-out recording for pictures: rows x outputs, and the times.

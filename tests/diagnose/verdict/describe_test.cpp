@@ -97,12 +97,12 @@ TEST_CASE("every verdict has its sentence") {
 TEST_CASE("recordings that are further off than noise explains are named, three of them at most") {
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::unexplained;
-  diagnosis.per_recording = {{"a", 1, 1}, {"b", 9, 9, 100, true}};
+  diagnosis.per_recording = {{"a", 1, 1}, {"b", 9, 9, 9, 100, true}};
   CHECK(verdict_sentence(diagnosis, {})
-            .ends_with(" 1 of 2 held-out recordings are further off than noise explains: b."));
+            .ends_with(" 1 of 2 recordings are further off than noise explains: b."));
   diagnosis.effects.resize(1);
   CHECK(verdict_sentence(diagnosis, {"lag"}).find("explains: b. These recordings cannot tell") != std::string::npos);
-  for (const char* name : {"c", "d", "e"}) diagnosis.per_recording.push_back({name, 9, 9, 100, true});
+  for (const char* name : {"c", "d", "e"}) diagnosis.per_recording.push_back({name, 9, 9, 9, 100, true});
   const std::string many = verdict_sentence(diagnosis, {});
   CHECK(many.find("4 of 5 held-out recordings") != std::string::npos);
   CHECK(many.find("explains: b, c and d, ...") != std::string::npos);

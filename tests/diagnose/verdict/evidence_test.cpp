@@ -47,7 +47,7 @@ bool marked(double error, double independent, double noise_ratio = 1) {
   Diagnosis diagnosis;
   diagnosis.noise_floor = 0.5;
   diagnosis.noise_ratio = noise_ratio;
-  diagnosis.per_recording = {{"usual", 1, 0.5, 100}, {"asked", 1, 0.5 * error, independent}};
+  diagnosis.per_recording = {{"usual", 1, 0.5, 0.5, 100}, {"asked", 1, 0.5 * error, 0.5 * error, independent}};
   mark_beyond_noise(diagnosis, {});
   CHECK_FALSE(diagnosis.per_recording[0].beyond_noise);
   return diagnosis.per_recording[1].beyond_noise;

@@ -135,7 +135,7 @@ SUREFOOT_INLINE std::string beyond_noise_sentence(const Diagnosis& diagnosis) {
   const std::size_t count = names.size();
   if (count > most) names.resize(most);
   return " " + std::to_string(count) + " of " + std::to_string(diagnosis.per_recording.size()) +
-         " held-out recordings are further off than noise explains: " + in_list(names) +
+         " recordings are further off than noise explains: " + in_list(names) +
          (count > most ? ", ..." : "") + ".";
 }
 

@@ -49,7 +49,7 @@ SUREFOOT_INLINE VerdictEvidence gather_evidence(const EstimationSetup& setup, co
 SUREFOOT_INLINE void mark_beyond_noise(Diagnosis& diagnosis, const VerdictCriteria& verdict) {
   if (!std::isfinite(diagnosis.noise_ratio)) return;  // noise adds up on the way
   for (RecordingFit& one : diagnosis.per_recording) {
-    const double ratio = one.after / diagnosis.noise_floor;
+    const double ratio = one.fitted / diagnosis.noise_floor;
     // the relative standard deviation of a mean square of n independent errors is sqrt(2 / n)
     const double excess = (ratio * ratio - 1) / std::sqrt(2 / std::max(1.0, one.independent));
     one.beyond_noise = ratio > verdict.largest_ratio && excess > verdict.recording_excess;
