@@ -44,13 +44,13 @@ if [[ -d ${SUREFOOT_RECORDINGS:-} ]]; then
 else
   build surefoot-diagnose concealed_plants
   say "what does the model of a servo leave out? (SUREFOOT_RECORDINGS is not set: a plant of ours stands in)"
-  "$build/bin/concealed_plants" --out "$results/plant" --cases 2 --seed 1 --families servo
-  model=$results/plant/cases/case_0001/model.toml
-  recordings=("$results"/plant/cases/case_0001/rec_*.csv)
+  "$build/bin/concealed_plants" --out "$results/plant" --cases 2 --seed 2 --families servo
+  model=$results/plant/cases/case_0002/model.toml
+  recordings=("$results"/plant/cases/case_0002/rec_*.csv)
 fi
 "$build/bin/surefoot-diagnose" --model "$model" --out "$results/diagnosis" "${recordings[@]}"
 echo "The report, with pictures: $results/diagnosis/report.html"
-[[ -d ${SUREFOOT_RECORDINGS:-} ]] || echo "What was hidden in the plant: $results/plant/truth/case_0001.json"
+[[ -d ${SUREFOOT_RECORDINGS:-} ]] || echo "What was hidden in the plant: $results/plant/truth/case_0002.json"
 [[ $quick ]] && exit
 
 say "building the calibration of walks"
