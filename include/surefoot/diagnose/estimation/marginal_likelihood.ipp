@@ -24,7 +24,7 @@ SUREFOOT_INLINE double ErrorSquares::rms() const {
 }
 
 SUREFOOT_INLINE double autocorrelation_time(const std::vector<Eigen::VectorXd>& series) {
-  constexpr Eigen::Index most_lags = 2000;  // longer memories are not told apart
+  constexpr Eigen::Index most_lags = 2000;  // longer correlations are not told apart
   double squares = 0;
   Eigen::Index longest = 0;
   for (const Eigen::VectorXd& one : series) {
