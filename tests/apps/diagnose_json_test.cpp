@@ -45,13 +45,21 @@ TEST_CASE("the JSON holds every key of the schema with the values of the diagnos
   CHECK(effect.at("evidence").at("confidence") == 0.97);
   const json& alternative = result.at("alternatives").at(0);
   CHECK(alternative.at("effects").at(0) == json({{"name", "stribeck_friction"}, {"attached_to", "omega"}}));
+  CHECK(alternative.at("probability") == 0.2);
   CHECK(alternative.at("indistinguishable") == true);
+  CHECK(result.at("probability") == 0.77);
+  const json& structures = result.at("structures");  // the choice, then all others
+  REQUIRE(structures.size() == 3);
+  CHECK(structures.at(0) ==
+        json({{"effects", {{{"name", "coulomb_friction"}, {"attached_to", "omega"}}}}, {"probability", 0.77}}));
+  CHECK(structures.at(2).at("effects").size() == 2);
+  CHECK(structures.at(2).at("probability") == 0.01);
   CHECK(result.at("next_experiment") == "a slow ramp");
   const json& fit = result.at("fit");
   CHECK(fit.at("train").at("rmse_after") == 0.0040);
   CHECK(fit.at("heldout").at("rmse_before") == 0.052);
   CHECK(fit.at("heldout").at("per_recording").at(1) ==
-        json({{"recording", "rec_2.csv"}, {"before", 0.06}, {"after", 0.005}}));
+        json({{"recording", "rec_2.csv"}, {"before", 0.06}, {"after", 0.005}, {"beyond_noise", true}}));
   CHECK(fit.at("heldout").at("rmse_forest") == 0.011);
   CHECK(result.at("log_faults").at(0) == json({{"kind", "sign_flipped"},
                                                {"recording", "rec_4.csv"},

@@ -65,8 +65,9 @@ inline surefoot::Diagnosis some_diagnosis() {
                 {0.63, 0.04, 0.001, 0.97},
                 "",
                 ""}};
-  d.alternatives = {{{{"stribeck_friction", "omega"}}, 0.0041, true},
-                    {{{"viscous_friction", "omega"}, {"first_order_lag", "goal"}}, 0.02, false}};
+  d.alternatives = {{{{"stribeck_friction", "omega"}}, 0.0041, 0.2, true},
+                    {{{"viscous_friction", "omega"}, {"first_order_lag", "goal"}}, 0.02, 0.01, false}};
+  d.probability = 0.77;
   d.limits = {{"backlash", "theta", {"half_width", "rad", 0.002, 0.001, 0.003}}};
   d.next_experiment = "a slow ramp";
   d.training_before = 0.050;
@@ -77,7 +78,7 @@ inline surefoot::Diagnosis some_diagnosis() {
   d.noise_floor = 0.0012;
   d.gain_low = 0.06;
   d.gain_high = 0.1;
-  d.per_recording = {{"rec_1.csv", 0.05, 0.004}, {"rec_2.csv", 0.06, 0.005}};
+  d.per_recording = {{"rec_1.csv", 0.05, 0.004}, {"rec_2.csv", 0.06, 0.005, 40, true}};
   d.curves = {some_curve("rec_1.csv"), some_curve("rec_2.csv")};
   d.seconds = 12.3;
   d.seed = 7;

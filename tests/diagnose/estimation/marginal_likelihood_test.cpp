@@ -31,7 +31,8 @@ Eigen::VectorXd noise(Eigen::Index rows, double memory, std::uint64_t seed) {
 }
 
 TEST_CASE("the root mean square is that of all cells, and 0 without any") {
-  const ErrorSquares errors{Eigen::MatrixXd{{1, 4}, {9, 0}}, Eigen::MatrixXd{{10, 20}, {30, 0}}, Eigen::VectorXd::Ones(2)};
+  const ErrorSquares errors{Eigen::MatrixXd{{1, 4}, {9, 0}}, Eigen::MatrixXd{{10, 20}, {30, 0}},
+                            Eigen::VectorXd::Ones(2)};
   CHECK(errors.rms() == doctest::Approx(std::sqrt((10 * 1 + 20 * 4 + 30 * 9) / 60.0)));
   CHECK_FALSE(errors.empty());
   CHECK(ErrorSquares{}.empty());

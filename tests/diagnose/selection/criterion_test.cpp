@@ -74,7 +74,8 @@ TEST_CASE("the scale of a recording is its own in part: errors that differ from 
 TEST_CASE("each recording has its own density, and what was not measured has none") {
   ErrorSquares reference = errors_of({1, 1, 1}), errors = errors_of({1, 4, 9});
   reference.counts(2, 0) = errors.counts(2, 0) = 0;
-  const auto densities = log_densities(errors, reference, selection_criteria), best = log_densities(reference, reference, selection_criteria);
+  const auto densities = log_densities(errors, reference, selection_criteria),
+             best = log_densities(reference, reference, selection_criteria);
   REQUIRE(densities.size() == 3);
   CHECK(densities[0] == best[0]);
   CHECK(densities[1] < best[1]);
@@ -134,7 +135,8 @@ TEST_CASE("what one recording alone decides stays uncertain, and what all agree 
   better_in_one[3] = 1;
   worse_in_one[3] = 2;
   const EvaluatedHypothesis one = evaluated(better_in_one), other = evaluated(worse_in_one),
-                            good = evaluated(std::vector<double>(8, 1.0)), bad = evaluated(std::vector<double>(8, 1.04));
+                            good = evaluated(std::vector<double>(8, 1.0)),
+                            bad = evaluated(std::vector<double>(8, 1.04));
   CHECK(log_odds(one, other, selection_criteria) > std::log(100));
   CHECK(log_odds(good, bad, selection_criteria) > std::log(100));
   const double alone = probabilities({one, other}, selection_criteria)[0],
@@ -209,7 +211,8 @@ TEST_CASE("each effect costs the choice among all candidates, and the length of 
   CHECK(bench.of({}) == 0);
   CHECK(bench.of({0.3}) == doctest::Approx(-choice - selection_criteria.form_cost));
   CHECK(bench.of({0.3, 0.4}) == doctest::Approx(-2 * (choice + selection_criteria.form_cost)));
-  CHECK(bench.of({0.3}, 0, -1, 1, 2) == doctest::Approx(-choice - 2 * selection_criteria.form_cost));  // it remembers something
+  CHECK(bench.of({0.3}, 0, -1, 1, 2) ==
+        doctest::Approx(-choice - 2 * selection_criteria.form_cost));  // it remembers something
   CHECK(bench.of({0.3, 0.4}, 1) == doctest::Approx(bench.of({0.3})));  // one was known before
   PriorBench none;
   none.candidates = 0;

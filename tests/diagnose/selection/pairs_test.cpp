@@ -54,7 +54,8 @@ TEST_CASE("two effects that explain little alone are found if they explain much 
 }
 
 TEST_CASE("each of a pair starts with its share of what it was screened with") {
-  const auto pairs = propose_pairs({proposal("one", column(1, 1, 0), rest), proposal("other", column(1, 0, 0), rest)}, 1);
+  const auto pairs =
+      propose_pairs({proposal("one", column(1, 1, 0), rest), proposal("other", column(1, 0, 0), rest)}, 1);
   REQUIRE(pairs.size() == 1);
   CHECK(pairs[0].first.start[0] == doctest::Approx(-2));  // residuals are to be taken away
   CHECK(pairs[0].second.start[0] == doctest::Approx(2));
@@ -68,7 +69,8 @@ TEST_CASE("strengths stay within their limits, and the gain is that of what they
   CHECK(pairs[0].first.start[0] == doctest::Approx(-1));
   CHECK(pairs[0].second.start[0] == doctest::Approx(0));
   CHECK(pairs[0].gain == doctest::Approx(0.75));
-  const auto never = propose_pairs({proposal("one", column(0, 1, 0), rest, 0, 1), proposal("other", column(1, 0, 0), rest)}, 1);
+  const auto never =
+      propose_pairs({proposal("one", column(0, 1, 0), rest, 0, 1), proposal("other", column(1, 0, 0), rest)}, 1);
   CHECK(never.at(0).gain == doctest::Approx(0));
 }
 

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -124,6 +125,33 @@ TEST_CASE("the signature of an effect grows with its strength, and one that does
   CHECK(nothing.gain == 0);
   CHECK(nothing.visible == 0);
   CHECK_FALSE(predict_gain(b.bound, open, force, Vec<1>(0.01), {}, {}).effect.effect);  // it ran away
+}
+
+TEST_CASE(
+    "what a signature says beside others is handed on: beyond the parameters, against the residuals, its limits") {
+  const Bench b = bench({{"constant_force", "omega", {}, {}, {0.1}}});
+  const OpenResiduals open = open_residuals(b.bound, b.base, b.problem, serially());
+  const AttachedEffect force = attachments(b.bound, {effects::constant_force()}, {true, true, true}).front();
+  const Eigen::MatrixXd signature = signatures(b.bound, b.base, b.problem, open.residuals, force, Vec<1>(0.01));
+  const Proposal one = predict_gain(b.bound, open, force, Vec<1>(0.01), signature, {});
+  REQUIRE(one.beyond.cols() == 1);
+  CHECK((one.beyond * std::sqrt(open.energy) - open.beyond_parameters(signature)).norm() < 1e-9 * signature.norm());
+  CHECK(one.along[0] == doctest::Approx((one.beyond.transpose() * open.open)(0, 0) / std::sqrt(open.energy)));
+  CHECK(one.gain == doctest::Approx(one.along.squaredNorm() / one.beyond.squaredNorm()));
+  CHECK(one.start[0] == doctest::Approx(-0.01 * one.along[0] / one.beyond.squaredNorm()));
+  const EffectParameter& strength = force.effect->parameters.front();
+  const double size = measure_size(b.bound, force, strength.measure);
+  CHECK(one.least_share[0] == doctest::Approx(strength.low * size / 0.01));
+  CHECK(one.most_share[0] == doctest::Approx(strength.high * size / 0.01));
+}
+
+TEST_CASE("strengths are the parameters in proportion to which an effect vanishes") {
+  Effect effect;
+  effect.parameters = {{.name = "delay", .starts = {}},
+                       {.name = "force", .starts = {}, .strength = true},
+                       {.name = "other force", .starts = {}, .strength = true}};
+  CHECK(strengths_of(effect) == std::vector<Eigen::Index>{1, 2});
+  CHECK(strengths_of({}).empty());
 }
 
 }  // namespace

@@ -140,9 +140,9 @@ TEST_CASE("the most probable structure is named if its odds against none are hig
 
 TEST_CASE("all that was evaluated is ranked, whatever way led to it") {
   const TankBench bench({});
-  const Selection selection =
-      ranked(bench.search(), {made_up(bench, {"sensor_bias"}, 2), made_up(bench, {}, 9),
-                              made_up(bench, {"constant_rate", "sensor_drift"}, 1), made_up(bench, {"sensor_drift"}, 3)});
+  const Selection selection = ranked(
+      bench.search(), {made_up(bench, {"sensor_bias"}, 2), made_up(bench, {}, 9),
+                       made_up(bench, {"constant_rate", "sensor_drift"}, 1), made_up(bench, {"sensor_drift"}, 3)});
   CHECK(names_in(selection.nominal).empty());
   CHECK(names_in(selection.chosen) == "constant_rate, sensor_drift");
   REQUIRE(selection.alternatives.size() == 3);
@@ -162,7 +162,8 @@ TEST_CASE("a gain is the share of the error that goes, and its standard error th
   after.mean_squares.col(0) << 0.6, 1.4, 0.6, 1.4;
   const Comparison uneven = gain_of(before, after, std::log(99));
   CHECK(uneven.gain == doctest::Approx(0.5));
-  // ratio of the squares 1/4, with a standard error of sqrt(4) 100 * 0.4 / 1600; that of its root is the same, as 2 * 1/2
+  // ratio of the squares 1/4, with a standard error of sqrt(4) 100 * 0.4 / 1600; that of its root is the same, as 2 *
+  // 1/2
   CHECK(uneven.stderr_ == doctest::Approx(0.05));
   CHECK(uneven.t == doctest::Approx(10));
   CHECK(uneven.p_value == doctest::Approx(0.01));

@@ -37,7 +37,7 @@ TEST_CASE("the noise of an output is what no lag predicts, unless it is stated")
     return output_noise(setup.bound, setup.split.training, 0, {.share = share, .p_value = p, .rms = 0.1}, 0.2);
   };
   CHECK(noise(0.75, 1e-6) == doctest::Approx(0.05));
-  CHECK(noise(0.75, 0.5) == doctest::Approx(0.1));   // by chance
+  CHECK(noise(0.75, 0.5) == doctest::Approx(0.1));              // by chance
   CHECK(noise(1, 1e-6) == doctest::Approx(0.01).epsilon(0.2));  // what differs from row to row is left
   CHECK(output_noise(setup.bound, setup.split.training, 0, {.rms = 0.1}, 0.02) == 0.02);  // never more than the error
   setup.bound.info.outputs[0].noise = 0.03;
@@ -47,7 +47,8 @@ TEST_CASE("the noise of an output is what no lag predicts, unless it is stated")
 TEST_CASE("errors, curves and intervals are those of the held-out recordings") {
   const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks(toys::extra_inflow(), 0.01));
   const FittedModel wrong = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
-  const FittedModels models{wrong, wrong, fitted_model(setup, toys::with_effects(setup, toys::extra_inflow()), serially())};
+  const FittedModels models{wrong, wrong,
+                            fitted_model(setup, toys::with_effects(setup, toys::extra_inflow()), serially())};
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::missing_physics;
   evaluate_errors(setup, models, diagnosis, 1);
@@ -81,7 +82,8 @@ ForestResidual offered(double wave, Verdict verdict, bool cross_fitted = false) 
   }
   EstimationSetup setup = toys::tank_setup(recordings);
   setup.split = {{0, 1, 2, 3, 4, 5}, {6, 7}, {{0, 1}, {2, 3}, {4, 5}}};
-  if (cross_fitted) setup.split = {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 1, 2, 3, 4, 5, 6, 7}, {{0, 1, 2, 3}, {4, 5, 6, 7}}, true};
+  if (cross_fitted)
+    setup.split = {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 1, 2, 3, 4, 5, 6, 7}, {{0, 1, 2, 3}, {4, 5, 6, 7}}, true};
   const FittedModel model = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
   Diagnosis diagnosis;
   diagnosis.verdict = verdict;
