@@ -28,7 +28,9 @@ std::optional<CommandLine> parse_command_line(int argc, const char* const* argv,
   program.add_option("--out", line.out, "folder for the results, made if needed")->required();
   program.add_option("--test", line.test, "a recording kept for the test alone; may be given several times")
       ->allow_extra_args(false);
-  program.add_option("--test-share", line.test_share, "share of the recordings kept for the test if none is named; 0: each is held out once")
+  program
+      .add_option("--test-share", line.test_share,
+                  "share of the recordings kept for the test if none is named; 0: each is held out once")
       ->check(CLI::Range(0.0, 0.9))
       ->capture_default_str();
   program.add_option("--effects", line.effects, "names of the effects to consider, NAME,NAME,...; all by default")

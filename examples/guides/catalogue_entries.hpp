@@ -60,6 +60,8 @@ inline std::vector<Form> forms() {
        "F = -level sign(v); at rest up to level, whatever holds it there",
        {0.03},
        "jumps where the motion reverses; after small steps it rests beside where it should"},
+      {"coulomb_friction", "presliding",
+       "the same, reached after width of travel: F = -force z / width, z' = v - |v| z / width"},
       {"stribeck_friction",
        "",
        "F = -(level + breakaway exp(-(v / speed)^2)) sign(v); at rest up to level + breakaway",

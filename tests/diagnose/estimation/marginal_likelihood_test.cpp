@@ -104,7 +104,7 @@ TEST_CASE("a simulation that ran away is off by much, but by a finite amount") {
 double cost(std::vector<Recording> recordings, const std::vector<bool>& fixed = {false, false}) {
   BoundSimulator bound = bind_simulator(LeakyTank{}, std::move(recordings));
   for (std::size_t k = 0; k < fixed.size(); ++k) bound.info.parameters[k].fixed = fixed[k];
-  return log_occam_factor(bound, nominal_hypothesis(bound), problem_of(bound.recordings.size(), 0.02), serially());
+  return log_occam_factor(bound, nominal_hypothesis(bound), problem_of(bound.recordings.size(), 0.02), 0, serially());
 }
 
 // Recordings in which nothing flows, so that only noise is read.

@@ -252,7 +252,7 @@ TEST_CASE("a fit is evaluated on all its recordings, with what its parameters co
     const Hypothesis& hypothesis = fitted.hypothesis;
     CHECK(one.log_prior ==
           doctest::Approx(log_prior(setup.bound, hypothesis, 0, problem.candidates, selection_criteria) +
-                          log_occam_factor(setup.bound, hypothesis, problem.fit, serially())));
+                          log_occam_factor(setup.bound, hypothesis, problem.fit, least_variance(problem), serially())));
     return one;
   };
   const EvaluatedHypothesis without = measured({}), with = measured(toys::extra_inflow());

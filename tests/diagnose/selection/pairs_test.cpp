@@ -92,6 +92,18 @@ TEST_CASE("each strength of an effect has a share of its own") {
   CHECK(pairs[0].gain == doctest::Approx(1));
 }
 
+TEST_CASE("nearly collinear signatures, of which neither explains anything, are found at their full size") {
+  const double angle = 0.05;  // apart
+  const Eigen::MatrixXd one = column(std::cos(angle), std::sin(angle), 0), other = column(std::cos(angle), 0, 0);
+  const auto pairs = propose_pairs({proposal("one", one, rest, -100, 100), proposal("other", other, rest, -100, 100)}, 1);
+  REQUIRE(pairs.size() == 1);
+  CHECK(pairs[0].gain == doctest::Approx(1));
+}
+
+TEST_CASE("two forms of one effect at one place are no pair") {
+  CHECK(propose_pairs({proposal("a", column(1, 1, 0), rest), proposal("a", column(0, 1, 1), rest)}, 10).empty());
+}
+
 TEST_CASE("there are as many pairs as were asked for, the best first, and none of an effect that does nothing") {
   const std::vector<Proposal> proposals{proposal("a", column(1, 1, 0), rest), proposal("nothing", {}, rest.head(0)),
                                         proposal("b", column(0, 1, 1), rest), proposal("c", column(1, 2, 1), rest)};

@@ -24,9 +24,10 @@ TEST_CASE("the search ends with the two effects that act") {
   CHECK(two.candidates == 3);
   CHECK(two.fit.recordings == bench.problem.fit.recordings);
   REQUIRE(two.evidence.size() == 2);
-  for (const Comparison& one : two.evidence) {
-    CHECK(one.gain > 0.5);
-    CHECK(one.p_value < 1e-3);
+  for (std::size_t e = 0; e < 2; ++e) {
+    const double without = bench.search().without(two.chosen, e).errors.rms();
+    CHECK(two.evidence[e].gain == doctest::Approx(1 - two.chosen.errors.rms() / without).epsilon(0.02));
+    CHECK(two.evidence[e].p_value < 1e-3);
   }
   const auto value = [&](const std::string& name) {
     const auto& effects = two.chosen.hypothesis.effects;

@@ -24,6 +24,11 @@ Selection selection_of(const EstimationSetup& setup, const std::vector<NamedEffe
   selection.nominal.hypothesis = nominal_hypothesis(setup.bound);
   selection.chosen.hypothesis = toys::with_effects(setup, effects);
   selection.evidence.resize(effects.size());
+  selection.probability = effects.empty() ? 1 : 0.9;
+  if (!effects.empty()) {
+    selection.alternatives = {selection.nominal};
+    selection.alternative_probabilities = {0.1};
+  }
   return selection;
 }
 
@@ -47,7 +52,8 @@ TEST_CASE("a choice that they do not confirm is rejected, and becomes the altern
   CHECK(choice.selection.chosen.hypothesis.effects.empty());
   REQUIRE(choice.selection.alternatives.size() == 1);
   CHECK(choice.selection.alternatives[0].hypothesis.effects[0].effect->name == "constant_rate");
-  CHECK(choice.selection.alternative_probabilities == std::vector<double>{0});
+  CHECK(choice.selection.alternative_probabilities == std::vector<double>{0.9});
+  CHECK(choice.selection.probability == 0.1);
   CHECK(choice.selection.evidence.empty());
 }
 

@@ -133,6 +133,11 @@ struct AttachedEffect {
   std::string label() const { return effect->name + " at " + place; }
 };
 
+/// The same name at the same place.
+inline bool same_but_for_form(const AttachedEffect& a, const AttachedEffect& b) {
+  return a.effect->name == b.effect->name && a.at == b.at && a.effect->place == b.effect->place;
+}
+
 inline bool same_effect(const AttachedEffect& a, const AttachedEffect& b) {
   return a.effect->name == b.effect->name && a.effect->form == b.effect->form && a.at == b.at && a.other == b.other &&
          a.effect->place == b.effect->place;

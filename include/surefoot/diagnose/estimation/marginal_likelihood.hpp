@@ -37,9 +37,10 @@ ErrorSquares error_squares(const BoundSimulator& bound, const Hypothesis& hypoth
 
 /// Log of the Occam factor of a fit [nat], at most 0: -1/2 log det(1 + W I W), where I is the information of independent
 /// errors on the parameters, initial states eliminated, and W half the widths of the bounds, in searched coordinates.
+/// `least_variance`: of the weighted errors; smaller ones tell no more.
 /// Cost: one Jacobian (see FitFunctions).
 double log_occam_factor(const BoundSimulator& bound, const Hypothesis& fitted, const FitProblem& problem,
-                        const Parallel& parallel);
+                        double least_variance, const Parallel& parallel);
 
 }  // namespace surefoot::diagnosis
 

@@ -136,7 +136,8 @@ SUREFOOT_INLINE VariablePlaces places_of(const std::vector<Variable>& variables,
 }
 
 SUREFOOT_INLINE Eigen::MatrixXd information(const FitFunctions& functions, const Eigen::VectorXd& z,
-                                            const FitProblem& problem, const VariablePlaces& places) {
+                                            const FitProblem& problem, double least_variance,
+                                            const VariablePlaces& places) {
   using surefoot::detail::invert_symmetric, surefoot::detail::product, surefoot::detail::transposed_product;
   constexpr double ridge = 1e-9;  // of the diagonal: what nothing determines stays where it is
   const Eigen::VectorXd residuals = functions.residuals(z);
@@ -168,17 +169,17 @@ SUREFOOT_INLINE Eigen::MatrixXd information(const FitFunctions& functions, const
   }
   const double variance = squares / static_cast<double>(std::max<Eigen::Index>(1, residuals.size()));
   const double memory = autocorrelation_time(series);
-  for (double& value : sum.reshaped()) value /= std::max(variance, std::numeric_limits<double>::min()) * memory;
+  for (double& value : sum.reshaped()) value /= std::max({variance, least_variance, std::numeric_limits<double>::min()}) * memory;
   return sum;
 }
 
 SUREFOOT_INLINE double log_occam_factor(const BoundSimulator& bound, const Hypothesis& fitted,
-                                        const FitProblem& problem, const Parallel& parallel) {
+                                        const FitProblem& problem, double least_variance, const Parallel& parallel) {
   const FitFunctions functions(bound, fitted, problem, parallel);
   const VariablePlaces places = places_of(functions.variables(), problem.recordings);
   const auto count = static_cast<Eigen::Index>(places.shared.size());
   if (count == 0) return 0;
-  Eigen::MatrixXd determined = information(functions, functions.start(), problem, places);
+  Eigen::MatrixXd determined = information(functions, functions.start(), problem, least_variance, places);
   const Box<Eigen::Dynamic> box = functions.box();
   Eigen::VectorXd width(count);
   for (Eigen::Index k = 0; k < count; ++k) {

@@ -77,7 +77,7 @@ SUREFOOT_INLINE std::vector<Proposal> proposals_for(const Search& search, const 
   std::vector<AttachedEffect> open;
   for (const AttachedEffect& candidate : candidates) {
     const bool used = std::ranges::any_of(parent.hypothesis.effects, [&](const AttachedEffect& effect) {
-      return effect.effect->name == candidate.effect->name && effect.at == candidate.at;
+      return same_but_for_form(effect, candidate);
     });
     if (!used) open.push_back(candidate);
   }

@@ -105,6 +105,9 @@ struct SearchProblem {
   SearchEffort effort = {};
 };
 
+/// Variance of weighted errors that are as small as those of the integration.
+double least_variance(const SearchProblem& problem);
+
 /// Measures a fit on each of its recordings.
 EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, const Fit& fitted, const SearchProblem& problem,
                                  const Parallel& parallel);

@@ -23,13 +23,22 @@ SUREFOOT_INLINE std::size_t EvaluatedHypothesis::parameter_count() const {
   return count;
 }
 
+SUREFOOT_INLINE double least_variance(const SearchProblem& problem) {
+  double sum = 0;
+  for (Eigen::Index k = 0; k < problem.scale.sigma.size(); ++k) {
+    const double ratio = problem.criteria.least_error * problem.scale.sigma[k] / problem.fit.weighting.sigma[k];
+    sum += ratio * ratio / static_cast<double>(problem.scale.sigma.size());
+  }
+  return sum;
+}
+
 SUREFOOT_INLINE EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, const Fit& fitted,
                                                  const SearchProblem& problem, const Parallel& parallel) {
   EvaluatedHypothesis result{
       fitted.hypothesis, fitted.loss,
       error_squares(bound, fitted.hypothesis, problem.fit.recordings, problem.fit.integration, problem.scale, parallel),
       log_prior(bound, fitted.hypothesis, problem.known, problem.candidates, problem.criteria) +
-          log_occam_factor(bound, fitted.hypothesis, problem.fit, parallel)};
+          log_occam_factor(bound, fitted.hypothesis, problem.fit, least_variance(problem), parallel)};
   result.errors.least = problem.least;
   return result;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/selection/pairs.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
@@ -20,11 +21,32 @@ struct Shares {
   double gain = 0;
 };
 
-/// Minimises value' gram value / 2 + against' value in a box, one coordinate after the other.
+SUREFOOT_INLINE double explained_by(const Eigen::MatrixXd& gram, const Eigen::VectorXd& against,
+                                    const Eigen::VectorXd& share) {
+  double gain = 0;
+  for (Eigen::Index k = 0; k < against.size(); ++k) {
+    double curved = 0;
+    for (Eigen::Index j = 0; j < against.size(); ++j) curved += gram(k, j) * share[j];
+    gain -= share[k] * (2 * against[k] + curved);
+  }
+  return gain;
+}
+
+/// Minimises value' gram value / 2 + against' value in a box: at once if the minimum lies within, else one coordinate
+/// after the other.
 SUREFOOT_INLINE Shares best_shares(const Eigen::MatrixXd& gram, const Eigen::VectorXd& against,
                                    const Eigen::VectorXd& low, const Eigen::VectorXd& high) {
   constexpr int sweeps = 60;  // a rank needs no more
-  Shares shares{Eigen::VectorXd::Zero(against.size())};
+  Shares shares{surefoot::detail::solve_symmetric(gram, against)};
+  bool within = surefoot::all_finite(shares.value);
+  for (Eigen::Index k = 0; k < against.size(); ++k) {
+    shares.value[k] = -shares.value[k];
+    within = within && shares.value[k] >= low[k] && shares.value[k] <= high[k];
+  }
+  if (within) {
+    shares.gain = explained_by(gram, against, shares.value);
+    return shares;
+  }
   for (Eigen::Index k = 0; k < against.size(); ++k) shares.value[k] = std::clamp(0.0, low[k], high[k]);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (Eigen::Index k = 0; k < against.size(); ++k) {
@@ -34,11 +56,7 @@ SUREFOOT_INLINE Shares best_shares(const Eigen::MatrixXd& gram, const Eigen::Vec
       shares.value[k] = std::clamp(shares.value[k] - slope / gram(k, k), low[k], high[k]);
     }
   }
-  for (Eigen::Index k = 0; k < against.size(); ++k) {
-    double curved = 0;
-    for (Eigen::Index j = 0; j < against.size(); ++j) curved += gram(k, j) * shares.value[j];
-    shares.gain -= shares.value[k] * (2 * against[k] + curved);
-  }
+  shares.gain = explained_by(gram, against, shares.value);
   return shares;
 }
 
@@ -111,7 +129,7 @@ SUREFOOT_INLINE std::vector<ProposedPair> propose_pairs(const std::vector<Propos
   for (std::size_t i = 0; i < proposals.size(); ++i) {
     for (std::size_t j = i + 1; j < proposals.size(); ++j) {
       const bool both = proposals[i].beyond.cols() > 0 && proposals[j].beyond.cols() > 0;
-      if (both) ranked.push_back({i, j, shares_of_pair(all, i, j)});
+      if (both && !same_but_for_form(proposals[i].effect, proposals[j].effect)) ranked.push_back({i, j, shares_of_pair(all, i, j)});
     }
   }
   sort_items(ranked, [](const Ranked& a, const Ranked& b) { return a.shares.gain > b.shares.gain; });

@@ -21,7 +21,7 @@ SUREFOOT_INLINE Evidence evidence_for(const Selection& selection, std::size_t ef
   for (std::size_t i = 0; i < selection.alternatives.size(); ++i) {
     const auto& others = selection.alternatives[i].hypothesis.effects;
     const bool has_it = std::ranges::any_of(others, [&](const AttachedEffect& other) {
-      return other.effect->name == mine.effect->name && other.at == mine.at && other.effect->place == mine.effect->place;
+      return same_but_for_form(other, mine);
     });
     if (has_it) confidence += selection.alternative_probabilities[i];
   }

@@ -136,7 +136,7 @@ SUREFOOT_INLINE std::string beyond_noise_sentence(const Diagnosis& diagnosis) {
   if (count > most) names.resize(most);
   return " " + std::to_string(count) + " of " + std::to_string(diagnosis.per_recording.size()) +
          " recordings are further off than noise explains: " + in_list(names) +
-         (count > most ? ", ..." : "") + ".";
+         (count > most ? " and others." : ".");
 }
 
 /// By how much the error on held-out recordings falls, in how many of them, and what is left of it.

@@ -46,12 +46,19 @@ SUREFOOT_INLINE VerdictEvidence gather_evidence(const EstimationSetup& setup, co
   return evidence;
 }
 
+/// The mean square of n independent normal errors with variance 1, as a standard normal variable (Wilson and Hilferty,
+/// "The distribution of chi-square", PNAS 17, 1931).
+SUREFOOT_INLINE double normal_of_mean_square(double mean_square, double n) {
+  constexpr double nine_halves = 4.5;  // of the formula
+  const double spread = 1 / (nine_halves * n);
+  return (std::cbrt(mean_square) - (1 - spread)) / std::sqrt(spread);
+}
+
 SUREFOOT_INLINE void mark_beyond_noise(Diagnosis& diagnosis, const VerdictCriteria& verdict) {
   if (!std::isfinite(diagnosis.noise_ratio)) return;  // noise adds up on the way
   for (RecordingFit& one : diagnosis.per_recording) {
     const double ratio = one.fitted / diagnosis.noise_floor;
-    // the relative standard deviation of a mean square of n independent errors is sqrt(2 / n)
-    const double excess = (ratio * ratio - 1) / std::sqrt(2 / std::max(1.0, one.independent));
+    const double excess = normal_of_mean_square(ratio * ratio, std::max(1.0, one.independent));
     one.beyond_noise = ratio > verdict.largest_ratio && excess > verdict.recording_excess;
   }
 }

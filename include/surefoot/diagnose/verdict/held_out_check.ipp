@@ -37,10 +37,15 @@ SUREFOOT_INLINE CheckedChoice check_on_held_out(const EstimationSetup& setup, co
     return {selection, chosen};
   }
   CheckedChoice none{selection, calibrated, true};
-  none.selection.alternatives.insert(none.selection.alternatives.begin(), selection.chosen);
-  none.selection.alternative_probabilities.insert(none.selection.alternative_probabilities.begin(), 0.0);
-  none.selection.chosen = selection.nominal;
-  none.selection.evidence.clear();
+  Selection& changed = none.selection;
+  std::swap(changed.chosen, changed.nominal);
+  for (std::size_t i = 0; i < changed.alternatives.size(); ++i) {  // the model without effects and the choice change places
+    if (changed.alternatives[i].hypothesis.effects.size() != calibrated.hypothesis.effects.size()) continue;
+    std::swap(changed.probability, changed.alternative_probabilities[i]);
+    changed.alternatives[i] = changed.nominal;
+  }
+  changed.nominal = changed.chosen;
+  changed.evidence.clear();
   return none;
 }
 

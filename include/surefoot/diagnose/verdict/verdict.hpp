@@ -19,7 +19,7 @@ struct VerdictCriteria {
 
   // Errors on held-out recordings against the noise (whole recordings only):
   double largest_ratio = 1.5;   // root mean square in units of the noise floor: beyond, something else is there
-  double recording_excess = 4;  // standard deviations of the mean square of noise, for a single recording
+  double recording_excess = 4;  // standard deviations that noise gives its mean square, for a single recording
 
   // Tests for walks:
   double sequence_significance = 0.005;     // of final poses that go together
