@@ -78,7 +78,7 @@ inline surefoot::Diagnosis some_diagnosis() {
   d.noise_floor = 0.0012;
   d.gain_low = 0.06;
   d.gain_high = 0.1;
-  d.per_recording = {{"rec_1.csv", 0.05, 0.004}, {"rec_2.csv", 0.06, 0.005, 40, true}};
+  d.per_recording = {{"rec_1.csv", 0.05, 0.004}, {"rec_2.csv", 0.06, 0.005, 0.005, 40, true}};
   d.curves = {some_curve("rec_1.csv"), some_curve("rec_2.csv")};
   d.seconds = 12.3;
   d.seed = 7;
