@@ -210,6 +210,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
       {"verdict", verdict_text(diagnosis.verdict)},
       {"sentence", diagnosis.sentence},
       {"probability", finite_or_null(diagnosis.probability)},
+      {"none_of_these", finite_or_null(diagnosis.probability_of_none)},
       {"noise_ratio", finite_or_null(diagnosis.noise_ratio)},
       {"structures", structures_json(diagnosis)},
       {"recordings", {{"fit", diagnosis.fit}, {"select", diagnosis.select}, {"test", diagnosis.held_out}}},

@@ -92,6 +92,20 @@ TEST_CASE("what cannot be seen in the recordings is said, once the inputs of all
   CHECK_FALSE(mentions(screen(info, {still, positive, negative}), "valve"));
 }
 
+TEST_CASE("where anything would fit nothing is diagnosed") {
+  const auto of_rows = [](Eigen::Index rows, int count) {
+    Recording one = tank();
+    one.outputs = one.outputs.leftCols(rows).eval();
+    return std::vector<Recording>(static_cast<std::size_t>(count), one);
+  };
+  CHECK_THROWS_WITH_AS(check_readings(info, of_rows(2, 1)),
+                       "the recordings hold 1 readings after their first rows, too few to tell 2 parameters and initial "
+                       "states; record at least 6",
+                       DiagnoseError);
+  CHECK_NOTHROW(check_readings(info, of_rows(2, 6)));
+  CHECK_NOTHROW(check_readings(info, of_rows(7, 1)));
+}
+
 TEST_CASE("sensors that stand still or clip are named with their recording") {
   Recording frozen = tank(), clipped = tank();
   frozen.outputs.setConstant(0.3);

@@ -152,6 +152,7 @@ struct Diagnosis {
   std::vector<Alternative> alternatives;
   std::vector<DetectionLimit> limits;
   double probability = 1;  // posterior, of the effects that are named, or that there is none
+  double probability_of_none = 0;  // that none of the structures that were fitted is all of what is missing
   std::string next_experiment;
   double training_before = 0, training_after = 0;  // errors, in units as in RecordingFit
   double held_out_before = 0, held_out_after = 0;

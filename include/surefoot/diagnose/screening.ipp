@@ -52,6 +52,23 @@ SUREFOOT_INLINE void check_recording(const SimulatorInfo& info, const Recording&
   }
 }
 
+SUREFOOT_INLINE void check_readings(const SimulatorInfo& info, const std::vector<Recording>& recordings) {
+  constexpr std::size_t enough = 3;  // readings for each unknown
+  std::size_t unknowns = 0, readings = 0;
+  for (const ParameterInfo& parameter : info.parameters) unknowns += parameter.fixed ? 0 : 1;
+  for (const Recording& recording : recordings) {
+    for (const double scale : recording.initial_scale) unknowns += scale > 0 ? 1 : 0;
+    const Eigen::Index first = recording.outputs.rows();  // cells of the first row, which says where it starts
+    for (Eigen::Index i = first; i < recording.outputs.size(); ++i) {
+      readings += std::isfinite(recording.outputs.data()[i]) ? 1 : 0;
+    }
+  }
+  if (readings >= enough * std::max<std::size_t>(1, unknowns)) return;
+  throw DiagnoseError("the recordings hold " + std::to_string(readings) + " readings after their first rows, too few to " +
+                      "tell " + std::to_string(unknowns) + " parameters and initial states; record at least " +
+                      std::to_string(enough * std::max<std::size_t>(1, unknowns)));
+}
+
 SUREFOOT_INLINE std::vector<Remark> remove_outliers(const SimulatorInfo& info, Recording& recording) {
   std::vector<Remark> remarks;
   for (Eigen::Index k = 0; k < recording.outputs.rows(); ++k) {

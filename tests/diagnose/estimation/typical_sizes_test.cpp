@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "surefoot/diagnose/estimation/fit.hpp"
@@ -40,6 +41,36 @@ TEST_CASE("sizes are root mean squares along the simulated motion, and peaks its
   CHECK(sizes.effort[1] == doctest::Approx(2).epsilon(1e-6));  // [N]
   CHECK(sizes.input[0] == doctest::Approx(2));
   CHECK(sizes.time == doctest::Approx(2));  // 200 rows of 10 ms
+}
+
+// A mass of 1 kg on a spring of 400 N/m that an input holds where it is.
+struct StiffBench {
+  using State = Vec<2>;
+  using Input = Vec<1>;
+  using Output = Vec<1>;
+  SimulatorInfo info() const {
+    return {.name = "stiff bench",
+            .states = {{"position", "m"}, {"speed", "m/s", "N"}},
+            .inputs = {{"held", "m"}},
+            .outputs = {{"position_m", "m"}},
+            .parameters = {}};
+  }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& /*p*/) const {
+    return {x[1], 400 * (u[0] - x[0]) - 40 * x[1]};
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return Output(x[0]); }
+};
+
+TEST_CASE("where large forces all but cancel their size is that of the largest, not of what is left") {
+  Recording recording = toys::blank_recording(StiffBench{}.info(), 1001, 0.01);
+  for (Eigen::Index row = 0; row < recording.rows(); ++row) {
+    recording.inputs(0, row) = 0.1 * std::sin(recording.time[row]);
+  }
+  BoundSimulator bound = bind_simulator(StiffBench{}, {recording});
+  const Hypothesis nominal = nominal_hypothesis(bound);
+  const Sizes sizes = measure_sizes(bound, nominal, {0}, simulate_all(bound, nominal, {0}, {}, serially()));
+  CHECK(sizes.rate[1] < 0.5);  // [m/s^2]
+  CHECK(sizes.effort[1] == doctest::Approx(400 * 0.1 / std::sqrt(2.0)).epsilon(0.05));
 }
 
 }  // namespace

@@ -73,6 +73,30 @@ SUREFOOT_INLINE void set_sizes(std::vector<double>& sizes, const std::vector<dou
   }
 }
 
+/// Squares of the forces along a trajectory, by state: of the whole, or of the largest part of it that goes where one of
+/// the states stays at its mean. In a stiff machine large forces all but cancel, and the whole tells nothing of them.
+SUREFOOT_INLINE std::vector<double> force_squares(const BoundSimulator& bound, std::size_t recording,
+                                                  const Eigen::VectorXd& parameters, const Eigen::MatrixXd& states,
+                                                  const Eigen::MatrixXd& efforts) {
+  std::vector<double> largest(static_cast<std::size_t>(states.rows()));
+  const bool map = bound.info.kind == SimulatorKind::map;
+  add_squares(largest, efforts, 1, map);
+  for (Eigen::Index j = 0; j < states.rows() && !map; ++j) {
+    Eigen::MatrixXd held = states, rest, signals;
+    double mean = 0;
+    for (Eigen::Index row = 0; row < held.cols(); ++row) mean += held(j, row) / static_cast<double>(held.cols());
+    for (Eigen::Index row = 0; row < held.cols(); ++row) held(j, row) = mean;
+    bound.probe(bound, recording, parameters, held, rest, signals);
+    for (Eigen::Index i = 0; i < rest.size(); ++i) rest.data()[i] = efforts.data()[i] - rest.data()[i];
+    std::vector<double> part(largest.size());
+    add_squares(part, rest, 1, false);
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      if (std::isfinite(part[i])) largest[i] = std::max(largest[i], part[i]);
+    }
+  }
+  return largest;
+}
+
 SUREFOOT_INLINE Sizes measure_sizes(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                     const std::vector<std::size_t>& recordings,
                                     const std::vector<SimulatedRun>& trajectories) {
@@ -100,7 +124,8 @@ SUREFOOT_INLINE Sizes measure_sizes(const BoundSimulator& bound, const Hypothesi
     add_squares(state, states, weight, false);
     add_squares(position, states, weight, true);
     add_squares(rate, row_rates(recording.time, states), weight, false);
-    add_squares(effort, efforts, weight, bound.info.kind == SimulatorKind::map);
+    const std::vector<double> forces = force_squares(bound, recordings[i], hypothesis.parameters, states, efforts);
+    for (std::size_t k = 0; k < n; ++k) effort[k] += weight * forces[k];
     add_squares(input, recording.inputs, weight, false);
     add_squares(signal, signals, weight, false);
     raise_peaks(sizes.state_peak, states);

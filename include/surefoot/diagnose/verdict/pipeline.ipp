@@ -21,6 +21,7 @@
 #include "surefoot/diagnose/residual_tests/noise.hpp"
 #include "surefoot/diagnose/screening.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
+#include "surefoot/diagnose/verdict/none_of_these.hpp"
 #include "surefoot/diagnose/verdict/describe.hpp"
 #include "surefoot/diagnose/verdict/detection_limits.hpp"
 #include "surefoot/diagnose/verdict/evaluate.hpp"
@@ -42,6 +43,7 @@ SUREFOOT_INLINE std::vector<Remark> screen_recordings(const SimulatorInfo& info,
     const auto outliers = remove_outliers(info, recording);
     remarks.insert(remarks.end(), outliers.begin(), outliers.end());
   }
+  check_readings(info, recordings);
   const auto screened = screen(info, recordings);
   remarks.insert(remarks.end(), screened.begin(), screened.end());
   return remarks;
@@ -222,6 +224,19 @@ SUREFOOT_INLINE std::vector<std::string> describe_alternatives(const Selection& 
   return others.ties;
 }
 
+/// Probabilities of structures beside that of none of them.
+SUREFOOT_INLINE void weigh_against_none(const EstimationSetup& setup, const Selection& selection,
+                                        const SearchProblem& problem, Diagnosis& diagnosis) {
+  if (setup.noise != NoiseKind::measurement) return;  // noise adds up on the way
+  Eigen::VectorXd noise(static_cast<Eigen::Index>(diagnosis.channels.size()));
+  for (std::size_t k = 0; k < diagnosis.channels.size(); ++k) {
+    noise[static_cast<Eigen::Index>(k)] = diagnosis.channels[k].noise;
+  }
+  diagnosis.probability_of_none = probability_of_none(selection, noise, problem);
+  diagnosis.probability *= 1 - diagnosis.probability_of_none;
+  for (Alternative& other : diagnosis.alternatives) other.probability *= 1 - diagnosis.probability_of_none;
+}
+
 SUREFOOT_INLINE void describe_limits(const EstimationSetup& setup, const FittedModels& models,
                                      const SearchProblem& problem, const std::vector<AttachedEffect>& candidates,
                                      const RunContext& run, Diagnosis& diagnosis) {
@@ -259,6 +274,7 @@ SUREFOOT_INLINE void evaluate_selection(const EstimationSetup& setup, const Cali
 
   describe_models(setup, models, choice.selection, run, diagnosis);
   const std::vector<std::string> ties = describe_alternatives(choice.selection, diagnosis);
+  weigh_against_none(setup, choice.selection, problem, diagnosis);
   std::tie(diagnosis.regions, diagnosis.intervals) = locate_mismatch(setup, calibrated, run.seed);
   offer_forests(setup, models, diagnosis, run.parallel, run.seed);
   describe_limits(setup, models, problem, candidates, run, diagnosis);
