@@ -159,7 +159,9 @@ TEST_CASE("walking effects are found from final poses alone") {
   const auto coupling = [](Pose2 moved, Pose2 /*at*/) { return Pose2{moved.x, moved.y, moved.angle + 1.5 * moved.x}; };
   const auto name = [](const auto& change) {
     const auto recordings = toys::walk_recordings(change, true, 60, 11);
-    const Diagnosis diagnosis = diagnose(WalkingRobot{}, recordings, {}, surefoot::Threads{}, 11);
+    DiagnoseOptions options;
+    options.effects = {"body_drift", "ground_slope", "cross_coupling", "input_gain"};
+    const Diagnosis diagnosis = diagnose(WalkingRobot{}, recordings, options, surefoot::Threads{}, 11);
     return diagnosis.effects.empty() ? std::string("none") : diagnosis.effects.front().name;
   };
   CHECK(name(drift) == "body_drift");
@@ -187,6 +189,7 @@ TEST_CASE("an effect of the user's own is found among the others") {
   }
   DiagnoseOptions options;
   options.more_effects = {magnet};
+  options.effects = {"magnet", "coulomb_friction", "viscous_friction", "constant_force", "cubic_stiffness"};
   const Diagnosis diagnosis = diagnose(ServoPendulum{}, recordings, options, surefoot::Threads{}, 12);
   REQUIRE_FALSE(diagnosis.effects.empty());
   CHECK(diagnosis.effects.front().name == "magnet");
@@ -217,13 +220,13 @@ TEST_CASE("one short recording is refused") {
 
 TEST_CASE("only effects that the user asks for are looked for") {
   const auto recordings =
-      toys::servo_recordings(machine({{.name = "coulomb_friction", .attached_to = "omega", .values = {0.15}}}), 6, 17);
+      toys::servo_recordings(machine({{.name = "coulomb_friction", .attached_to = "omega", .values = {0.15}}}), 4, 17);
   DiagnoseOptions options;
-  options.effects = {"dead_zone", "input_delay"};
+  options.effects = {"dead_zone", "sensor_bias"};
   const Diagnosis diagnosis = diagnose(ServoPendulum{}, recordings, options, surefoot::Threads{}, 17);
   for (const auto& effect : diagnosis.effects) {
     CAPTURE(effect.name);
-    CHECK((effect.name == "dead_zone" || effect.name == "input_delay"));
+    CHECK((effect.name == "dead_zone" || effect.name == "sensor_bias"));
   }
   options.effects = {"dead_zone", "coulomb_friction"};
   const Diagnosis right = diagnose(ServoPendulum{}, recordings, options, surefoot::Threads{}, 17);
@@ -239,6 +242,7 @@ TEST_CASE("effects that make it worse on the held-out recordings are dropped, an
   recordings[6] = smooth[6];
   DiagnoseOptions options;
   options.held_out = {"recording 5", "recording 6"};
+  options.effects = {"coulomb_friction", "viscous_friction"};
   const Diagnosis diagnosis = diagnose(ServoPendulum{}, recordings, options, surefoot::Threads{}, 18);
   CHECK(diagnosis.effects.empty());
   CHECK(diagnosis.held_out_after >= diagnosis.held_out_before);

@@ -83,7 +83,8 @@ surefoot::Diagnosis diagnose(const BindSimulator& bind, const surefoot::Simulato
                        " of the one that none survives; " + std::to_string(diagnosis.effects.size()) + " are named.";
   const FittedModels models{simulate_model(setup, prepared.calibration.nominal, run.parallel),
                             fitted_model(setup, calibrated, run.parallel), fitted_model(setup, chosen, run.parallel)};
-  evaluate(setup, models, diagnosis, run.parallel, run.seed);
+  evaluate_errors(setup, models, diagnosis, run.seed);
+  offer_forests(setup, models, diagnosis, run.parallel, run.seed);
   diagnosis.seconds = run.seconds();
   return diagnosis;
 }

@@ -24,8 +24,8 @@ double none(double times, double noise = 0.1) {
 TEST_CASE("errors at the noise leave next to no room for anything unknown, errors far above it little else") {
   CHECK(none(0.9) < 0.001);
   CHECK(none(1.0) < 0.001);
+  CHECK(none(1.4) < 0.001);  // the form of an effect may be off a little
   CHECK(none(2.0) > 0.99);
-  CHECK(none(1.2) < none(1.4));
 }
 
 TEST_CASE("where the noise is not known nothing is said") { CHECK(none(3, 0) == 0); }

@@ -7,6 +7,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/verdict/none_of_these.hpp"
+#include "surefoot/diagnose/verdict/verdict.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -17,7 +18,7 @@ SUREFOOT_INLINE double probability_of_none(const Selection& selection, const Eig
   EvaluatedHypothesis unknown = selection.chosen;
   for (Eigen::Index k = 0; k < noise.size(); ++k) {
     if (!(noise[k] > 0)) return 0;
-    const double floor = noise[k] / problem.scale.sigma[k];
+    const double floor = VerdictCriteria{}.largest_ratio * noise[k] / problem.scale.sigma[k];
     for (Eigen::Index r = 0; r < unknown.errors.mean_squares.rows(); ++r) {
       double& square = unknown.errors.mean_squares(r, k);
       square = std::min(square, floor * floor);

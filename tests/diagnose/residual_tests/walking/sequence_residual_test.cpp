@@ -26,7 +26,7 @@ Comparison structure_of(Change&& change, std::uint64_t seed) {
 
 TEST_CASE("errors of a walk that obeys its model cannot be predicted") {
   int alarms = 0;
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const auto found = structure_of([](Pose2 moved, Pose2) { return moved; }, seed);
     alarms += found.p_value < 0.005 ? 1 : 0;
   }
