@@ -160,7 +160,7 @@ std::string ranking_part(const Diagnosis& d) {
   std::vector<Entry> entries;
   for (const auto& one : d.alternatives) {
     entries.push_back({effects_text(one.effects), "other", one.indistinguishable ? "cannot be told apart" : "",
-                       one.cross_validated_rmse});
+                       one.fitted_rmse});
   }
   double worst = 0;
   for (const Entry& entry : entries) worst = std::isfinite(entry.error) ? std::max(worst, entry.error) : worst;

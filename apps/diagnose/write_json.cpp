@@ -88,7 +88,7 @@ Json alternatives_json(const Diagnosis& diagnosis) {
       effects.push_back({{"name", name}, {"attached_to", attached_to}});
     }
     list.push_back({{"effects", effects},
-                    {"heldout_rmse", finite_or_null(alternative.cross_validated_rmse)},
+                    {"heldout_rmse", finite_or_null(alternative.fitted_rmse)},
                     {"probability", finite_or_null(alternative.probability)},
                     {"indistinguishable", alternative.indistinguishable}});
   }

@@ -53,7 +53,7 @@ struct MismatchInterval {
 };
 
 struct Evidence {
-  double gain = 0;  // share of the cross-validated error that goes with this effect (1 - after / before)
+  double gain = 0;  // share of the error that goes with this effect, both fitted to all recordings (1 - after / before)
   double gain_stderr = 0;
   double p_value = 1;
   double confidence = 0;  // posterior probability of it: of all structures that it is part of
@@ -69,7 +69,7 @@ struct FoundEffect {
 /// Effects that might have been chosen instead.
 struct Alternative {
   std::vector<std::pair<std::string, std::string>> effects;  // name, attached to
-  double cross_validated_rmse = 0;                           // in units as in RecordingFit
+  double fitted_rmse = 0;                           // in units as in RecordingFit
   double probability = 0;                                    // posterior, of this structure among all that were tried
   bool indistinguishable = false;                            // these recordings cannot tell them from the chosen ones
 };

@@ -92,7 +92,7 @@ TEST_CASE("errors far below those of the integration are as good as each other")
 
 TEST_CASE("errors of form are a share of the error without effects, by output") {
   ErrorSquares without{Eigen::MatrixXd{{4, 1}, {2, 1}}, Eigen::MatrixXd{{10, 10}, {10, 0}}, Eigen::VectorXd::Ones(2)};
-  const Eigen::VectorXd least = least_squares_compared(without, selection_criteria);
+  const Eigen::VectorXd least = negligible_differences(without, selection_criteria);
   REQUIRE(least.size() == 2);
   CHECK(least[0] == doctest::Approx(3 * selection_criteria.form_error * selection_criteria.form_error));
   CHECK(least[1] == doctest::Approx(selection_criteria.form_error * selection_criteria.form_error));

@@ -58,7 +58,7 @@ TEST_CASE("what is not much less probable than the choice cannot be told from it
   REQUIRE(found.list.size() == 2);  // and no effect at all is no alternative
   CHECK(found.list[0].effects.front() == std::pair<std::string, std::string>{"delay", "level"});
   CHECK(found.list[0].probability == 1.01 * limit);
-  CHECK(found.list[0].cross_validated_rmse == doctest::Approx(2));
+  CHECK(found.list[0].fitted_rmse == doctest::Approx(2));
   CHECK(found.list[0].indistinguishable);
   CHECK_FALSE(found.list[1].indistinguishable);
   CHECK(found.ties == std::vector<std::string>{"delay at level"});

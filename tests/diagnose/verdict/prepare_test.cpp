@@ -37,10 +37,5 @@ TEST_CASE("an initial state that was read off a sensor is known as well as that 
   CHECK(bound.recordings[2].initial_scale[0] == 0);  // known from elsewhere
 }
 
-TEST_CASE("some of many recordings are chosen evenly, and few are left as they are") {
-  CHECK(some_of({3, 5, 7}, 5) == std::vector<std::size_t>{3, 5, 7});
-  CHECK(some_of({0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, 5) == std::vector<std::size_t>{0, 2, 4, 6, 8});
-}
-
 }  // namespace
 }  // namespace surefoot::diagnosis

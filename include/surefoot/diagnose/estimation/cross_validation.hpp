@@ -1,4 +1,4 @@
-// Cross-validation of hypotheses, block by block, so that two of them can be compared in pairs.
+// Comparison of hypotheses, block by block and in pairs, and fits that have not seen a fold.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,11 +36,6 @@ struct BlockLosses {
     }
     return sums;
   }
-  void append(const BlockLosses& other) {
-    for (const std::size_t end : other.ends) ends.push_back(blocks.size() + end);
-    blocks.insert(blocks.end(), other.blocks.begin(), other.blocks.end());
-    counts.insert(counts.end(), other.counts.begin(), other.counts.end());
-  }
   /// Root mean square in units of the weighting.
   double rms() const { return cells() > 0 ? std::sqrt(total() / cells()) : 0; }
 };
@@ -53,11 +48,6 @@ void append_losses(BlockLosses& losses, const Eigen::VectorXd& residuals, double
 /// Losses of simulations, which go with the recordings.
 BlockLosses block_losses(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
                          const std::vector<SimulatedRun>& runs, const Weighting& weighting);
-
-/// Losses of a hypothesis as it is, on some recordings.
-BlockLosses block_losses(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                         const std::vector<std::size_t>& recordings, const Weighting& weighting,
-                         const Integration& integration, const Parallel& parallel);
 
 /// How much better `after` is than `before`.
 struct Comparison {
@@ -87,14 +77,12 @@ void test_losses(const std::vector<double>& before, const std::vector<double>& a
 /// the choice.
 Comparison compare_losses(const BlockLosses& before, const BlockLosses& after);
 
-/// Losses of each fold for a fit to the other folds, which starts from `start`. Blocks come in the order of the folds.
-struct CrossValidation {
-  BlockLosses losses;
-  std::vector<Hypothesis> folds;  // the fit that has not seen each of them
-};
-
-CrossValidation cross_validate(const BoundSimulator& bound, const Hypothesis& start, const FitProblem& problem,
-                               const std::vector<std::vector<std::size_t>>& folds, const Parallel& parallel);
+/// By fold, a fit to the recordings of the problem that are not in it, from `start` on; the unknown initial states of the
+/// fold are estimated with all else as it is.
+std::vector<Hypothesis> fits_to_other_folds(const BoundSimulator& bound, const Hypothesis& start,
+                                            const FitProblem& problem,
+                                            const std::vector<std::vector<std::size_t>>& folds,
+                                            const Parallel& parallel);
 
 }  // namespace surefoot::diagnosis
 

@@ -39,20 +39,6 @@ SUREFOOT_INLINE BlockLosses block_losses(const BoundSimulator& bound, const std:
   return result;
 }
 
-SUREFOOT_INLINE BlockLosses block_losses(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                         const std::vector<std::size_t>& recordings, const Weighting& weighting,
-                                         const Integration& integration, const Parallel& parallel) {
-  std::vector<Eigen::VectorXd> residuals(recordings.size());
-  parallel(recordings.size(), [&](std::size_t i) {
-    const std::size_t r = recordings[i];
-    residuals[i] = weighted_residuals(bound, r, simulate(bound, hypothesis, r, integration),
-                                      cells_of(bound.recordings[r]), weighting);
-  });
-  BlockLosses result;
-  for (const Eigen::VectorXd& one : residuals) append_losses(result, one, weighting.robust);
-  return result;
-}
-
 SUREFOOT_INLINE double t_value(const std::vector<double>& differences) {
   constexpr double largest = 1e3;  // of differences that are all alike
   const auto n = static_cast<double>(differences.size());
@@ -110,22 +96,16 @@ SUREFOOT_INLINE Comparison compare_losses(const BlockLosses& before, const Block
   return result;
 }
 
-SUREFOOT_INLINE CrossValidation cross_validate(const BoundSimulator& bound, const Hypothesis& start,
-                                               const FitProblem& problem,
-                                               const std::vector<std::vector<std::size_t>>& folds,
-                                               const Parallel& parallel) {
-  CrossValidation result;
-  for (std::size_t k = 0; k < folds.size(); ++k) {
+SUREFOOT_INLINE std::vector<Hypothesis> fits_to_other_folds(const BoundSimulator& bound, const Hypothesis& start,
+                                                            const FitProblem& problem,
+                                                            const std::vector<std::vector<std::size_t>>& folds,
+                                                            const Parallel& parallel) {
+  std::vector<Hypothesis> result;
+  for (const std::vector<std::size_t>& fold : folds) {
     FitProblem others = problem;
-    others.recordings.clear();
-    for (std::size_t j = 0; j < folds.size(); ++j) {
-      if (j != k) others.recordings.insert(others.recordings.end(), folds[j].begin(), folds[j].end());
-    }
-    const Hypothesis fitted = with_estimated_initial_states(bound, fit(bound, start, others, parallel).hypothesis,
-                                                            folds[k], problem, parallel);
-    const BlockLosses one = block_losses(bound, fitted, folds[k], problem.weighting, problem.integration, parallel);
-    result.losses.append(one);
-    result.folds.push_back(fitted);
+    std::erase_if(others.recordings, [&](std::size_t r) { return std::ranges::find(fold, r) != fold.end(); });
+    result.push_back(with_estimated_initial_states(bound, fit(bound, start, others, parallel).hypothesis, fold, problem,
+                                                   parallel));
   }
   return result;
 }

@@ -169,7 +169,7 @@ SUREFOOT_INLINE Eigen::MatrixXd information(const FitFunctions& functions, const
   }
   const double variance = squares / static_cast<double>(std::max<Eigen::Index>(1, residuals.size()));
   const double memory = autocorrelation_time(series);
-  for (double& value : sum.reshaped()) value /= std::max({variance, least_variance, std::numeric_limits<double>::min()}) * memory;
+  for (Eigen::Index k = 0; k < sum.size(); ++k) sum.data()[k] /= std::max({variance, least_variance, std::numeric_limits<double>::min()}) * memory;
   return sum;
 }
 

@@ -30,6 +30,9 @@ Eigen::VectorXd lagged_products(const std::vector<Eigen::VectorXd>& series, Eige
 /// Upper tail of a sum of squares with this mean and variance, as a scaled chi-square (Wilson & Hilferty 1931).
 double chi_square_tail(double value, double mean, double variance);
 
+/// The same value as a standard normal one.
+double chi_square_score(double value, double mean, double variance);
+
 /// Squared correlations of residuals over all lags of `from` to `to` rows (a portmanteau, after Box & Pierce 1970), so
 /// that slow errors and oscillations count alike. What noise alone would give is found by turning the signs of chunks
 /// of `from` rows at random, which keeps noise as it is if it forgets itself within that many. Single outliers are

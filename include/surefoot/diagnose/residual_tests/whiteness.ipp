@@ -37,10 +37,14 @@ SUREFOOT_INLINE Eigen::VectorXd lagged_products(const std::vector<Eigen::VectorX
   return sums;
 }
 
+SUREFOOT_INLINE double chi_square_score(double value, double mean, double variance) {
+  const double relative = variance / (9 * mean * mean);  // 2 / (9 k), for k = 2 mean^2 / variance degrees of freedom
+  return (std::cbrt(value / mean) - (1 - relative)) / std::sqrt(relative);
+}
+
 SUREFOOT_INLINE double chi_square_tail(double value, double mean, double variance) {
   if (!(mean > 0) || !(variance > 0)) return 1;
-  const double relative = variance / (9 * mean * mean);  // 2 / (9 k), for k = 2 mean^2 / variance degrees of freedom
-  return normal_tail((std::cbrt(value / mean) - (1 - relative)) / std::sqrt(relative));
+  return normal_tail(chi_square_score(value, mean, variance));
 }
 
 SUREFOOT_INLINE WhitenessTest test_whiteness(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,

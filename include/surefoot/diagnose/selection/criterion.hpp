@@ -113,7 +113,7 @@ EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, const Fit& fitted,
                                  const Parallel& parallel);
 
 /// Differences of the mean square, by output, that mean nothing: they may come of the form of effects.
-Eigen::VectorXd least_squares_compared(const ErrorSquares& without_effects, const SelectionCriteria& criteria);
+Eigen::VectorXd negligible_differences(const ErrorSquares& without_effects, const SelectionCriteria& criteria);
 
 /// Log of the prior probability of the effects beyond the first `known` [nat], but for a constant.
 double log_prior(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t known, std::size_t candidates,

@@ -78,7 +78,7 @@ SUREFOOT_INLINE Eigen::VectorXd pooled(const ErrorSquares& errors) {
   return result;
 }
 
-SUREFOOT_INLINE Eigen::VectorXd least_squares_compared(const ErrorSquares& without_effects,
+SUREFOOT_INLINE Eigen::VectorXd negligible_differences(const ErrorSquares& without_effects,
                                                        const SelectionCriteria& criteria) {
   Eigen::VectorXd least = pooled(without_effects);
   for (double& value : least) {

@@ -134,7 +134,7 @@ SUREFOOT_INLINE Proposal predict_gain(const BoundSimulator& bound, const OpenRes
   for (Eigen::Index i = 0; i < rest.size(); ++i) rest[i] += open.open[i];
   proposal.gain = 1 - sum_of_squares(rest) / open.energy;
   const double unit = 1 / std::sqrt(open.energy);
-  for (double& value : distinct.reshaped()) value *= unit;
+  for (Eigen::Index i = 0; i < distinct.size(); ++i) distinct.data()[i] *= unit;
   for (double& value : against) value *= -unit * unit;
   proposal.beyond = std::move(distinct);
   proposal.along = std::move(against);

@@ -172,7 +172,7 @@ SUREFOOT_INLINE Comparison gain_of(const ErrorSquares& before, const ErrorSquare
     squares += off * off;
   }
   double cells = 0;
-  for (const double count : before.counts.reshaped()) cells += count;
+  for (Eigen::Index i = 0; i < before.counts.size(); ++i) cells += before.counts.data()[i];
   result.stderr_ = std::sqrt(squares) / (cells * a * a) / (2 * std::max(b / a, least_ratio));
   result.t = result.stderr_ > 0 ? result.gain / result.stderr_ : 0;
   result.p_value = 1 / (1 + std::exp(std::clamp(log_odds, -largest_odds, largest_odds)));
@@ -225,7 +225,7 @@ SUREFOOT_INLINE Selection select_effects(const BoundSimulator& bound, const Fit&
   const std::vector<std::size_t> all = search.problem.fit.recordings;
   search.problem.fit.recordings = informative(bound, calibrated.hypothesis, search.problem, parallel);
   std::vector<EvaluatedHypothesis> pool{evaluate_fit(bound, calibrated, search.problem, parallel)};
-  search.problem.least = pool.front().errors.least = least_squares_compared(pool.front().errors, criteria);
+  search.problem.least = pool.front().errors.least = negligible_differences(pool.front().errors, criteria);
   grow(search, pool);
   for (int round = 0; round < 2 && search.effects(pool[best_of(pool, criteria)]) > 0; ++round) {
     const Hypothesis best = pool[best_of(pool, criteria)].hypothesis;
@@ -237,7 +237,7 @@ SUREFOOT_INLINE Selection select_effects(const BoundSimulator& bound, const Fit&
   if (search.problem.fit.recordings.size() < all.size()) {
     search.problem.fit.recordings = all;
     reweight(search, pool[best_of(pool, criteria)]);
-    search.problem.least = least_squares_compared(evaluate_fit(bound, calibrated, search.problem, parallel).errors, criteria);
+    search.problem.least = negligible_differences(evaluate_fit(bound, calibrated, search.problem, parallel).errors, criteria);
     pool = fitted_again(search, pool);
   }
   Selection selection = ranked(search, pool);

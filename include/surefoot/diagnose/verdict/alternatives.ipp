@@ -47,7 +47,7 @@ SUREFOOT_INLINE Alternatives find_alternatives(const Selection& selection, const
     const EvaluatedHypothesis& other = selection.alternatives[i];
     if (other.hypothesis.effects.size() <= known) continue;
     Alternative alternative;
-    alternative.cross_validated_rmse = other.errors.rms();
+    alternative.fitted_rmse = other.errors.rms();
     alternative.probability = selection.alternative_probabilities[i];
     for (std::size_t e = known; e < other.hypothesis.effects.size(); ++e) {
       alternative.effects.emplace_back(other.hypothesis.effects[e].effect->name, other.hypothesis.effects[e].place);

@@ -9,6 +9,7 @@
 #include "surefoot/diagnose/residual_tests/predictability.hpp"
 #include "surefoot/diagnose/residual_tests/walking/sequence_residual.hpp"
 #include "surefoot/diagnose/residual_tests/walking/slip_by_place.hpp"
+#include "surefoot/diagnose/residual_tests/whiteness.hpp"
 #include "surefoot/diagnose/verdict/evidence.hpp"
 
 namespace surefoot::diagnosis {
@@ -46,19 +47,12 @@ SUREFOOT_INLINE VerdictEvidence gather_evidence(const EstimationSetup& setup, co
   return evidence;
 }
 
-/// The mean square of n independent normal errors with variance 1, as a standard normal variable (Wilson and Hilferty,
-/// "The distribution of chi-square", PNAS 17, 1931).
-SUREFOOT_INLINE double normal_of_mean_square(double mean_square, double n) {
-  constexpr double nine_halves = 4.5;  // of the formula
-  const double spread = 1 / (nine_halves * n);
-  return (std::cbrt(mean_square) - (1 - spread)) / std::sqrt(spread);
-}
-
 SUREFOOT_INLINE void mark_beyond_noise(Diagnosis& diagnosis, const VerdictCriteria& verdict) {
   if (!std::isfinite(diagnosis.noise_ratio)) return;  // noise adds up on the way
   for (RecordingFit& one : diagnosis.per_recording) {
     const double ratio = one.fitted / diagnosis.noise_floor;
-    const double excess = normal_of_mean_square(ratio * ratio, std::max(1.0, one.independent));
+    // the mean square of n independent errors has the variance 2 / n
+    const double excess = chi_square_score(ratio * ratio, 1, 2 / std::max(1.0, one.independent));
     one.beyond_noise = ratio > verdict.largest_ratio && excess > verdict.recording_excess;
   }
 }

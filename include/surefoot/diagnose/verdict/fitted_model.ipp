@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/cross_validation.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
 #include "surefoot/diagnose/verdict/fitted_model.hpp"
 
@@ -17,16 +18,10 @@ SUREFOOT_INLINE std::vector<Hypothesis> cross_fitted(const EstimationSetup& setu
   const auto& [training, held_out, folds, cross_fitted] = setup.split;
   std::vector<Hypothesis> result(held_out.size(), hypothesis);
   if (!refit) return result;
-  for (const std::vector<std::size_t>& fold : folds) {
-    FitProblem others = setup.problem;
-    others.recordings.clear();
-    for (const std::size_t r : training) {
-      if (std::ranges::find(fold, r) == fold.end()) others.recordings.push_back(r);
-    }
-    const Hypothesis fitted = with_estimated_initial_states(
-        setup.bound, fit(setup.bound, hypothesis, others, parallel).hypothesis, fold, setup.problem, parallel);
-    for (const std::size_t r : fold) {
-      result[static_cast<std::size_t>(std::ranges::find(held_out, r) - held_out.begin())] = fitted;
+  const std::vector<Hypothesis> fits = fits_to_other_folds(setup.bound, hypothesis, setup.problem, folds, parallel);
+  for (std::size_t k = 0; k < folds.size(); ++k) {
+    for (const std::size_t r : folds[k]) {
+      result[static_cast<std::size_t>(std::ranges::find(held_out, r) - held_out.begin())] = fits[k];
     }
   }
   return result;

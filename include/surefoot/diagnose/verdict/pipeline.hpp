@@ -52,7 +52,7 @@ Hypothesis nominal_with_known(const BoundSimulator& bound, const DiagnoseOptions
 std::vector<Recording> cut_few_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
                                           const RunContext& run);
 
-/// Holds recordings out; the rest is for the fit and for cross-validation.
+/// Holds recordings out, or each in turn.
 EstimationSetup hold_out_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
                                     const RunContext& run);
 

@@ -249,7 +249,7 @@ SUREFOOT_INLINE void describe_limits(const EstimationSetup& setup, const FittedM
 
 SUREFOOT_INLINE void name_recordings(const EstimationSetup& setup, Diagnosis& diagnosis) {
   for (const std::size_t r : setup.split.training) diagnosis.fit.push_back(setup.bound.recordings[r].name);
-  diagnosis.select = diagnosis.fit;  // cross-validated: each is left out once
+  diagnosis.select = diagnosis.fit;  // structures are weighed on the same recordings
   for (const std::size_t r : setup.split.held_out) diagnosis.held_out.push_back(setup.bound.recordings[r].name);
 }
 

@@ -10,8 +10,8 @@
 namespace surefoot::diagnosis {
 
 struct PreparationCriteria {
-  std::size_t enough = 4;       // recordings that are left as they are: one to hold out, three to cross-validate
-  std::size_t folds = 4;        // of the cross-validation
+  std::size_t enough = 4;       // recordings that are left as they are: with one held out, three to fit
+  std::size_t folds = 4;        // of the recordings to fit
   std::size_t parts = 5;        // at least, of all recordings together
   std::size_t fewest = 3;       // parts that are of more use than whole recordings
   Eigen::Index part_rows = 20;  // least rows of a part
@@ -34,9 +34,6 @@ void free_measured_initial_states(BoundSimulator& bound, const std::vector<std::
 /// Of more rows than `most` each recording keeps only the first ones, short recordings all of theirs. Returns how many
 /// rows the longest has left, 0 if none was shortened.
 Eigen::Index shorten_recordings(std::vector<Recording>& recordings, std::size_t most);
-
-/// At most `count` recordings, evenly chosen.
-std::vector<std::size_t> some_of(const std::vector<std::size_t>& recordings, std::size_t count);
 
 }  // namespace surefoot::diagnosis
 

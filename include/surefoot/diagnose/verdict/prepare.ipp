@@ -98,11 +98,4 @@ SUREFOOT_INLINE Eigen::Index shorten_recordings(std::vector<Recording>& recordin
   return any ? kept : 0;
 }
 
-SUREFOOT_INLINE std::vector<std::size_t> some_of(const std::vector<std::size_t>& recordings, std::size_t count) {
-  if (recordings.size() <= count) return recordings;
-  std::vector<std::size_t> result;
-  for (std::size_t i = 0; i < count; ++i) result.push_back(recordings[i * recordings.size() / count]);
-  return result;
-}
-
 }  // namespace surefoot::diagnosis
