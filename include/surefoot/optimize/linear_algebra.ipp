@@ -71,21 +71,11 @@ SUREFOOT_INLINE double column_norm(const Eigen::MatrixXd& a, Eigen::Index column
   return std::sqrt(dot(first, first, a.rows()));
 }
 
-/// Whether Eigen takes the sums of a product one by one, not by blocks.
-SUREFOOT_INLINE bool is_small_product(Eigen::Index rows, Eigen::Index columns, Eigen::Index depth) {
-  constexpr Eigen::Index blocked_from = 20;  // rows, columns and depth together
-  return rows == 1 || rows + columns + depth < blocked_from;
-}
-
 SUREFOOT_INLINE Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(a.rows(), b.cols());
-  if (!is_small_product(a.rows(), b.cols(), a.cols())) {
-    result.noalias() += a * b;
-    return result;
-  }
   for (Eigen::Index j = 0; j < b.cols(); ++j) {
-    for (Eigen::Index i = 0; i < a.rows(); ++i) {
-      for (Eigen::Index k = 0; k < a.cols(); ++k) result(i, j) += a(i, k) * b(k, j);
+    for (Eigen::Index k = 0; k < a.cols(); ++k) {
+      for (Eigen::Index i = 0; i < a.rows(); ++i) result(i, j) += a(i, k) * b(k, j);
     }
   }
   return result;
@@ -126,11 +116,7 @@ SUREFOOT_INLINE Eigen::MatrixXd transposed(const Eigen::MatrixXd& a) {
 }
 
 SUREFOOT_INLINE Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(a.cols(), b.cols());
-  if (!is_small_product(a.cols(), b.cols(), a.rows())) {
-    result.noalias() += a.transpose() * b;
-    return result;
-  }
+  Eigen::MatrixXd result(a.cols(), b.cols());
   for (Eigen::Index j = 0; j < b.cols(); ++j) {
     for (Eigen::Index i = 0; i < a.cols(); ++i) {
       result(i, j) = dot(a.data() + i * a.rows(), b.data() + j * b.rows(), a.rows());

@@ -37,10 +37,10 @@ inline Effect backlash() {
               names_of({"input_delay", "sensor_delay", "hysteresis", "coulomb_friction", "joint_elasticity"}),
           .experiment = "slow reversals at two amplitudes: lost motion is the same for both",
           .hidden_states = 1,
-          .start = [](const EffectContext& m, Values, HiddenStates hidden) { hidden[0] = m.position; },
-          .advance = [](const EffectContext& m, Values p,
+          .start = +[](const EffectContext& m, Values, HiddenStates hidden) { hidden[0] = m.position; },
+          .advance = +[](const EffectContext& m, Values p,
                         HiddenStates hidden) { hidden[0] = behind_gap(hidden[0], m.position, p[0]); },
-          .seen_position = [](const EffectContext& m, Values p,
+          .seen_position = +[](const EffectContext& m, Values p,
                               Values hidden) { return behind_gap(hidden[0], m.position, p[0]); }};
 }
 
@@ -65,9 +65,9 @@ inline Effect backlash_gap() {
           .experiment = "quick reversals at two amplitudes, small ones inside the gap",
           .form = "gap",
           .hidden_states = 3,
-          .force = [](const EffectContext& m, Values p, Values hidden) { return force_of(gap_joint(p), m, hidden); },
-          .start = [](const EffectContext& m, Values, HiddenStates hidden) { start(m, hidden); },
-          .advance = [](const EffectContext& m, Values p, HiddenStates hidden) { advance(gap_joint(p), m, hidden); }};
+          .force = +[](const EffectContext& m, Values p, Values hidden) { return force_of(gap_joint(p), m, hidden); },
+          .start = +[](const EffectContext& m, Values, HiddenStates hidden) { start(m, hidden); },
+          .advance = +[](const EffectContext& m, Values p, HiddenStates hidden) { advance(gap_joint(p), m, hidden); }};
 }
 
 /// Rigid parts (see motor_behind_backlash.hpp). The inertia of the equations is that of both.
@@ -93,21 +93,21 @@ inline Effect backlash_motor() {
           .needs_damping = true,
           .is_impulsive = true,
           .force =
-              [](const EffectContext& m, Values p, Values hidden) {
+              +[](const EffectContext& m, Values p, Values hidden) {
                 return MotorBehindBacklash{p[0], p[1]}.force(m, hidden);
               },
           .position_rate =
-              [](const EffectContext& m, Values p, Values hidden) {
+              +[](const EffectContext& m, Values p, Values hidden) {
                 return MotorBehindBacklash{p[0], p[1]}.position_rate(m, hidden);
               },
           .hidden_rate =
-              [](const EffectContext& m, Values p, Values hidden, HiddenStates rates) {
+              +[](const EffectContext& m, Values p, Values hidden, HiddenStates rates) {
                 const Offset mean = MotorBehindBacklash{p[0], p[1]}.mean_rates(m, hidden);
                 rates[2] = mean.d;
                 rates[3] = mean.w;
               },
           .advance =
-              [](const EffectContext&, Values p, HiddenStates hidden) {
+              +[](const EffectContext&, Values p, HiddenStates hidden) {
                 MotorBehindBacklash{p[0], p[1]}.advance(hidden);
               }};
 }
@@ -125,7 +125,7 @@ inline Effect backlash_sensor() {
           .confusable_with = names_of({"sensor_delay", "quantization", "hysteresis"}),
           .experiment = "slow reversals at two amplitudes, watched by a second sensor",
           .form = "sensor",
-          .sensor = [](const Series& series, Values p) {
+          .sensor = +[](const Series& series, Values p) {
             if (series.readings.empty()) return;
             double seen = series.readings[0];
             for (double& reading : series.readings) reading = seen = behind_gap(seen, reading, p[0]);

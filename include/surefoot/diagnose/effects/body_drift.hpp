@@ -18,7 +18,7 @@ inline Effect body_drift() {
            {.name = "turn", .measure = {.position = 1}, .low = -1, .high = 1, .starts = {0.001}, .strength = true}}),
       .confusable_with = names_of({"ground_slope", "input_asymmetry", "cross_coupling"}),
       .experiment = "walk on the spot, starting with several headings",
-      .planar = [](const Pose2& displacement, double, Values p) {
+      .planar = +[](const Pose2& displacement, double, Values p) {
         return Pose2{displacement.x + p[0], displacement.y + p[1], displacement.angle + p[2]};
       }};
 }

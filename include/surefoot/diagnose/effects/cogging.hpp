@@ -31,7 +31,7 @@ inline Effect cogging() {
                                      1.05, 1.5, 2.9}}},
           .confusable_with = names_of({"gravity_offset", "stribeck_friction", "cubic_stiffness"}),
           .experiment = "turn through the whole range slowly and steadily, both ways",
-          .force = [](const EffectContext& m, Values p, Values) {
+          .force = +[](const EffectContext& m, Values p, Values) {
             const double phase = 2 * std::numbers::pi * m.position / p[2];
             return p[0] * std::sin(phase) + p[1] * std::cos(phase);
           }};

@@ -19,7 +19,7 @@ inline Effect constant_force() {
                                         .strength = true}}),
           .confusable_with = names_of({"gravity_offset", "sensor_bias", "input_asymmetry"}),
           .experiment = "hold several positions far apart, each reached from both sides",
-          .force = [](const EffectContext&, Values p, Values) { return p[0]; }};
+          .force = +[](const EffectContext&, Values p, Values) { return p[0]; }};
 }
 
 }  // namespace surefoot::effects

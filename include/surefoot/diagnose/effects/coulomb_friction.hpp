@@ -20,7 +20,7 @@ inline Effect coulomb_friction() {
       .confusable_with =
           names_of({"stribeck_friction", "load_dependent_friction", "hysteresis", "viscous_friction", "dead_zone"}),
       .experiment = "a slow ramp with reversals, at a few speeds down to the slowest that still moves",
-      .dry = [](const EffectContext&, Values p) { return p[0]; }};
+      .dry = +[](const EffectContext&, Values p) { return p[0]; }};
 }
 
 }  // namespace surefoot::effects

@@ -21,7 +21,7 @@ inline Effect cubic_stiffness() {
                                     .strength = true}}),
       .confusable_with = names_of({"end_stop", "gravity_offset", "saturation"}),
       .experiment = "free oscillations, or slow sweeps, at a small and at the largest amplitude",
-      .force = [](const EffectContext& m, Values p, Values) { return -p[0] * m.position * m.position * m.position; }};
+      .force = +[](const EffectContext& m, Values p, Values) { return -p[0] * m.position * m.position * m.position; }};
 }
 
 }  // namespace surefoot::effects

@@ -26,7 +26,7 @@ inline Effect dead_zone() {
                                         .strength = true}}),
           .confusable_with = names_of({"coulomb_friction", "input_gain", "backlash"}),
           .experiment = "small inputs that grow slowly from zero, both ways",
-          .signal = [](const EffectContext& m, Values p, Values) {
+          .signal = +[](const EffectContext& m, Values p, Values) {
             return std::max(m.value - p[0], 0.0) + std::min(m.value + p[0], 0.0);
           }};
 }
@@ -40,7 +40,7 @@ inline Effect dead_zone_step() {
           .confusable_with = names_of({"coulomb_friction", "backlash"}),
           .experiment = "small inputs that grow slowly from zero, both ways",
           .form = "step",
-          .signal = [](const EffectContext& m, Values p, Values) {
+          .signal = +[](const EffectContext& m, Values p, Values) {
             const double edge = std::clamp((std::abs(m.value) / p[0] - 0.9) / 0.2, 0.0, 1.0);
             return m.value * edge * edge * (3 - 2 * edge);
           }};

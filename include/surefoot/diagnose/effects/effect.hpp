@@ -66,7 +66,8 @@ struct Series {
 };
 
 /// What an effect is and does. Only the functions that it needs are set; p are its parameters in their order, `hidden`
-/// its hidden states.
+/// its hidden states. The catalogue writes them +[](...): plain functions, which cost the compiler far less memory than
+/// closures of a type each; where something is captured, a closure does as well.
 struct Effect {
   std::string name;
   std::string sentence =

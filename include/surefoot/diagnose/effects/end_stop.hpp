@@ -26,7 +26,7 @@ Effect end_stop_of(std::string form) {
       .experiment = "push slowly against the suspected stop, then hit it at two speeds",
       .form = std::move(form),
       .suggest = Side > 0 ? near_largest : near_smallest,
-      .limit = [](Values p, double& value, double& position, double&) {
+      .limit = +[](Values p, double& value, double& position, double&) {
         if (Side * (position - p[0]) <= 0) return;
         position = p[0];
         if (Side * value > 0) value *= -p[1];

@@ -28,22 +28,22 @@ inline Effect first_order_lag() {
               "moves",
           .hidden_states = 2,
           .start =
-              [](const EffectContext& m, Values, HiddenStates hidden) {
+              +[](const EffectContext& m, Values, HiddenStates hidden) {
                 hidden[0] = m.value;
                 hidden[1] = 0;
               },
           .hidden_rate =
-              [](const EffectContext& m, Values, Values, HiddenStates rates) {
+              +[](const EffectContext& m, Values, Values, HiddenStates rates) {
                 rates[0] = 0;
                 rates[1] = m.value;
               },
           .advance =
-              [](const EffectContext& m, Values p, HiddenStates hidden) {
+              +[](const EffectContext& m, Values p, HiddenStates hidden) {
                 if (m.step > 0) hidden[0] += -std::expm1(-m.step / p[0]) * (hidden[1] / m.step - hidden[0]);
                 hidden[1] = 0;
               },
           .signal =
-              [](const EffectContext& m, Values p, Values hidden) {
+              +[](const EffectContext& m, Values p, Values hidden) {
                 const double steps = m.step / p[0];
                 const double still = steps > 1e-9 ? -std::expm1(-steps) / steps : 1.0;
                 return m.value + (hidden[0] - m.value) * still;

@@ -27,7 +27,7 @@ inline Effect ground_slope() {
           .parameters = {x, y},
           .confusable_with = names_of({"body_drift", "input_asymmetry"}),
           .experiment = "the same walk with headings all around the circle",
-          .planar = [](const Pose2& displacement, double heading, Values p) {
+          .planar = +[](const Pose2& displacement, double heading, Values p) {
             return moved_in_world(displacement, heading, p[0], p[1]);
           }};
 }
@@ -43,7 +43,7 @@ inline Effect ground_slope_distance() {
           .confusable_with = names_of({"body_drift", "input_gain"}),
           .experiment = "walks with short and long steps, with headings all around the circle",
           .form = "distance",
-          .planar = [](const Pose2& displacement, double heading, Values p) {
+          .planar = +[](const Pose2& displacement, double heading, Values p) {
             const double length = std::hypot(displacement.x, displacement.y);
             return moved_in_world(displacement, heading, p[0] * length, p[1] * length);
           }};

@@ -54,15 +54,15 @@ Effect hysteresis_of(std::string form) {
       .experiment = "slow reversals of growing amplitude, from far below to far above the width",
       .form = std::move(form),
       .hidden_states = 2,
-      .force = [](const EffectContext& m, Values p,
+      .force = +[](const EffectContext& m, Values p,
                   Values hidden) { return -p[0] * Move(hidden[0], m.position - hidden[1], p[1]) / p[1]; },
       .start =
-          [](const EffectContext& m, Values, HiddenStates hidden) {
+          +[](const EffectContext& m, Values, HiddenStates hidden) {
             hidden[0] = 0;
             hidden[1] = m.position;
           },
       .advance =
-          [](const EffectContext& m, Values p, HiddenStates hidden) {
+          +[](const EffectContext& m, Values p, HiddenStates hidden) {
             hidden[0] = Move(hidden[0], m.position - hidden[1], p[1]);
             hidden[1] = m.position;
           }};

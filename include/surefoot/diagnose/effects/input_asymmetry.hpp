@@ -16,7 +16,8 @@ inline Effect input_asymmetry() {
           {{.name = "asymmetry", .measure = {}, .low = -0.95, .high = 0.95, .starts = {0.003, 0.1}, .strength = true}}),
       .confusable_with = names_of({"constant_force", "input_gain", "body_drift", "sensor_bias"}),
       .experiment = "the same steps of the input to either side, in two sizes",
-      .signal = [](const EffectContext& m, Values p, Values) { return m.value * (m.value > 0 ? 1 + p[0] : 1 - p[0]); }};
+      .signal =
+          +[](const EffectContext& m, Values p, Values) { return m.value * (m.value > 0 ? 1 + p[0] : 1 - p[0]); }};
 }
 
 }  // namespace surefoot::effects

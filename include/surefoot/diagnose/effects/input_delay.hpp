@@ -21,7 +21,7 @@ inline Effect input_delay() {
           .experiment =
               "sharp steps of the input at random times: after a delay nothing moves, after a lag it starts at "
               "once",
-          .delay = [](Values p) { return p[0]; }};
+          .delay = +[](Values p) { return p[0]; }};
 }
 
 }  // namespace surefoot::effects

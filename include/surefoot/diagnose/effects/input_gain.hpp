@@ -15,7 +15,7 @@ inline Effect input_gain() {
               {{.name = "excess", .measure = {}, .low = -0.95, .high = 3, .starts = {0.003, 0.1}, .strength = true}}),
           .confusable_with = names_of({"input_asymmetry", "dead_zone", "supply_sag", "viscous_friction"}),
           .experiment = "steps of the input of several sizes, both ways",
-          .signal = [](const EffectContext& m, Values p, Values) { return m.value * (1 + p[0]); }};
+          .signal = +[](const EffectContext& m, Values p, Values) { return m.value * (1 + p[0]); }};
 }
 
 }  // namespace surefoot::effects

@@ -31,9 +31,9 @@ inline Effect joint_elasticity() {
       .confusable_with = names_of({"backlash", "first_order_lag", "input_delay"}),
       .experiment = "a chirp over the suspected frequency, and sharp stops with the ringing recorded",
       .hidden_states = 3,
-      .force = [](const EffectContext& m, Values p, Values hidden) { return force_of(elastic_joint(p), m, hidden); },
-      .start = [](const EffectContext& m, Values, HiddenStates hidden) { start(m, hidden); },
-      .advance = [](const EffectContext& m, Values p, HiddenStates hidden) { advance(elastic_joint(p), m, hidden); }};
+      .force = +[](const EffectContext& m, Values p, Values hidden) { return force_of(elastic_joint(p), m, hidden); },
+      .start = +[](const EffectContext& m, Values, HiddenStates hidden) { start(m, hidden); },
+      .advance = +[](const EffectContext& m, Values p, HiddenStates hidden) { advance(elastic_joint(p), m, hidden); }};
 }
 
 }  // namespace surefoot::effects

@@ -25,7 +25,7 @@ inline Effect leak() {
           .confusable_with = names_of({"constant_rate", "input_gain", "overflow"}),
           .experiment = "fill it up, stop every input and record the decay until little is left",
           .needs_conserved_state = true,
-          .force = [](const EffectContext& m, Values p, Values) { return -p[0] * m.value; }};
+          .force = +[](const EffectContext& m, Values p, Values) { return -p[0] * m.value; }};
 }
 
 inline Effect leak_hole() {
@@ -42,7 +42,7 @@ inline Effect leak_hole() {
           .experiment = "fill it up, stop every input and record the decay until little is left",
           .form = "hole",
           .needs_conserved_state = true,
-          .force = [](const EffectContext& m, Values p, Values) { return -p[0] * std::sqrt(std::max(m.value, 0.0)); }};
+          .force = +[](const EffectContext& m, Values p, Values) { return -p[0] * std::sqrt(std::max(m.value, 0.0)); }};
 }
 
 }  // namespace surefoot::effects

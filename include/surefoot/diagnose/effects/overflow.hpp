@@ -22,7 +22,7 @@ inline Effect overflow() {
           .experiment = "fill it well beyond the suspected level, slowly and quickly, and let it fall again",
           .needs_conserved_state = true,
           .suggest = near_largest,
-          .limit = [](Values p, double& value, double&, double&) {
+          .limit = +[](Values p, double& value, double&, double&) {
             if (value > p[0]) value = p[0];
           }};
 }
@@ -44,7 +44,7 @@ inline Effect overflow_spill() {
           .needs_conserved_state = true,
           .has_overflow_target = true,
           .suggest = near_largest,
-          .limit = [](Values p, double& value, double&, double& other) {
+          .limit = +[](Values p, double& value, double&, double& other) {
             if (value <= p[0]) return;
             other += p[1] * (value - p[0]);
             value = p[0];

@@ -18,7 +18,7 @@ inline Effect parameter_drift() {
               {{.name = "rate", .measure = {.time = -1}, .low = -20, .high = 20, .starts = {0.001}, .strength = true}}),
           .confusable_with = names_of({"sensor_drift", "supply_sag", "leak"}),
           .experiment = "repeat one and the same motion for as long as the machine runs, without a break",
-          .factor = [](const EffectContext& m, Values p) { return std::max(0.05, 1 + p[0] * m.time); }};
+          .factor = +[](const EffectContext& m, Values p) { return std::max(0.05, 1 + p[0] * m.time); }};
 }
 
 }  // namespace surefoot::effects

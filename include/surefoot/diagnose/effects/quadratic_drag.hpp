@@ -22,7 +22,7 @@ inline Effect quadratic_drag() {
                                         .strength = true}}),
           .confusable_with = names_of({"viscous_friction", "coulomb_friction"}),
           .experiment = "let it coast freely from the highest speed down to rest",
-          .force = [](const EffectContext& m, Values p, Values) { return -p[0] * m.value * std::abs(m.value); }};
+          .force = +[](const EffectContext& m, Values p, Values) { return -p[0] * m.value * std::abs(m.value); }};
 }
 
 }  // namespace surefoot::effects

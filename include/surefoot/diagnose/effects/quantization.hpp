@@ -31,9 +31,9 @@ inline Effect quantization() {
                                         .starts = {0.01, 0.03, 0.1, 0.2, 0.4, 0.8}}}),
           .confusable_with = names_of({"backlash"}),
           .experiment = "the slowest motion possible through many steps of the sensor",
-          .suggest = [](Values readings, Values simulated) { return sensor_steps(readings, simulated, 0.5); },
+          .suggest = +[](Values readings, Values simulated) { return sensor_steps(readings, simulated, 0.5); },
           .sensor =
-              [](const Series& series, Values p) {
+              +[](const Series& series, Values p) {
                 for (double& reading : series.readings) reading = p[0] * soft_round(reading / p[0]);
               }};
 }
@@ -42,8 +42,8 @@ inline Effect quantization() {
 inline Effect quantization_floor() {
   Effect effect = quantization();
   effect.form = "floor";
-  effect.suggest = [](Values readings, Values simulated) { return sensor_steps(readings, simulated, 0); };
-  effect.sensor = [](const Series& series, Values p) {
+  effect.suggest = +[](Values readings, Values simulated) { return sensor_steps(readings, simulated, 0); };
+  effect.sensor = +[](const Series& series, Values p) {
     for (double& reading : series.readings) reading = p[0] * soft_round(reading / p[0] - 0.5);
   };
   return effect;

@@ -23,14 +23,14 @@ inline Effect rate_limit() {
           .confusable_with = names_of({"first_order_lag", "input_delay", "saturation"}),
           .experiment = "steps of the input of several sizes: the time to follow grows with the size",
           .hidden_states = 1,
-          .start = [](const EffectContext& m, Values, HiddenStates hidden) { hidden[0] = m.value; },
+          .start = +[](const EffectContext& m, Values, HiddenStates hidden) { hidden[0] = m.value; },
           .advance =
-              [](const EffectContext& m, Values p, HiddenStates hidden) {
+              +[](const EffectContext& m, Values p, HiddenStates hidden) {
                 const double reach = p[0] * m.step;
                 hidden[0] += std::clamp(m.value - hidden[0], -reach, reach);
               },
           .signal =
-              [](const EffectContext& m, Values p, Values hidden) {
+              +[](const EffectContext& m, Values p, Values hidden) {
                 const double way = m.value - hidden[0], reach = p[0] * m.step;
                 if (reach <= 0) return hidden[0];
                 if (std::abs(way) >= reach) return hidden[0] + std::copysign(0.5 * reach, way);

@@ -24,7 +24,7 @@ inline Effect saturation() {
           .parameters = {saturation_level({0.4, 0.6, 0.8, 0.93})},
           .confusable_with = names_of({"input_gain", "supply_sag", "rate_limit", "slip_saturation"}),
           .experiment = "steps of the input of growing size, up to the largest",
-          .signal = [](const EffectContext& m, Values p, Values) { return std::clamp(m.value, -p[0], p[0]); }};
+          .signal = +[](const EffectContext& m, Values p, Values) { return std::clamp(m.value, -p[0], p[0]); }};
 }
 
 inline Effect saturation_soft() {
@@ -35,7 +35,7 @@ inline Effect saturation_soft() {
           .confusable_with = names_of({"input_gain", "supply_sag", "slip_saturation"}),
           .experiment = "steps of the input of growing size, up to the largest",
           .form = "soft",
-          .signal = [](const EffectContext& m, Values p, Values) { return p[0] * std::tanh(m.value / p[0]); }};
+          .signal = +[](const EffectContext& m, Values p, Values) { return p[0] * std::tanh(m.value / p[0]); }};
 }
 
 }  // namespace surefoot::effects

@@ -21,7 +21,7 @@ inline Effect sensor_drift() {
                                         .strength = true}}),
           .confusable_with = names_of({"constant_rate", "leak", "sensor_bias", "parameter_drift"}),
           .experiment = "rest for as long as a recording lasts, in a pose known from elsewhere",
-          .sensor = [](const Series& series, Values p) {
+          .sensor = +[](const Series& series, Values p) {
             for (std::size_t row = 0; row < series.readings.size(); ++row) {
               series.readings[row] += p[0] * (series.time[row] - series.time[0]);
             }

@@ -16,7 +16,7 @@ inline Effect sensor_scale() {
           .confusable_with = names_of({"input_gain", "sensor_bias"}),
           .experiment = "rest in two poses far apart that are known from elsewhere",
           .at_start = true,
-          .sensor = [](const Series& series, Values p) {
+          .sensor = +[](const Series& series, Values p) {
             for (double& reading : series.readings) reading *= 1 + p[0];
           }};
 }

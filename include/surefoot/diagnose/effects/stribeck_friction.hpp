@@ -30,7 +30,7 @@ inline Effect stribeck_friction() {
       .experiment =
           "slow ramps with reversals at several speeds, from crawling to fast: the force needed falls with "
           "speed",
-      .dry = [](const EffectContext& m, Values p) {
+      .dry = +[](const EffectContext& m, Values p) {
         const double ratio = m.value / p[2];
         return p[0] + p[1] * std::exp(-ratio * ratio);
       }};

@@ -20,7 +20,7 @@ inline Effect supply_sag() {
           {{.name = "sag", .measure = {.value = -1}, .low = 0, .high = 1, .starts = {0.003, 0.1}, .strength = true}}),
       .confusable_with = names_of({"saturation", "input_gain", "quadratic_drag"}),
       .experiment = "long pushes of several strengths, with the supply's voltage recorded",
-      .signal = [](const EffectContext& m, Values p, Values) {
+      .signal = +[](const EffectContext& m, Values p, Values) {
         return m.value * std::max(0.0, 1 - p[0] * std::abs(m.value));
       }};
 }

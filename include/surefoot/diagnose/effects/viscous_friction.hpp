@@ -22,7 +22,7 @@ inline Effect viscous_friction() {
                                         .strength = true}}),
           .confusable_with = names_of({"coulomb_friction", "quadratic_drag", "input_gain"}),
           .experiment = "let it coast freely from a few different speeds",
-          .force = [](const EffectContext& m, Values p, Values) { return -p[0] * m.value; }};
+          .force = +[](const EffectContext& m, Values p, Values) { return -p[0] * m.value; }};
 }
 
 }  // namespace surefoot::effects
