@@ -98,7 +98,9 @@ struct SearchProblem {
   std::size_t known = 0;  // effects that are part of the model already: the first ones, never removed
   std::size_t candidates = 1;  // effects and places that may be tried
   /// Whether the residuals of a hypothesis still hold what noise does not; where not, only strong proposals get a fit.
-  std::function<bool(const Hypothesis&)> structured = [](const Hypothesis&) { return true; };
+  std::function<bool(const Hypothesis&, const Integration&)> structured = [](const Hypothesis&, const Integration&) {
+    return true;
+  };
   std::function<void(const std::string&, double)> on_progress = [](const std::string&, double) {};
   std::function<bool()> stopped = [] { return false; };
   SelectionCriteria criteria = {};

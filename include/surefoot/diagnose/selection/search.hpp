@@ -34,6 +34,10 @@ bool keep_best_form(std::vector<EvaluatedHypothesis>& pool, const EvaluatedHypot
 /// the recordings that show this best.
 void reweight(Search& search, const EvaluatedHypothesis& best);
 
+/// What effects explain shows smaller errors of the integration, which would pass for further effects: chooses it anew
+/// for what a hypothesis leaves; true if it is finer now.
+bool refine_integration(Search& search, const EvaluatedHypothesis& best);
+
 /// The children of the nominal parameters: what is missing may have pushed the calibrated ones where no fit finds back
 /// from, and where signatures look otherwise.
 std::vector<EvaluatedHypothesis> extended_from_nominal(Search search);

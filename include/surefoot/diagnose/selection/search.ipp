@@ -12,6 +12,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
+#include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
@@ -49,7 +50,7 @@ SUREFOOT_INLINE void extend(const Search& search, const EvaluatedHypothesis& par
                             std::vector<EvaluatedHypothesis>& children) {
   const SearchProblem& problem = search.problem;
   const auto most = static_cast<std::size_t>(problem.criteria.max_effects);
-  const bool structured = problem.structured(parent.hypothesis);
+  const bool structured = problem.structured(parent.hypothesis, problem.fit.integration);
   std::vector<Proposal> proposals = proposals_for(search, parent);
   if (!structured) {
     std::erase_if(proposals,
@@ -90,6 +91,21 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> extended_from_nominal(Search se
   return children;
 }
 
+SUREFOOT_INLINE bool refine_integration(Search& search, const EvaluatedHypothesis& best) {
+  FitProblem& problem = search.problem.fit;
+  const Integration finer = choose_integration(search.bound, best.hypothesis, problem.weighting.sigma,
+                                               problem.integration, problem.recordings.front());
+  if (finer.order <= problem.integration.order && finer.step >= problem.integration.step) return false;
+  problem.integration = finer;
+  return true;
+}
+
+/// A hypothesis, fitted and evaluated again.
+SUREFOOT_INLINE EvaluatedHypothesis refitted(const Search& search, const EvaluatedHypothesis& one) {
+  return evaluate_fit(search.bound, fit(search.bound, one.hypothesis, search.problem.fit, serially()), search.problem,
+                      serially());
+}
+
 SUREFOOT_INLINE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool) {
   const SelectionCriteria& criteria = search.problem.criteria;
   std::vector<EvaluatedHypothesis> beam = pool;
@@ -104,7 +120,8 @@ SUREFOOT_INLINE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool
       for (const EvaluatedHypothesis& child : extended_from_nominal(search)) keep_best_form(children, child, criteria);
       const bool leaves_something =
           criteria.max_effects > 1 && !children.empty() &&
-          search.problem.structured(children[best_of(children, criteria)].hypothesis);
+          search.problem.structured(children[best_of(children, criteria)].hypothesis,
+                                    search.problem.fit.integration);
       if (leaves_something) {
         for (const EvaluatedHypothesis& pair : combined(search, children)) keep_best_form(children, pair, criteria);
       }
@@ -115,6 +132,10 @@ SUREFOOT_INLINE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool
     const SearchEffort& effort = search.problem.effort;
     beam = best_structures(children, effort.beam, effort.hopeless, criteria);
     reweight(search, now);
+    if (refine_integration(search, now)) {  // all that may still be chosen is compared with the same errors
+      pool = fitted_again(search, pool);
+      for (EvaluatedHypothesis& one : beam) one = refitted(search, one);
+    }
   }
 }
 
@@ -127,10 +148,7 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> fitted_again(const Search& sear
   for (const EvaluatedHypothesis& one : pool) {
     if (!has_none && search.effects(one) == 0) best.push_back(one);
   }
-  search.parallel(best.size(), [&](std::size_t i) {
-    const Fit fitted = fit(search.bound, best[i].hypothesis, search.problem.fit, serially());
-    best[i] = evaluate_fit(search.bound, fitted, search.problem, serially());
-  });
+  search.parallel(best.size(), [&](std::size_t i) { best[i] = refitted(search, best[i]); });
   return best;
 }
 

@@ -153,10 +153,11 @@ SUREFOOT_INLINE std::vector<AttachedEffect> candidate_effects(const EstimationSe
 
 /// Whether the residuals of a hypothesis hold what noise does not; final poses are too few to tell.
 SUREFOOT_INLINE bool holds_structure(const EstimationSetup& setup, const Hypothesis& hypothesis,
-                                     const SelectionCriteria& criteria, const Parallel& parallel) {
+                                     const Integration& integration, const SelectionCriteria& criteria,
+                                     const Parallel& parallel) {
   if (setup.noise == NoiseKind::final_pose) return true;
   const auto& training = setup.split.training;
-  const auto runs = simulate_all(setup.bound, hypothesis, training, setup.bound.integration, parallel);
+  const auto runs = simulate_all(setup.bound, hypothesis, training, integration, parallel);
   const Mismatch mismatch = measure_mismatch(setup.bound, training, runs, setup.problem.weighting.sigma, setup.noise);
   return mismatch.p_value < criteria.structure_significance && mismatch.share > criteria.structure_share;
 }
@@ -182,8 +183,9 @@ SUREFOOT_INLINE SearchProblem search_problem(const EstimationSetup& setup, const
     run.progress(stage, progress_search + (progress_evaluation - progress_search) * share);
   };
   problem.stopped = [run] { return run.search_has_ended(); };
-  problem.structured = [&setup, run, criteria = problem.criteria](const Hypothesis& hypothesis) {
-    return holds_structure(setup, hypothesis, criteria, run.parallel);
+  problem.structured = [&setup, run, criteria = problem.criteria](const Hypothesis& hypothesis,
+                                                                             const Integration& integration) {
+    return holds_structure(setup, hypothesis, integration, criteria, run.parallel);
   };
   return problem;
 }
@@ -284,7 +286,7 @@ SUREFOOT_INLINE void evaluate_selection(const EstimationSetup& setup, const Cali
 }
 
 /// Effects may need finer steps than the model without them: these are chosen anew, by what the effects leave.
-SUREFOOT_INLINE void refine_integration(EstimationSetup& setup, Selection& selection, const RunContext& run) {
+SUREFOOT_INLINE void integrate_finer(EstimationSetup& setup, Selection& selection, const RunContext& run) {
   auto& [bound, split, noise, problem] = setup;
   Hypothesis& chosen = selection.chosen.hypothesis;
   if (chosen.effects.size() == selection.nominal.hypothesis.effects.size()) return;
@@ -314,7 +316,8 @@ SUREFOOT_INLINE void diagnose_recordings(const BindSimulator& bind, std::vector<
   Selection selection = select_effects(setup.bound, calibration.calibrated, problem, candidates, run.parallel);
   diagnosis.complete = !run.search_has_ended();
   setup.problem = selection.fit;
-  refine_integration(setup, selection, run);
+  setup.bound.integration = setup.problem.integration;
+  integrate_finer(setup, selection, run);
 
   run.progress("evaluating", progress_evaluation);
   evaluate_selection(setup, calibration, problem, selection, candidates, run, diagnosis);
