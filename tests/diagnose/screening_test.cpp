@@ -47,6 +47,32 @@ TEST_CASE("single outliers are taken out, those and no others, and named") {
   }
 }
 
+TEST_CASE("an outlier may be small beside the signal: what counts is how it stands out, and what the sensor resolves") {
+  Recording fine = tank();
+  for (Eigen::Index i = 0; i < 400; ++i) fine.outputs(0, i) = std::sin(0.01 * static_cast<double>(i));
+  fine.outputs(0, 200) += 0.008;  // two steps
+  CHECK(remove_outliers(info, fine).size() == 1);
+  Recording coarse = tank();  // a sensor at rest that flickers by its last digit
+  coarse.outputs.setConstant(1);
+  for (const Eigen::Index row : {40, 200, 300}) coarse.outputs(0, row) = 1.01;
+  CHECK(remove_outliers(info, coarse).empty());
+}
+
+TEST_CASE("what a model says shows outliers among readings that move fast by themselves, and only those") {
+  Recording lively = tank();
+  Eigen::MatrixXd simulated = lively.outputs;
+  Rng rng(2);
+  for (Eigen::Index i = 0; i < 400; ++i) {
+    simulated(0, i) = i % 7 < 3 ? 0.1 * static_cast<double>(i % 5) : -0.2;
+    lively.outputs(0, i) = simulated(0, i) + 1e-3 * rng.normal();
+  }
+  CHECK(remove_outliers(info, lively, simulated).empty());
+  lively.outputs(0, 200) += 0.05;
+  CHECK(remove_outliers(info, lively).empty());
+  CHECK(remove_outliers(info, lively, simulated).size() == 1);
+  CHECK(std::isnan(lively.outputs(0, 200)));
+}
+
 TEST_CASE("steps, slow swings, noise and short pulses of two rows are no outliers") {
   Recording plain = tank();
   CHECK(remove_outliers(info, plain).empty());
@@ -98,10 +124,11 @@ TEST_CASE("where anything would fit nothing is diagnosed") {
     one.outputs = one.outputs.leftCols(rows).eval();
     return std::vector<Recording>(static_cast<std::size_t>(count), one);
   };
-  CHECK_THROWS_WITH_AS(check_readings(info, of_rows(2, 1)),
-                       "the recordings hold 1 readings after their first rows, too few to tell 2 parameters and initial "
-                       "states; record at least 6",
-                       DiagnoseError);
+  CHECK_THROWS_WITH_AS(
+      check_readings(info, of_rows(2, 1)),
+      "the recordings hold 1 readings after their first rows, too few to tell 2 parameters and initial "
+      "states; record at least 6",
+      DiagnoseError);
   CHECK_NOTHROW(check_readings(info, of_rows(2, 6)));
   CHECK_NOTHROW(check_readings(info, of_rows(7, 1)));
 }

@@ -23,8 +23,10 @@ void check_recording(const SimulatorInfo& info, const Recording& recording);
 /// are free parameters and initial states: anything would fit.
 void check_readings(const SimulatorInfo& info, const std::vector<Recording>& recordings);
 
-/// Takes single outliers out (as not measured) and says so: values far from both neighbours, which agree.
-std::vector<Remark> remove_outliers(const SimulatorInfo& info, Recording& recording);
+/// Takes single outliers out (as not measured) and says so: values far from both neighbours, which agree. With
+/// `simulated` (output x row) these are distances from what a model gives, in which smaller outliers stand out.
+std::vector<Remark> remove_outliers(const SimulatorInfo& info, Recording& recording,
+                                    const Eigen::MatrixXd& simulated = {});
 
 /// What cannot be seen in these recordings.
 std::vector<Remark> screen(const SimulatorInfo& info, const std::vector<Recording>& recordings);

@@ -64,15 +64,20 @@ SUREFOOT_INLINE void check_readings(const SimulatorInfo& info, const std::vector
     }
   }
   if (readings >= enough * std::max<std::size_t>(1, unknowns)) return;
-  throw DiagnoseError("the recordings hold " + std::to_string(readings) + " readings after their first rows, too few to " +
-                      "tell " + std::to_string(unknowns) + " parameters and initial states; record at least " +
+  throw DiagnoseError("the recordings hold " + std::to_string(readings) +
+                      " readings after their first rows, too few to " + "tell " + std::to_string(unknowns) +
+                      " parameters and initial states; record at least " +
                       std::to_string(enough * std::max<std::size_t>(1, unknowns)));
 }
 
-SUREFOOT_INLINE std::vector<Remark> remove_outliers(const SimulatorInfo& info, Recording& recording) {
+SUREFOOT_INLINE std::vector<Remark> remove_outliers(const SimulatorInfo& info, Recording& recording,
+                                                    const Eigen::MatrixXd& simulated) {
+  constexpr double far = 8;  // times what 95 % of the readings do, and what the sensor resolves
   std::vector<Remark> remarks;
   for (Eigen::Index k = 0; k < recording.outputs.rows(); ++k) {
-    const Eigen::VectorXd y = detail::row_of(recording.outputs, k);
+    const Eigen::VectorXd readings = detail::row_of(recording.outputs, k);
+    Eigen::VectorXd y = readings;
+    for (Eigen::Index i = 0; i < simulated.cols(); ++i) y[i] -= simulated(k, i);
     std::vector<double> bends;
     for (Eigen::Index i = 1; i + 1 < y.size(); ++i) {
       const double bend = std::abs(y[i] - 0.5 * (y[i - 1] + y[i + 1]));
@@ -81,21 +86,20 @@ SUREFOOT_INLINE std::vector<Remark> remove_outliers(const SimulatorInfo& info, R
     if (bends.size() < 30) continue;
     const auto high = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() * 19 / 20);
     std::nth_element(bends.begin(), high, bends.end());
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (const double value : y) {
-      if (!std::isfinite(value)) continue;
-      least = std::min(least, value);
-      most = std::max(most, value);
+    double resolution = std::numeric_limits<double>::infinity();  // of the sensor: the smallest change
+    for (Eigen::Index i = 1; i < y.size(); ++i) {
+      const double change = std::abs(readings[i] - readings[i - 1]);
+      if (change > 0) resolution = std::min(resolution, change);
     }
-    const double limit = std::max(8 * *high, 0.01 * (most - least));
+    const double limit = far * std::max(*high, resolution);
     for (Eigen::Index i = 1; i + 1 < y.size(); ++i) {
       const double bend = std::abs(y[i] - 0.5 * (y[i - 1] + y[i + 1]));
       if (!(bend > limit) || std::abs(y[i + 1] - y[i - 1]) > 0.5 * bend) continue;
       recording.outputs(k, i) = std::numeric_limits<double>::quiet_NaN();
       char text[200];
       std::snprintf(text, sizeof text, "one outlier of %s at time %.4g (%.4g between %.4g and %.4g) was taken out",
-                    info.outputs[static_cast<std::size_t>(k)].name.c_str(), recording.time[i], y[i], y[i - 1],
-                    y[i + 1]);
+                    info.outputs[static_cast<std::size_t>(k)].name.c_str(), recording.time[i], readings[i],
+                    readings[i - 1], readings[i + 1]);
       remarks.push_back({recording.name, text});
     }
   }

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -82,6 +83,42 @@ TEST_CASE("a fit is never worse than its start, however few its iterations and o
     const FitFunctions functions(bound, fitted.hypothesis, problem, serial);
     CHECK(mean_loss(functions.residuals(functions.start()), 4) == doctest::Approx(fitted.loss).epsilon(1e-6));
   }
+}
+
+// A wheel that turns by itself; what is measured is where a mark on its rim is: an angle and the same angle a whole
+// turn away look alike to that sensor, and not to the one of the angle.
+struct MarkedWheel {
+  using State = Vec<1>;   // angle [rad]
+  using Input = Vec<1>;   // unused
+  using Output = Vec<3>;  // angle [rad], sine and cosine of it
+  SimulatorInfo info() const {
+    return {.name = "wheel",
+            .states = {{"angle", "rad"}},
+            .inputs = {{"torque", "N m"}},
+            .outputs = {{"angle", "rad"}, {"sine", ""}, {"cosine", ""}},
+            .parameters = {{"speed", "rad/s", 1, 0.1, 3}}};
+  }
+  State derivative(const State&, const Input&, const Eigen::VectorXd& p) const { return State(p[0]); }
+  Output observe(const State& x, const Input&, const Eigen::VectorXd&) const {
+    return {x[0], std::sin(x[0]), std::cos(x[0])};
+  }
+};
+
+TEST_CASE("an initial angle that strayed a whole turn away is read off again") {
+  constexpr double turn = 2 * std::numbers::pi;
+  Recording recording = toys::blank_recording(MarkedWheel{}.info(), 100, 0.05);
+  recording.outputs = simulate_augmented(MarkedWheel{}, toys::machine({1.5}), recording).outputs;
+  recording.initial_scale[0] = 0.5;
+  const BoundSimulator bound = bind_simulator(MarkedWheel{}, {recording});
+  FitProblem problem = problem_of(1, 1);
+  problem.weighting.sigma = Vec<3>(10, 0.01, 0.01);  // sine and cosine keep it where it is
+  Hypothesis start = nominal_hypothesis(bound);
+  start.parameters[0] = 1.5;
+  start.initial[0][0] = turn;
+  problem.max_iterations = 0;
+  const Fit fitted = fit(bound, start, problem, serially());
+  CHECK(fitted.hypothesis.initial[0][0] == doctest::Approx(0));
+  CHECK(fitted.loss < 1e-12);
 }
 
 TEST_CASE("bounds hold, and what is not free stays") {

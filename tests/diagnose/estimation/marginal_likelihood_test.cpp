@@ -131,6 +131,21 @@ TEST_CASE("a parameter that nothing determines costs nothing, and neither does o
   CHECK(both < one);
 }
 
+TEST_CASE("the prior of a size is as dense for every order of magnitude, that of a parameter for every value") {
+  Variable size{.kind = Variable::Kind::effect, .low = 0, .high = 3};
+  CHECK(prior_width(size, 0.6) / prior_width(size, 0.3) == doctest::Approx(2).epsilon(0.1));
+  CHECK(prior_width(size, 0) > 0);  // a hundredth of the largest is as good as none
+  CHECK(prior_width(size, 0) < 0.05 * prior_width(size, 3));
+  CHECK(prior_width(size, 3) <= 1.5);
+  Variable signed_size = size;
+  signed_size.low = -3;
+  CHECK(prior_width(signed_size, -0.3) == prior_width(signed_size, 0.3));
+  CHECK(prior_width(signed_size, 0.3) == doctest::Approx(2 * prior_width(size, 0.3)));
+  Variable parameter = size;
+  parameter.kind = Variable::Kind::parameter;
+  CHECK(prior_width(parameter, 0.01) == 1.5);
+}
+
 TEST_CASE("noise that is larger, or correlated, leaves parameters less determined, which costs less") {
   const double plain = cost(tanks(4, 200, 1, 1, 0.02));
   CHECK(cost(tanks(4, 200, 1, 1, 0.2)) > plain + std::log(10));

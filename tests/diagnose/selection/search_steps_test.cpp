@@ -45,6 +45,24 @@ TEST_CASE("weights follow what the best structure leaves, but no further than er
   CHECK(search.problem.fit.weighting.sigma[0] == doctest::Approx(10 * search.problem.scale.sigma[0]));
 }
 
+TEST_CASE("what effects explain is integrated more finely, never more coarsely") {
+  const TankBench bench({rate_in_tank});
+  Search search = bench.search();
+  const EvaluatedHypothesis best = bench.with({"constant_rate"});
+  Integration& now = search.problem.fit.integration;
+  now = {.order = 2, .step = 0.07};  // rows are 0.05 s long, and the coarsest steps one and a half of them
+  search.problem.fit.weighting.sigma[0] = 1;
+  CHECK_FALSE(refine_integration(search, best));
+  search.problem.fit.weighting.sigma[0] = 1e-6;
+  CHECK(refine_integration(search, best));
+  CHECK((now.order == 4 || now.step < 0.07));
+  const Integration fine = now;
+  search.problem.fit.weighting.sigma[0] = 1;
+  CHECK_FALSE(refine_integration(search, best));
+  CHECK(now.order == fine.order);
+  CHECK(now.step == fine.step);
+}
+
 TEST_CASE("the search begins a second time from the nominal parameters, with their weights, and keeps its own") {
   TankBench bench({rate_in_tank});
   Search search = bench.search();

@@ -119,8 +119,8 @@ TEST_CASE("residuals are searched for more as long as they hold what noise does 
       hold_out_recordings(bind_tank, toys::noisy_tanks(toys::extra_inflow(), 0.01), {options, parallel});
   const Calibration calibration = calibrate_model(setup, {options, parallel});
   const SearchProblem problem = search_problem(setup, calibration, {options, parallel});
-  CHECK(problem.structured(calibration.calibrated.hypothesis));
-  CHECK_FALSE(problem.structured(toys::with_effects(setup, toys::extra_inflow())));
+  CHECK(problem.structured(calibration.calibrated.hypothesis, problem.fit.integration));
+  CHECK_FALSE(problem.structured(toys::with_effects(setup, toys::extra_inflow()), problem.fit.integration));
 }
 
 TEST_CASE("by default every recording is for the fit, and held out once") {

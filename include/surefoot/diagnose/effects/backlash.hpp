@@ -39,9 +39,9 @@ inline Effect backlash() {
           .hidden_states = 1,
           .start = +[](const EffectContext& m, Values, HiddenStates hidden) { hidden[0] = m.position; },
           .advance = +[](const EffectContext& m, Values p,
-                        HiddenStates hidden) { hidden[0] = behind_gap(hidden[0], m.position, p[0]); },
-          .seen_position = +[](const EffectContext& m, Values p,
-                              Values hidden) { return behind_gap(hidden[0], m.position, p[0]); }};
+                         HiddenStates hidden) { hidden[0] = behind_gap(hidden[0], m.position, p[0]); },
+          .seen_position =
+              +[](const EffectContext& m, Values p, Values hidden) { return behind_gap(hidden[0], m.position, p[0]); }};
 }
 
 inline TwoMasses gap_joint(Values p) {

@@ -45,17 +45,13 @@ Effect hysteresis_of(std::string form) {
       .place = Place::velocity,
       .parameters = parameters_of(
           {{.name = "force", .measure = {.effort = 1}, .low = 0, .high = 3, .starts = {0.003, 0.1}, .strength = true},
-           {.name = "width",
-            .measure = {.position = 1},
-            .low = presliding_width,
-            .high = 2,
-            .starts = {0.1, 0.5}}}),
+           {.name = "width", .measure = {.position = 1}, .low = presliding_width, .high = 2, .starts = {0.1, 0.5}}}),
       .confusable_with = names_of({"coulomb_friction", "backlash", "stribeck_friction"}),
       .experiment = "slow reversals of growing amplitude, from far below to far above the width",
       .form = std::move(form),
       .hidden_states = 2,
       .force = +[](const EffectContext& m, Values p,
-                  Values hidden) { return -p[0] * Move(hidden[0], m.position - hidden[1], p[1]) / p[1]; },
+                   Values hidden) { return -p[0] * Move(hidden[0], m.position - hidden[1], p[1]) / p[1]; },
       .start =
           +[](const EffectContext& m, Values, HiddenStates hidden) {
             hidden[0] = 0;

@@ -28,18 +28,21 @@ inline Effect load_friction(std::string form, std::string sentence,
 }
 
 inline Effect load_dependent_friction() {
-  return load_friction("drive", "dry friction of {factor} times the driving force at {at}",
-                       +[](const EffectContext& m, Values p) { return p[0] * std::abs(m.drive); });
+  return load_friction(
+      "drive", "dry friction of {factor} times the driving force at {at}",
+      +[](const EffectContext& m, Values p) { return p[0] * std::abs(m.drive); });
 }
 
 inline Effect load_dependent_friction_under_load() {
-  return load_friction("load", "dry friction of {factor} times the load at {at}",
-                       +[](const EffectContext& m, Values p) { return p[0] * std::abs(m.load); });
+  return load_friction(
+      "load", "dry friction of {factor} times the load at {at}",
+      +[](const EffectContext& m, Values p) { return p[0] * std::abs(m.load); });
 }
 
 inline Effect load_dependent_friction_in_gears() {
-  return load_friction("gears", "dry friction of {factor} times the force that the gears pass on at {at}",
-                       +[](const EffectContext& m, Values p) { return p[0] * 0.5 * std::abs(m.drive - m.load); });
+  return load_friction(
+      "gears", "dry friction of {factor} times the force that the gears pass on at {at}",
+      +[](const EffectContext& m, Values p) { return p[0] * 0.5 * std::abs(m.drive - m.load); });
 }
 
 }  // namespace surefoot::effects

@@ -25,7 +25,7 @@ struct FitProblem {
   Integration integration;
   Free free = Free::everything;
   int max_iterations = 12;
-  double tolerance = 1e-4;  // relative decrease of the loss at which it ends
+  double tolerance = 1e-4;                               // relative decrease of the loss at which it ends
   std::function<bool()> stopped = [] { return false; };  // asked before each iteration
 };
 
@@ -79,7 +79,8 @@ inline bool has_unknown_initial_state(const BoundSimulator& bound, const std::ve
 /// Mean robust squared residual.
 double mean_loss(const Eigen::VectorXd& residuals, double robust);
 
-/// Fits a hypothesis, from its own parameters on. Never worse than the start.
+/// Fits a hypothesis, from its own parameters on. Never worse than the start. An initial state that has strayed into
+/// another valley, such as an angle a whole turn away, is read off its recording again.
 Fit fit(const BoundSimulator& bound, const Hypothesis& start, const FitProblem& problem, const Parallel& parallel);
 
 /// A hypothesis with the unknown initial states of some recordings estimated, and all else as it is.

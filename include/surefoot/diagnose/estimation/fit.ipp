@@ -114,8 +114,9 @@ SUREFOOT_INLINE double mean_loss(const Eigen::VectorXd& residuals, double robust
   return sum / static_cast<double>(residuals.size());
 }
 
-SUREFOOT_INLINE Fit fit(const BoundSimulator& bound, const Hypothesis& start, const FitProblem& problem,
-                        const Parallel& parallel) {
+/// One descent, from the parameters of `start` on.
+SUREFOOT_INLINE Fit descend(const BoundSimulator& bound, const Hypothesis& start, const FitProblem& problem,
+                            const Parallel& parallel) {
   const FitFunctions functions(bound, start, problem, parallel);
   Fit result{.hypothesis = start};
   const Eigen::VectorXd z = functions.start();
@@ -148,6 +149,40 @@ SUREFOOT_INLINE Fit fit(const BoundSimulator& bound, const Hypothesis& start, co
   result.hypothesis = functions.at(fitted.x);
   result.loss = mean_loss(fitted.residuals, problem.weighting.robust);
   return result;
+}
+
+/// Puts the unknown initial states of a recording back to what was read off it, where that fits better; true if it does
+/// so anywhere.
+SUREFOOT_INLINE bool read_off_again(const BoundSimulator& bound, Hypothesis& hypothesis, const FitProblem& problem,
+                                    const Parallel& parallel) {
+  std::vector<char> better(problem.recordings.size(), 0);
+  parallel(problem.recordings.size(), [&](std::size_t i) {
+    const std::size_t r = problem.recordings[i];
+    const Recording& recording = bound.recordings[r];
+    if (!has_unknown_initial_state(recording)) return;
+    const std::vector<Cell> cells = cells_of(recording);
+    const auto loss = [&](const Hypothesis& one) {
+      const SimulatedRun run = simulate(bound, one, r, problem.integration);
+      return mean_loss(weighted_residuals(bound, r, run, cells, problem.weighting), problem.weighting.robust);
+    };
+    Hypothesis as_read = hypothesis;
+    as_read.initial[r] = recording.initial;
+    better[i] = loss(as_read) < loss(hypothesis) ? 1 : 0;
+  });
+  for (std::size_t i = 0; i < better.size(); ++i) {
+    const std::size_t r = problem.recordings[i];
+    if (better[i] != 0) hypothesis.initial[r] = bound.recordings[r].initial;
+  }
+  return std::ranges::find(better, 1) != better.end();
+}
+
+SUREFOOT_INLINE Fit fit(const BoundSimulator& bound, const Hypothesis& start, const FitProblem& problem,
+                        const Parallel& parallel) {
+  Fit result = descend(bound, start, problem, parallel);
+  Hypothesis elsewhere = result.hypothesis;
+  if (!result.ok || problem.stopped() || !read_off_again(bound, elsewhere, problem, parallel)) return result;
+  const Fit again = descend(bound, elsewhere, problem, parallel);
+  return again.ok && again.loss < result.loss ? again : result;
 }
 
 SUREFOOT_INLINE Hypothesis with_estimated_initial_states(const BoundSimulator& bound, const Hypothesis& hypothesis,

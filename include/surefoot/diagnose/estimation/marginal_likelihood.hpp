@@ -1,9 +1,11 @@
 // Parts of the marginal likelihood of a hypothesis: how far its fit is off in each recording, how many of these errors
 // are independent, and what its parameters cost.
 //
-// The cost is the Occam factor of Laplace's approximation (MacKay, "Bayesian interpolation", Neural Computation 4, 1992):
-// the share of the prior volume of all parameters that is left by the recordings, with normal priors as wide as the
-// bounds. A direction that nothing determines costs nothing.
+// The cost is the Occam factor of Laplace's approximation (MacKay, "Bayesian interpolation", Neural Computation 4,
+// 1992): the share of the prior volume of all parameters that is left by the recordings, with normal priors as wide as
+// the bounds. A direction that nothing determines costs nothing. Sizes of effects have a prior that is the same for
+// every order of magnitude (Jeffreys, "Theory of Probability", 1939, III.3.1), so that two effects which are the same
+// in other words, as a bias of the only angle sensor and a turned direction of gravity, are equally probable.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,10 +37,14 @@ ErrorSquares error_squares(const BoundSimulator& bound, const Hypothesis& hypoth
                            const std::vector<std::size_t>& recordings, const Integration& integration,
                            const Weighting& scale, const Parallel& parallel);
 
-/// Log of the Occam factor of a fit [nat], at most 0: -1/2 log det(1 + W I W), where I is the information of independent
-/// errors on the parameters, initial states eliminated, and W half the widths of the bounds, in searched coordinates.
-/// `least_variance`: of the weighted errors; smaller ones tell no more.
-/// Cost: one Jacobian (see FitFunctions).
+/// Width of the prior of a parameter with this value, in searched coordinates: half that of its bounds; for a size of
+/// an effect that may be zero, where its prior density is even in log(size), one that gives the same density here.
+double prior_width(const Variable& variable, double value);
+
+/// Log of the Occam factor of a fit [nat], at most 0: -1/2 log det(1 + W I W), where I is the information of
+/// independent errors on the parameters, initial states eliminated, and W the widths of the priors, in searched
+/// coordinates. `least_variance`: of the weighted errors; smaller ones tell no more. Cost: one Jacobian (see
+/// FitFunctions).
 double log_occam_factor(const BoundSimulator& bound, const Hypothesis& fitted, const FitProblem& problem,
                         double least_variance, const Parallel& parallel);
 

@@ -69,7 +69,7 @@ SUREFOOT_INLINE ErrorSquares error_squares(const BoundSimulator& bound, const Hy
   const auto rows = static_cast<Eigen::Index>(recordings.size());
   const auto outputs = static_cast<Eigen::Index>(bound.info.outputs.size());
   ErrorSquares result{Eigen::MatrixXd::Zero(rows, outputs), Eigen::MatrixXd::Zero(rows, outputs),
-                        Eigen::VectorXd::Ones(outputs)};
+                      Eigen::VectorXd::Ones(outputs)};
   std::vector<std::vector<Eigen::VectorXd>> series(recordings.size());
   parallel(recordings.size(), [&](std::size_t i) {
     const auto row = static_cast<Eigen::Index>(i);
@@ -87,8 +87,7 @@ SUREFOOT_INLINE ErrorSquares error_squares(const BoundSimulator& bound, const Hy
       result.counts(row, k) = static_cast<double>(own.size());
       const bool finite = std::isfinite(squares);
       if (!own.empty()) {
-        result.mean_squares(row, k) =
-            finite ? std::min(ran_away, squares / static_cast<double>(own.size())) : ran_away;
+        result.mean_squares(row, k) = finite ? std::min(ran_away, squares / static_cast<double>(own.size())) : ran_away;
       }
       series[i].push_back(finite ? one : Eigen::VectorXd());
     }
@@ -169,8 +168,21 @@ SUREFOOT_INLINE Eigen::MatrixXd information(const FitFunctions& functions, const
   }
   const double variance = squares / static_cast<double>(std::max<Eigen::Index>(1, residuals.size()));
   const double memory = autocorrelation_time(series);
-  for (Eigen::Index k = 0; k < sum.size(); ++k) sum.data()[k] /= std::max({variance, least_variance, std::numeric_limits<double>::min()}) * memory;
+  const double unit = std::max({variance, least_variance, std::numeric_limits<double>::min()}) * memory;
+  for (Eigen::Index k = 0; k < sum.size(); ++k) sum.data()[k] /= unit;
   return sum;
+}
+
+SUREFOOT_INLINE double prior_width(const Variable& variable, double value) {
+  constexpr double smallest = 0.01;  // of the largest size: below, an effect is none
+  const double low = to_search(variable, variable.low), high = to_search(variable, variable.high);
+  const double uniform = 0.5 * (high - low);
+  if (variable.kind != Variable::Kind::effect || variable.logarithmic || variable.low > 0 || variable.high <= 0) {
+    return uniform;
+  }
+  const double largest = std::max(std::abs(low), high);
+  const double width = 0.5 * (std::abs(to_search(variable, value)) + smallest * largest) * std::log1p(1 / smallest);
+  return std::min(uniform, variable.low < 0 ? 2 * width : width);
 }
 
 SUREFOOT_INLINE double log_occam_factor(const BoundSimulator& bound, const Hypothesis& fitted,
@@ -180,11 +192,12 @@ SUREFOOT_INLINE double log_occam_factor(const BoundSimulator& bound, const Hypot
   const auto count = static_cast<Eigen::Index>(places.shared.size());
   if (count == 0) return 0;
   Eigen::MatrixXd determined = information(functions, functions.start(), problem, least_variance, places);
-  const Box<Eigen::Dynamic> box = functions.box();
+  Hypothesis copy = fitted;
   Eigen::VectorXd width(count);
   for (Eigen::Index k = 0; k < count; ++k) {
-    const Eigen::Index v = places.shared[static_cast<std::size_t>(k)];
-    width[k] = 0.5 * (box.high()[v] - box.low()[v]);
+    const auto place = static_cast<std::size_t>(places.shared[static_cast<std::size_t>(k)]);
+    const Variable& variable = functions.variables()[place];
+    width[k] = prior_width(variable, value_of(copy, variable));
   }
   determined = surefoot::detail::scaled(width, determined);
   for (Eigen::Index k = 0; k < count; ++k) determined(k, k) += 1;

@@ -1,11 +1,11 @@
 // Criterion of the selection: the posterior probability of whole structures.
 //
 // The density of a recording is a Student t density of its errors, whose scale is that of the recording and output
-// itself around the one of all; n errors with an autocorrelation time of m rows count as n / m. With the Occam factor of
-// the parameters this is Laplace's approximation of the marginal likelihood; the prior probability falls with each effect
-// by the number of candidates. Structures are weighted by these densities, summed over recordings that are drawn anew
-// (Bayesian bootstrap, as in pseudo-BMA+; Yao, Vehtari, Simpson & Gelman, "Using stacking to average Bayesian predictive
-// distributions", Bayesian Analysis 13(3), 2018): what a few recordings alone decide stays uncertain.
+// itself around the one of all; n errors with an autocorrelation time of m rows count as n / m. With the Occam factor
+// of the parameters this is Laplace's approximation of the marginal likelihood; the prior probability falls with each
+// effect by the number of candidates. Structures are weighted by these densities, summed over recordings that are drawn
+// anew (Bayesian bootstrap, as in pseudo-BMA+; Yao, Vehtari, Simpson & Gelman, "Using stacking to average Bayesian
+// predictive distributions", Bayesian Analysis 13(3), 2018): what a few recordings alone decide stays uncertain.
 #pragma once
 
 #include <cstddef>
@@ -34,8 +34,8 @@ struct SelectionCriteria {
   double form_error = 0.05;   // of the error without effects: the form of an effect is never quite that of the machine
 
   // Decision:
-  double named_odds = 20;  // that something is missing, from which on it is named: 5 % to be wrong
-  double tie_odds = 8;     // of the best structure against another one, below which they cannot be told apart
+  double named_odds = 20;      // that something is missing, from which on it is named: 5 % to be wrong
+  double tie_odds = 8;         // of the best structure against another one, below which they cannot be told apart
   std::uint32_t rounds = 400;  // of the bootstrap over recordings: shares are off by 2.5 % at most
   std::uint64_t seed = 1;      // of the same: always the same draws
 
@@ -54,15 +54,15 @@ struct SelectionCriteria {
 
 /// How much is tried: time against thoroughness. No result is believed or refused by these.
 struct SearchEffort {
-  std::size_t shortlist = 14;                // proposals that get a fit
-  std::size_t max_shortlist = 50;            // of small problems
-  double shortlist_rows = 6000;              // of the recordings, up to which the list is longer in proportion
-  std::size_t rows = 4000;                   // of the recordings that the search looks at; what it finds is fitted to all
-  std::size_t finalists = 6;                 // fits of a first effect that are finished and evaluated
-  std::size_t further_finalists = 3;         // the same beside effects that were found
-  std::size_t beam = 2;                      // structures that are each extended by a further effect
-  double hopeless = 15;                      // [nat] behind the best one: not extended, not fitted again
-  std::size_t screening = 5;                 // recordings that proposals are made from
+  std::size_t shortlist = 14;         // proposals that get a fit
+  std::size_t max_shortlist = 50;     // of small problems
+  double shortlist_rows = 6000;       // of the recordings, up to which the list is longer in proportion
+  std::size_t rows = 4000;            // of the recordings that the search looks at; what it finds is fitted to all
+  std::size_t finalists = 6;          // fits of a first effect that are finished and evaluated
+  std::size_t further_finalists = 3;  // the same beside effects that were found
+  std::size_t beam = 2;               // structures that are each extended by a further effect
+  double hopeless = 15;               // [nat] behind the best one: not extended, not fitted again
+  std::size_t screening = 5;          // recordings that proposals are made from
   std::size_t screening_final_poses = 1000;  // the same where each has a pose only
   int first_iterations = 3;                  // of a fit, before the weakest are given up
   double weak_start = 0.3;                   // of the strength that the linear guess says, if that was too bold:
@@ -93,10 +93,10 @@ struct SearchProblem {
   Weighting scale;                    // in units of which errors are compared; the same for all hypotheses
   Eigen::VectorXd least;              // as in ErrorSquares, for all hypotheses
   std::vector<std::size_t> screened;  // recordings that screen proposals
-  Hypothesis nominal;     // the same without calibration: a second place to start from
-  bool scatter = true;    // start the model's parameters from elsewhere too, beside a first effect
-  std::size_t known = 0;  // effects that are part of the model already: the first ones, never removed
-  std::size_t candidates = 1;  // effects and places that may be tried
+  Hypothesis nominal;                 // the same without calibration: a second place to start from
+  bool scatter = true;                // start the model's parameters from elsewhere too, beside a first effect
+  std::size_t known = 0;              // effects that are part of the model already: the first ones, never removed
+  std::size_t candidates = 1;         // effects and places that may be tried
   /// Whether the residuals of a hypothesis still hold what noise does not; where not, only strong proposals get a fit.
   std::function<bool(const Hypothesis&, const Integration&)> structured = [](const Hypothesis&, const Integration&) {
     return true;

@@ -129,7 +129,8 @@ SUREFOOT_INLINE std::vector<ProposedPair> propose_pairs(const std::vector<Propos
   for (std::size_t i = 0; i < proposals.size(); ++i) {
     for (std::size_t j = i + 1; j < proposals.size(); ++j) {
       const bool both = proposals[i].beyond.cols() > 0 && proposals[j].beyond.cols() > 0;
-      if (both && !same_but_for_form(proposals[i].effect, proposals[j].effect)) ranked.push_back({i, j, shares_of_pair(all, i, j)});
+      if (!both || same_but_for_form(proposals[i].effect, proposals[j].effect)) continue;
+      ranked.push_back({i, j, shares_of_pair(all, i, j)});
     }
   }
   sort_items(ranked, [](const Ranked& a, const Ranked& b) { return a.shares.gain > b.shares.gain; });

@@ -1,7 +1,7 @@
-// Selection of effects by a beam search: the best structures found so far are each extended by a further effect, or by a
-// pair where no single one is worth its parameters; then effects of the best are taken away and replaced in turn. Every
-// structure that was fitted is ranked in the end (see criterion.hpp), whatever way led to it. Weights follow what the best
-// one so far leaves.
+// Selection of effects by a beam search: the best structures found so far are each extended by a further effect, or by
+// a pair where no single one is worth its parameters; then effects of the best are taken away and replaced in turn.
+// Every structure that was fitted is ranked in the end (see criterion.hpp), whatever way led to it. Weights follow what
+// the best one so far leaves.
 #pragma once
 
 #include <algorithm>

@@ -120,8 +120,7 @@ SUREFOOT_INLINE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool
       for (const EvaluatedHypothesis& child : extended_from_nominal(search)) keep_best_form(children, child, criteria);
       const bool leaves_something =
           criteria.max_effects > 1 && !children.empty() &&
-          search.problem.structured(children[best_of(children, criteria)].hypothesis,
-                                    search.problem.fit.integration);
+          search.problem.structured(children[best_of(children, criteria)].hypothesis, search.problem.fit.integration);
       if (leaves_something) {
         for (const EvaluatedHypothesis& pair : combined(search, children)) keep_best_form(children, pair, criteria);
       }
@@ -255,7 +254,8 @@ SUREFOOT_INLINE Selection select_effects(const BoundSimulator& bound, const Fit&
   if (search.problem.fit.recordings.size() < all.size()) {
     search.problem.fit.recordings = all;
     reweight(search, pool[best_of(pool, criteria)]);
-    search.problem.least = negligible_differences(evaluate_fit(bound, calibrated, search.problem, parallel).errors, criteria);
+    const EvaluatedHypothesis without_effects = evaluate_fit(bound, calibrated, search.problem, parallel);
+    search.problem.least = negligible_differences(without_effects.errors, criteria);
     pool = fitted_again(search, pool);
   }
   Selection selection = ranked(search, pool);

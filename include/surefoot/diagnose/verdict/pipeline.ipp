@@ -21,12 +21,12 @@
 #include "surefoot/diagnose/residual_tests/noise.hpp"
 #include "surefoot/diagnose/screening.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
-#include "surefoot/diagnose/verdict/none_of_these.hpp"
 #include "surefoot/diagnose/verdict/describe.hpp"
 #include "surefoot/diagnose/verdict/detection_limits.hpp"
 #include "surefoot/diagnose/verdict/evaluate.hpp"
 #include "surefoot/diagnose/verdict/evidence.hpp"
 #include "surefoot/diagnose/verdict/locate_mismatch.hpp"
+#include "surefoot/diagnose/verdict/none_of_these.hpp"
 #include "surefoot/diagnose/verdict/pipeline.hpp"
 #include "surefoot/diagnose/verdict/prepare.hpp"
 
@@ -184,7 +184,7 @@ SUREFOOT_INLINE SearchProblem search_problem(const EstimationSetup& setup, const
   };
   problem.stopped = [run] { return run.search_has_ended(); };
   problem.structured = [&setup, run, criteria = problem.criteria](const Hypothesis& hypothesis,
-                                                                             const Integration& integration) {
+                                                                  const Integration& integration) {
     return holds_structure(setup, hypothesis, integration, criteria, run.parallel);
   };
   return problem;
@@ -271,8 +271,8 @@ SUREFOOT_INLINE void evaluate_selection(const EstimationSetup& setup, const Cali
   const Comparison calibration_gain = gain_of(nominal, selection.nominal.errors, 0);
   evaluate_errors(setup, models, diagnosis, run.seed);
   mark_beyond_noise(diagnosis, verdict);
-  diagnosis.verdict = decide(
-      gather_evidence(setup, models, diagnosis, calibration_gain, verdict, run.parallel, run.seed), verdict);
+  diagnosis.verdict =
+      decide(gather_evidence(setup, models, diagnosis, calibration_gain, verdict, run.parallel, run.seed), verdict);
 
   describe_models(setup, models, choice.selection, run, diagnosis);
   const std::vector<std::string> ties = describe_alternatives(choice.selection, diagnosis);
@@ -302,6 +302,19 @@ SUREFOOT_INLINE std::string shortening_sentence(Eigen::Index rows) {
          " of each recording were used; max_rows (--max-rows) takes more, in proportionally more time";
 }
 
+/// Takes out single readings that are far from a model while their neighbours are not: no physics lasts for one row.
+SUREFOOT_INLINE void remove_outliers_from(EstimationSetup& setup, const Hypothesis& model, const RunContext& run,
+                                          Diagnosis& diagnosis) {
+  if (setup.noise != NoiseKind::measurement) return;
+  BoundSimulator& bound = setup.bound;
+  const auto runs = simulate_all(bound, model, setup.split.training, bound.integration, run.parallel);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!runs[i].finite) continue;
+    const auto removed = remove_outliers(bound.info, bound.recordings[setup.split.training[i]], runs[i].outputs);
+    diagnosis.remarks.insert(diagnosis.remarks.end(), removed.begin(), removed.end());
+  }
+}
+
 /// All stages after the recordings were screened and examined.
 SUREFOOT_INLINE void diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
                                          const RunContext& run, Diagnosis& diagnosis) {
@@ -311,6 +324,7 @@ SUREFOOT_INLINE void diagnose_recordings(const BindSimulator& bind, std::vector<
 
   run.progress("calibrating", progress_calibration);
   const Calibration calibration = calibrate_model(setup, run);
+  remove_outliers_from(setup, calibration.calibrated.hypothesis, run, diagnosis);
   const SearchProblem problem = search_problem(setup, calibration, run);
   const std::vector<AttachedEffect> candidates = candidate_effects(setup, calibration, run);
   Selection selection = select_effects(setup.bound, calibration.calibrated, problem, candidates, run.parallel);
@@ -318,6 +332,7 @@ SUREFOOT_INLINE void diagnose_recordings(const BindSimulator& bind, std::vector<
   setup.problem = selection.fit;
   setup.bound.integration = setup.problem.integration;
   integrate_finer(setup, selection, run);
+  remove_outliers_from(setup, selection.chosen.hypothesis, run, diagnosis);
 
   run.progress("evaluating", progress_evaluation);
   evaluate_selection(setup, calibration, problem, selection, candidates, run, diagnosis);
