@@ -19,7 +19,9 @@ namespace dynamixel {
 enum class Refusal : std::uint8_t { none, range, limit, access };
 
 /// Registers hold what the e-Manual gives for a new servo where that matters here, but answers come without delay.
-/// Overheating switches the torque off until it is switched on again cooler.
+/// Overheating switches the torque off until it is switched on again cooler; what shut_down() does stays until it is
+/// rebooted. A bus watchdog that has tripped holds the motor where it is, torque on, and refuses goals until it is set
+/// to 0: so does the real one in position control.
 class VirtualServo {
  public:
   /// `angle_rad` is where it is at first, from a straight joint.
@@ -43,6 +45,7 @@ class VirtualServo {
     set("max_position_limit", max_ticks);
     set("goal_position", ticks());
     show();
+    as_new_ = bytes_;
   }
 
   std::uint8_t id() const { return static_cast<std::uint8_t>(value("id")); }
@@ -52,15 +55,45 @@ class VirtualServo {
   double temperature_celsius = 35.0;
   double load_nm = 0;       // torque on the shaft [N m]
   double load_inertia = 0;  // of what hangs on it [kg m^2]
+  bool deaf = false;        // its cable is cut: it hears nothing and says nothing
+
+  static constexpr double starts_within_s = 0.3;   // after a reboot, until it hears and answers [s]
+  static constexpr double least_supply_v = 6.5;    // below it the servo's own computer stops [V]
+
+  /// As after a moment without power: no torque, no errors, registers of the RAM as new, silent until it has started.
+  void reboot(Time now) {
+    const auto ram = static_cast<std::ptrdiff_t>(model_->first_ram_address);
+    std::copy(as_new_.begin() + ram, as_new_.end(), bytes_.begin() + ram);
+    latched_errors_ = 0;
+    stored_size_ = 0;
+    starts_at_ = now + from_seconds(starts_within_s);
+    set("goal_position", ticks());
+    show();
+  }
+  /// `errors`: bits of protocol2::HardwareErrorBit. Torque off, until a reboot.
+  void shut_down(unsigned errors) {
+    latched_errors_ |= errors;
+    set("torque_enable", 0);
+    if (model_->protocol == 1) set("torque_limit", 0);
+    show();
+  }
+  bool hears(Time now) const { return !deaf && now >= starts_at_ && voltage_v >= least_supply_v; }
+  bool torque_on() const { return value("torque_enable") != 0; }
+  bool watchdog_tripped() const { return watchdog() < 0; }
+  int status_return_level() const { return static_cast<int>(value("status_return_level")); }
+  /// An instruction came, to it or to others.
+  void note_instruction(Time now) { last_instruction_ = now; }
 
   /// Moves the motor to `now`, in steps of 1 ms, and shows it in the registers. More than a second is skipped.
   void advance(Time now) {
     constexpr Time step_time = std::chrono::milliseconds(1);
     if (now - moved_to_ > std::chrono::seconds(1)) moved_to_ = now - step_time;
     if (now - moved_to_ < step_time) return;
+    if (voltage_v < least_supply_v) reboot(now);
     if (overheated()) set("torque_enable", 0);
+    look_at_watchdog(now);
     const MotorInputs inputs{
-        value("torque_enable") != 0,
+        torque_on(),
         goal_rad(),
         p_gain(),
         voltage_v,
@@ -80,13 +113,15 @@ class VirtualServo {
   /// All or nothing.
   Refusal write(std::size_t address, Bytes data) {
     if (data.empty() || address + data.size() > bytes_.size()) return Refusal::range;
-    const bool locked = value("torque_enable") != 0 && address < model_->first_ram_address;
+    const bool locked = torque_on() && address < model_->first_ram_address;
     if (locked) return Refusal::access;
+    if (latched_errors_ != 0 && address == model_->find("torque_enable")->address && data[0] != 0) return Refusal::access;
     auto changed = bytes_;
     std::copy(data.begin(), data.end(), changed.begin() + static_cast<std::ptrdiff_t>(address));
     for (const Register& r : model_->registers) {
       const bool touched = r.address < address + data.size() && address < r.end();
       if (touched && r.access == Access::read_only) return Refusal::access;
+      if (touched && r.name.starts_with("goal_") && watchdog_tripped()) return Refusal::limit;
       if (touched && r.name == "goal_position" && beyond_limits(bits_in(changed, 0, r))) return Refusal::limit;
     }
     bytes_ = changed;
@@ -120,11 +155,12 @@ class VirtualServo {
     unsigned bits = 0;
     if (model_->protocol == 1) {
       if (voltage_is_wrong()) bits |= protocol1::input_voltage_error;
-      if (overheated()) bits |= protocol1::overheating_error;
+      if ((hardware_errors() & protocol2::overheating_error) != 0) bits |= protocol1::overheating_error;
+      if ((hardware_errors() & protocol2::overload_error) != 0) bits |= protocol1::overload_error;
       if (refusal == Refusal::limit) bits |= protocol1::angle_limit_error;
       if (refusal == Refusal::range || refusal == Refusal::access) bits |= protocol1::range_error;
     } else {
-      if (voltage_is_wrong() || overheated()) bits |= protocol2::alert_bit;
+      if (hardware_errors() != 0) bits |= protocol2::alert_bit;
       constexpr protocol2::Error errors[] = {protocol2::Error::none, protocol2::Error::data_length,
                                              protocol2::Error::data_range, protocol2::Error::access};
       bits |= static_cast<unsigned>(errors[static_cast<std::size_t>(refusal)]);
@@ -144,6 +180,21 @@ class VirtualServo {
 
  private:
   using Table = std::array<std::uint8_t, 768>;
+
+  unsigned hardware_errors() const {
+    unsigned bits = latched_errors_;
+    if (voltage_is_wrong()) bits |= protocol2::input_voltage_error;
+    if (overheated()) bits |= protocol2::overheating_error;
+    return bits;
+  }
+
+  /// In counts; -1 where it has tripped.
+  int watchdog() const { return static_cast<std::int8_t>(static_cast<std::uint8_t>(value("bus_watchdog"))); }
+  void look_at_watchdog(Time now) {
+    if (!torque_on() || watchdog() <= 0 || now - last_instruction_ <= from_seconds(watchdog() * bus_watchdog_s)) return;
+    set("bus_watchdog", 0xFF);
+    set("goal_position", ticks());
+  }
 
   /// 0 where the model has no such register.
   double value(std::string_view name) const {
@@ -176,10 +227,7 @@ class VirtualServo {
     set("present_voltage", counts(voltage_v / 0.1));
     set("present_input_voltage", counts(voltage_v / 0.1));
     set("present_temperature", counts(temperature_celsius));
-    unsigned hardware = 0;
-    if (voltage_is_wrong()) hardware |= protocol2::input_voltage_error;
-    if (overheated()) hardware |= protocol2::overheating_error;
-    set("hardware_error_status", hardware);
+    set("hardware_error_status", hardware_errors());
     set("realtime_tick", (moved_to_.count() / 1'000'000) % 32768);
   }
 
@@ -187,7 +235,11 @@ class VirtualServo {
   MotorParameters motor_;
   MotorState state_;
   Table bytes_{};
+  Table as_new_{};
+  unsigned latched_errors_ = 0;
   Time moved_to_{Time::min() / 2};
+  Time starts_at_{Time::min()};
+  Time last_instruction_{Time::min() / 2};
   std::array<std::uint8_t, 16> stored_{};
   std::size_t stored_address_ = 0;
   std::size_t stored_size_ = 0;

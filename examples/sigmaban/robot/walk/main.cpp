@@ -39,7 +39,7 @@ void add_run(CLI::App& program) {
   command->add_option("--rate", options->rate_hz, "of the servos' goals [Hz]")
       ->check(CLI::Range(10.0, 500.0))
       ->capture_default_str();
-  command->add_option("--after", options->after, "off: torque off when it stands again; hold: keep it")
+  command->add_option("--after", options->after, "off: sit down, then torque off; hold: go on standing")
       ->check(CLI::IsMember({"off", "hold"}))
       ->capture_default_str();
   command->add_option("--log", options->log, "recording (CSV) of every tick");
