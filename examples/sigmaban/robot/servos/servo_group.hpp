@@ -42,7 +42,7 @@ class ServoGroup {
         options_(std::move(options)),
         feedback_(model, options_.feedback),
         supply_(model, FeedbackKind::health),
-        registers_(bus, model, ids_of(joints_)),
+        registers_(bus, model, ids_of(joints_), options_.bus_watchdog_s),
         care_(joints_.size(), options_.care),
         states_(joints_),
         goals_(joints_),
@@ -81,9 +81,9 @@ class ServoGroup {
       arm_guard();
       torque_on_ = true;
       switch_torque_on(registers_, joints_, [&] { send_goals(); }, goals_.last_ticks());
-      if (options_.bus_watchdog_s > 0) registers_.write_all("bus_watchdog", watchdog_counts());
       last_goals_ = bus_->port().now();
       events_.clear();
+      told_events_ = 0;
     });
   }
 
@@ -124,7 +124,7 @@ class ServoGroup {
       const bool within = goals_.set(i, goals_rad[i], options_.beyond_limits == BeyondLimits::refuse);
       states_[i].goals_beyond_limits += within ? 0U : 1U;
     }
-    last_goals_ = bus_->port().now();
+    if (!goals_are_late()) last_goals_ = bus_->port().now();  // else it is for update() to switch the torque off
     return true;
   }
 
@@ -153,9 +153,9 @@ class ServoGroup {
   std::size_t update(Time deadline = Time::max()) {
     std::size_t answered = 0;
     guarded([&] {
-      events_.clear();
+      events_.erase(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(std::exchange(told_events_, 0)));
       const Time now = bus_->port().now();
-      if (torque_on_) look_at_watchdogs(now);
+      if (torque_on_) look_at_watchdogs();
       if (sitting_since_ && now - *sitting_since_ > from_seconds(options_.sit_s + settle_s)) let_go();
       if (torque_on_) {
         send_goals();
@@ -165,6 +165,7 @@ class ServoGroup {
       }
       answered = listen(deadline, options_.listen_s);
       if (torque_on_) take_care(std::min(deadline, now + from_seconds(options_.listen_s + options_.care.poll_s)));
+      told_events_ = events_.size();
     });
     return answered;
   }
@@ -242,13 +243,12 @@ class ServoGroup {
     options_.guard->arm(registers_.torque_off_packet(packet));
   }
 
-  std::uint32_t watchdog_counts() const {
-    return static_cast<std::uint32_t>(std::clamp(options_.bus_watchdog_s / bus_watchdog_s, 1.0, 127.0));
+  bool goals_are_late() const {
+    return torque_on_ && bus_->port().now() - last_goals_ > from_seconds(options_.watchdog_s);
   }
-
-  void look_at_watchdogs(Time now) {
+  void look_at_watchdogs() {
     const bool guard_fired = options_.guard != nullptr && options_.guard->fired();
-    if (!guard_fired && now - last_goals_ <= from_seconds(options_.watchdog_s)) return;
+    if (!guard_fired && !goals_are_late()) return;
     stop();
     note({ServoEventKind::watchdog, 0});
   }
@@ -348,7 +348,7 @@ class ServoGroup {
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       if (!std::exchange(torque_due_[i], false)) continue;
       registers_.write_one(i, "torque_enable", 1);
-      if (options_.bus_watchdog_s > 0) registers_.write_one(i, "bus_watchdog", watchdog_counts());
+      registers_.write_one(i, "bus_watchdog", registers_.watchdog());
     }
   }
 
@@ -365,6 +365,7 @@ class ServoGroup {
   std::vector<Outcome> outcomes_;
   std::vector<std::uint8_t> received_;
   std::vector<ServoEvent> events_;
+  std::size_t told_events_ = 0;  // the first of them were there after the last update()
   bool torque_on_ = false;
   bool limp_ = false;  // let go while updates go on
   bool stopped_ = false;

@@ -48,22 +48,20 @@ class HealthRegisters {
   std::uint16_t address() const { return address_; }
   std::uint16_t count() const { return count_; }
 
-  /// `bytes` from address() on; `error_bits` of the status packet that brought them; `settings` as they should be.
-  Finding finding(Bytes bytes, std::uint8_t error_bits, const Settings& settings) const {
+  /// `bytes` from address() on; `error_bits` of the status packet that brought them; settings and bus watchdog [counts]
+  /// as they should be.
+  Finding finding(Bytes bytes, std::uint8_t error_bits, const Settings& settings, std::uint32_t watchdog) const {
     const std::uint32_t error = hardware_error(bytes, error_bits);
     if ((error & protocol2::motor_encoder_error) != 0) return Finding::broken;
     constexpr std::uint32_t shut_down =
         protocol2::overheating_error | protocol2::electrical_shock_error | protocol2::overload_error;
     if ((error & shut_down) != 0) return Finding::shut_down;
     const bool kept = std::equal(settings.begin(), settings.begin() + gains_.count, bytes.begin() + at(gains_.address));
-    return torque_on(bytes) && kept && !watchdog_tripped(bytes) ? Finding::fit : Finding::reset;
+    const bool watched = watchdog_ == nullptr || bits_in(bytes, address_, *watchdog_) == watchdog;  // 255: has tripped
+    return torque_on(bytes) && kept && watched ? Finding::fit : Finding::reset;
   }
 
   bool torque_on(Bytes bytes) const { return bits_in(bytes, address_, *torque_) != 0; }
-  /// Stopped for want of instructions.
-  bool watchdog_tripped(Bytes bytes) const {
-    return watchdog_ != nullptr && bits_in(bytes, address_, *watchdog_) == 0xFF;
-  }
   /// As Protocol 2.0 has the bits; of Protocol 1.0 overheating, overload and a wrong voltage are in each answer.
   std::uint32_t hardware_error(Bytes bytes, std::uint8_t error_bits) const {
     if (error_ != nullptr) return bits_in(bytes, address_, *error_);

@@ -28,13 +28,17 @@ struct HealthAnswer {
 template <class ServoBus>
 class ServoRegisters {
  public:
-  ServoRegisters(ServoBus& bus, const ServoModel& model, std::vector<std::uint8_t> ids)
+  /// `watchdog_s`: of the servos' own Bus Watchdog; 0: none [s].
+  ServoRegisters(ServoBus& bus, const ServoModel& model, std::vector<std::uint8_t> ids, double watchdog_s)
       : bus_(&bus), model_(&model), health_(model), ids_(std::move(ids)), settings_(ids_.size()) {
     data_.reserve(4 * ids_.size());
+    if (watchdog_s > 0) watchdog_ = static_cast<std::uint32_t>(std::clamp(watchdog_s / bus_watchdog_s, 1.0, 127.0));
   }
 
   std::span<const std::uint8_t> ids() const { return ids_; }
-  bool has(std::string_view name) const { return model_->find(name) != nullptr; }
+  bool has_watchdog() const { return watchdog_ > 0 && model_->find("bus_watchdog") != nullptr; }
+  /// That of the servos' own Bus Watchdog while their torque is on [counts].
+  std::uint32_t watchdog() const { return watchdog_; }
 
   /// The same value to all. Nothing where the model has no such register.
   void write_all(std::string_view name, std::uint32_t value) { write(name, ids_, value); }
@@ -81,7 +85,7 @@ class ServoRegisters {
     const Buffer read = Buffer(bytes).first(health_.count());
     const Reply reply = bus_->read(ids_[servo], health_.address(), read, deadline);
     if (!reply) return std::nullopt;
-    return HealthAnswer{health_.finding(read, reply.error_bits, settings_[servo]), health_.torque_on(read),
+    return HealthAnswer{health_.finding(read, reply.error_bits, settings_[servo], watchdog_), health_.torque_on(read),
                         health_.hardware_error(read, reply.error_bits)};
   }
 
@@ -91,19 +95,22 @@ class ServoRegisters {
     for (int i = 0; i < 3; ++i) write_all("bus_watchdog", 0);
   }
 
-  /// Asks each whether its torque is off, and tells those again who say it is not. Returns how many have not said that
-  /// it is off when all have or time is over.
+  /// Asks each whether its torque is off, and tells all again where one says it is not. Returns how many have not said
+  /// that it is off when time is over or those left never answer.
   std::size_t confirm_torque_off(Time deadline) {
     std::array<bool, max_servos> off{};
     std::size_t open = ids_.size();
-    for (int round = 0; round < most_rounds && open > 0; ++round) {
+    for (int round = 0; round < most_rounds && open > 0 && bus_->port().now() < deadline; ++round) {
+      bool any_on = false;
       for (std::size_t i = 0; i < ids_.size() && bus_->port().now() < deadline; ++i) {
         if (off[i]) continue;
         const auto torque = read(i, "torque_enable", deadline);
         off[i] = torque == 0U;
         open -= off[i] ? 1U : 0U;
-        if (torque && *torque != 0) write_one(i, "torque_enable", 0);
+        any_on = any_on || (torque && *torque != 0);
       }
+      if (any_on) round = 0;
+      write_all("torque_enable", 0);
     }
     return open;
   }
@@ -116,7 +123,7 @@ class ServoRegisters {
   }
 
  private:
-  static constexpr int most_rounds = 3;  // a servo that has not answered by then does not
+  static constexpr int most_rounds = 6;  // a servo that has not answered by then does not
 
   void append(const Register& r, std::uint32_t value) {
     for (unsigned byte = 0; byte < r.size; ++byte) data_.push_back(static_cast<std::uint8_t>(value >> (8 * byte)));
@@ -135,6 +142,7 @@ class ServoRegisters {
   std::vector<std::uint8_t> ids_;
   std::vector<Settings> settings_;
   std::vector<std::uint8_t> data_;
+  std::uint32_t watchdog_ = 0;  // [counts]
 };
 
 }  // namespace dynamixel

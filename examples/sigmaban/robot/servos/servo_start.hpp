@@ -95,7 +95,8 @@ std::uint32_t ask_before_start(ServoBus& bus, ServoRegisters<ServoBus>& register
   fail(joint, "answers too seldom to be trusted with a robot; check its cable, the power and the speed of the bus");
 }
 
-/// Goals first, which send_goals() sends, then the torque. Throws BusError where a servo does not take either.
+/// Goals first, which send_goals() sends, then the torque, then the servos' own watchdogs. Throws BusError where a servo
+/// does not take one of them.
 template <class ServoBus, class SendGoals>
 void switch_torque_on(ServoRegisters<ServoBus>& registers, const std::vector<Joint>& joints, SendGoals send_goals,
                       const std::vector<std::uint32_t>& goals) {
@@ -121,6 +122,10 @@ void switch_torque_on(ServoRegisters<ServoBus>& registers, const std::vector<Joi
   until_all([&](std::size_t i) { registers.write_one(i, "torque_enable", 1); },
             [&](std::size_t i) { return registers.read(i, "torque_enable") == 1U; },
             "does not switch its torque on; switch its power off and on");
+  if (!registers.has_watchdog()) return;
+  until_all([&](std::size_t i) { registers.write_one(i, "bus_watchdog", registers.watchdog()); },
+            [&](std::size_t i) { return registers.read(i, "bus_watchdog") == registers.watchdog(); },
+            "does not take its Bus Watchdog; it needs newer firmware, or none is wanted");
 }
 
 }  // namespace dynamixel
