@@ -106,6 +106,7 @@ class Bus {
   void listen() { drain(0); }
 
   Port& port() { return port_; }
+  const Port& port() const { return port_; }
   const BusOptions& options() const { return options_; }
   /// From now on answers are waited for that long [s], apart from the line's own time.
   void set_patience(double return_delay_s, double latency_s) {

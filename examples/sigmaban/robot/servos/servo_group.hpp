@@ -80,7 +80,7 @@ class ServoGroup {
       }
       arm_guard();
       torque_on_ = true;
-      switch_torque_on(registers_, joints_, [&] { send_goals(); }, goals_.last_ticks());
+      switch_torque_on(*bus_, registers_, joints_, [&] { send_goals(); }, goals_.last_ticks());
       last_goals_ = bus_->port().now();
       events_.clear();
       told_events_ = 0;
@@ -170,7 +170,7 @@ class ServoGroup {
     return answered;
   }
 
-  /// Of the last update() and what was called since the one before it.
+  /// Of the last update(), with what was done between it and the one before it.
   std::span<const ServoEvent> events() const { return events_; }
   std::span<const JointState> states() const { return states_.all(); }
   /// The bytes that the joint's servo answered last, from feedback().address() on.
@@ -316,7 +316,10 @@ class ServoGroup {
   }
 
   void ask_for_health(std::size_t i, Time deadline) {
-    if (const auto health = registers_.read_health(i, deadline)) find(i, health->finding);
+    const auto health = registers_.read_health(i, deadline);
+    if (!health) return;
+    if (health->watchdog_tripped) registers_.write_one(i, "bus_watchdog", 0);  // else it takes no goals
+    find(i, health->finding);
   }
   void ask_for_supply(std::size_t i, Time deadline) {
     std::array<std::uint8_t, 16> bytes{};
@@ -339,7 +342,7 @@ class ServoGroup {
 
   /// Its settings now, its torque with the next goals, which are where it is.
   void restore(std::size_t i) {
-    registers_.write_one(i, "bus_watchdog", 0);
+    registers_.write_one(i, "bus_watchdog", registers_.watchdog());
     registers_.restore_settings(i);
     if (!sitting_since_) goals_.begin_softly(i, states_[i].position_rad, bus_->port().now(), options_.care.restore_s);
     torque_due_[i] = true;

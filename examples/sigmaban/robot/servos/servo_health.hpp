@@ -62,6 +62,10 @@ class HealthRegisters {
   }
 
   bool torque_on(Bytes bytes) const { return bits_in(bytes, address_, *torque_) != 0; }
+  /// Stopped for want of instructions.
+  bool watchdog_tripped(Bytes bytes) const {
+    return watchdog_ != nullptr && bits_in(bytes, address_, *watchdog_) == 0xFF;
+  }
   /// As Protocol 2.0 has the bits; of Protocol 1.0 overheating, overload and a wrong voltage are in each answer.
   std::uint32_t hardware_error(Bytes bytes, std::uint8_t error_bits) const {
     if (error_ != nullptr) return bits_in(bytes, address_, *error_);

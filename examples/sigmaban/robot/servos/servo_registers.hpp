@@ -19,7 +19,7 @@ namespace dynamixel {
 /// What a servo says of its health in one answer.
 struct HealthAnswer {
   Finding finding = Finding::fit;
-  bool torque_on = false;
+  bool watchdog_tripped = false;
   std::uint32_t hardware_error = 0;  // bits of protocol2::HardwareErrorBit
 };
 
@@ -85,7 +85,8 @@ class ServoRegisters {
     const Buffer read = Buffer(bytes).first(health_.count());
     const Reply reply = bus_->read(ids_[servo], health_.address(), read, deadline);
     if (!reply) return std::nullopt;
-    return HealthAnswer{health_.finding(read, reply.error_bits, settings_[servo], watchdog_), health_.torque_on(read),
+    return HealthAnswer{health_.finding(read, reply.error_bits, settings_[servo], watchdog_),
+                        health_.watchdog_tripped(read),
                         health_.hardware_error(read, reply.error_bits)};
   }
 

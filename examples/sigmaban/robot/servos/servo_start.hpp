@@ -2,10 +2,11 @@
 // read back, and a sentence where it fails.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,9 +24,20 @@ namespace dynamixel {
 
 namespace servo_start_detail {
 
-inline constexpr int most_tries = 5;              // of each step: one answer in a hundred is lost
+inline constexpr int least_tries = 5;              // of each step: one answer in a hundred is lost
+inline constexpr double least_trying_s = 0.2;      // of each step: machines stand still for a moment, too [s]
 inline constexpr double largest_delay_s = 508e-6;  // that a servo can have as its Return Delay Time [s]
 inline constexpr double long_patience_s = 0.05;    // three periods of the worst latency timer [s]
+
+/// Until work() is true; false where it never is.
+template <class ServoBus, class Work>
+bool keep_trying(const ServoBus& bus, double at_least_s, Work work) {
+  const Time end = bus.port().now() + from_seconds(at_least_s);
+  for (int tries = 0; tries < least_tries || bus.port().now() < end; ++tries) {
+    if (work()) return true;
+  }
+  return false;
+}
 
 /// Why a servo was not heard.
 template <class ServoBus>
@@ -61,9 +73,11 @@ void find_servos(ServoBus& bus, ServoRegisters<ServoBus>& registers, const std::
     while (i < joints.size() && heard(i)) ++i;
     return i;
   };
-  const Time end = bus.port().now() + from_seconds(find_s);
-  for (int tries = 0; missing() < joints.size() && (tries < most_tries || bus.port().now() < end); ++tries) listen();
-  if (missing() < joints.size()) {
+  const bool found = keep_trying(bus, find_s, [&] {
+    listen();
+    return missing() == joints.size();
+  });
+  if (!found) {
     const Joint& joint = joints[missing()];
     const std::string why = why_not_heard(bus, joint.id);
     bus.set_patience(before.return_delay_s, before.latency_s);
@@ -85,10 +99,13 @@ std::uint32_t ask_before_start(ServoBus& bus, ServoRegisters<ServoBus>& register
   using namespace servo_start_detail;
   std::array<std::uint8_t, 16> bytes{};
   const Buffer read = Buffer(bytes).first(supply.count());
-  for (int tries = 0; tries < most_tries; ++tries) {
-    if (!registers.keep_settings(i) || !bus.read(joint.id, supply.address(), read)) continue;
-    const auto health = registers.read_health(i);
-    if (!health) continue;
+  std::optional<HealthAnswer> health;
+  const bool told = keep_trying(bus, least_trying_s, [&] {
+    if (!registers.keep_settings(i) || !bus.read(joint.id, supply.address(), read)) return false;
+    health = registers.read_health(i);
+    return health.has_value();
+  });
+  if (told) {
     take(supply.parse(read));
     return health->hardware_error;
   }
@@ -98,13 +115,13 @@ std::uint32_t ask_before_start(ServoBus& bus, ServoRegisters<ServoBus>& register
 /// Goals first, which send_goals() sends, then the torque, then the servos' own watchdogs. Throws BusError where a servo
 /// does not take one of them.
 template <class ServoBus, class SendGoals>
-void switch_torque_on(ServoRegisters<ServoBus>& registers, const std::vector<Joint>& joints, SendGoals send_goals,
-                      const std::vector<std::uint32_t>& goals) {
+void switch_torque_on(const ServoBus& bus, ServoRegisters<ServoBus>& registers, const std::vector<Joint>& joints,
+                      SendGoals send_goals, const std::vector<std::uint32_t>& goals) {
   using namespace servo_start_detail;
   const auto until_all = [&](auto write, auto done, const char* what) {
     std::vector<char> right(joints.size());
     std::size_t open = joints.size();
-    for (int tries = 0; tries < most_tries && open > 0; ++tries) {
+    keep_trying(bus, least_trying_s, [&] {
       send_goals();
       for (std::size_t i = 0; i < joints.size(); ++i) {
         if (!right[i]) write(i);
@@ -112,7 +129,8 @@ void switch_torque_on(ServoRegisters<ServoBus>& registers, const std::vector<Joi
       for (std::size_t i = 0; i < joints.size(); ++i) {
         if (!right[i] && done(i)) right[i] = true, --open;
       }
-    }
+      return open == 0;
+    });
     for (std::size_t i = 0; i < joints.size(); ++i) {
       if (!right[i]) fail(joints[i], what);
     }

@@ -121,7 +121,6 @@ class Walk {
   void act(double time) {
     group_->set_goals(goals_);
     group_->update();
-    if (gait_.stage() == GaitStage::done && !over() && !group_->sitting()) group_->sit_down();
     for (const dynamixel::ServoEvent& event : group_->events()) {
       if (report_->events.size() < report_->events.capacity()) report_->events.push_back({time, event});
       using enum dynamixel::ServoEventKind;
@@ -130,6 +129,7 @@ class Walk {
       if (event.kind == watchdog) hurry(WalkEnd::fault);
     }
     if (group_->fault()) hurry(WalkEnd::fault);
+    if (gait_.stage() == GaitStage::done && !over() && !group_->sitting()) group_->sit_down();
   }
 
   LogRow row(double time, double lateness) const {

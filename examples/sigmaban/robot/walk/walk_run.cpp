@@ -77,8 +77,9 @@ dynamixel::ServoGroupOptions group_options(const WalkRun& options, const WalkLoo
   group.soft_start_s = loop.gait.rise_s - 0.5;
   group.listen_s = 0.7 / options.rate_hz;
   group.care.poll_s = 0.25 / options.rate_hz;
+  group.bus_watchdog_s = options.bus_watchdog_s;
   group.guard = guard;
-  if (is_virtual) group.watchdog_s = 1;  // the machine that simulates them is no robot's
+  if (is_virtual) group.watchdog_s = group.care.group.line_is_dead_s = 1;  // a machine that simulates may stand still
   if (const auto sitting = sitting_pose(options.walk)) {
     const auto angles = sitting->array();
     group.sitting_rad.assign(angles.begin(), angles.end());
