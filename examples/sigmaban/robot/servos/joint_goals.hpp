@@ -33,10 +33,7 @@ class JointGoals {
     starts_[i] = {now, from_rad, duration_s};
   }
   /// From what was sent last.
-  void begin_softly(std::size_t i, Time now, double duration_s) {
-    const auto ticks = static_cast<std::int32_t>(ticks_[i]);
-    begin_softly(i, joint_angle((*joints_)[i], radians_from_ticks(ticks)), now, duration_s);
-  }
+  void begin_softly(std::size_t i, Time now, double duration_s) { begin_softly(i, sent(i), now, duration_s); }
 
   /// For the servos, now.
   std::span<const std::uint32_t> ticks(Time now) {
@@ -50,6 +47,10 @@ class JointGoals {
       ticks_[i] = ticks_from_radians(within).value_or(center_ticks);  // there always is one
     }
     return ticks_;
+  }
+  /// What the joint was sent last [rad].
+  double sent(std::size_t i) const {
+    return joint_angle((*joints_)[i], radians_from_ticks(static_cast<std::int32_t>(ticks_[i])));
   }
   /// As sent last.
   const std::vector<std::uint32_t>& last_ticks() const { return ticks_; }

@@ -19,8 +19,9 @@
 #include "joint.hpp"
 #include "joint_goals.hpp"
 #include "joint_states.hpp"
-#include "servo_care.hpp"
+#include "reading_time.hpp"
 #include "servo_group_types.hpp"
+#include "servo_keeper.hpp"
 #include "servo_registers.hpp"
 #include "servo_start.hpp"
 #include "torque_guard.hpp"
@@ -38,22 +39,24 @@ class ServoGroup {
   /// Throws BusError where joints make no sense. `bus` and `model` must outlive this.
   ServoGroup(ServoBus& bus, const ServoModel& model, std::vector<Joint> joints, ServoGroupOptions options = {})
       : bus_(&bus),
+        model_(&model),
         joints_(std::move(joints)),
         options_(std::move(options)),
         feedback_(model, options_.feedback),
         supply_(model, FeedbackKind::health),
         registers_(bus, model, ids_of(joints_), options_.bus_watchdog_s),
-        care_(joints_.size(), options_.care),
+        keeper_(registers_, joints_.size(), options_.care),
         states_(joints_),
         goals_(joints_),
         presences_(joints_.size(), Presence(bus.port().now())),
-        torque_due_(joints_.size()),
         outcomes_(joints_.size()),
-        received_(joints_.size() * feedback_.count()) {
+        received_(joints_.size() * feedback_.count()),
+        heard_(received_.size()),
+        part_(joints_.size()),
+        events_(joints_.size()) {
     check_joints(joints_, max_servos);
     const std::size_t sitting = options_.sitting_rad.size();
     if (sitting != 0 && sitting != joints_.size()) throw BusError("joints: the way they sit is of another number");
-    events_.reserve(6 * joints_.size() + 4);
   }
 
   ~ServoGroup() {
@@ -68,12 +71,18 @@ class ServoGroup {
     guarded([&] {
       sitting_since_.reset();
       limp_ = false;
-      care_.begin();
+      keeper_.begin();
+      std::fill(presences_.begin(), presences_.end(), Presence(bus_->port().now()));
       states_.forget();
+      part_ = joints_.size();
       registers_.write_all("bus_watchdog", 0);  // of a program that was killed: it would refuse goals
       find_servos(*bus_, registers_, joints_, options_.find_s, [&] { listen(Time::max(), options_.find_s); },
                   [&](std::size_t i) { return states_.heard(i); });
-      for (std::size_t i = 0; i < joints_.size(); ++i) check_before_start(i);
+      choose_feedback();
+      const StartCriteria criteria{options_.alarms, options_.most_beyond_limits_rad};
+      for (std::size_t i = 0; i < joints_.size(); ++i) {
+        check_before_start(*bus_, registers_, supply_, joints_[i], i, criteria, states_[i]);
+      }
       for (std::size_t i = 0; i < joints_.size(); ++i) {
         goals_.hold(i, states_[i].position_rad);
         goals_.begin_softly(i, states_[i].position_rad, bus_->port().now(), options_.soft_start_s);
@@ -83,7 +92,6 @@ class ServoGroup {
       switch_torque_on(*bus_, registers_, joints_, [&] { send_goals(); }, goals_.last_ticks());
       last_goals_ = bus_->port().now();
       events_.clear();
-      told_events_ = 0;
     });
   }
 
@@ -153,26 +161,28 @@ class ServoGroup {
   std::size_t update(Time deadline = Time::max()) {
     std::size_t answered = 0;
     guarded([&] {
-      events_.erase(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(std::exchange(told_events_, 0)));
+      events_.begin_cycle();
       const Time now = bus_->port().now();
       if (torque_on_) look_at_watchdogs();
       if (sitting_since_ && now - *sitting_since_ > from_seconds(options_.sit_s + settle_s)) let_go();
       if (torque_on_) {
         send_goals();
-        send_torque();
+        keeper_.send_torque();
       } else if (limp_) {
         registers_.write_all("torque_enable", 0);  // for those who did not hear it
       }
       answered = listen(deadline, options_.listen_s);
       if (torque_on_) take_care(std::min(deadline, now + from_seconds(options_.listen_s + options_.care.poll_s)));
-      told_events_ = events_.size();
+      events_.end_cycle();
     });
     return answered;
   }
 
   /// Of the last update(), with what was done between it and the one before it.
-  std::span<const ServoEvent> events() const { return events_; }
+  std::span<const ServoEvent> events() const { return events_.all(); }
   std::span<const JointState> states() const { return states_.all(); }
+  /// What the joint was sent last [rad].
+  double sent_goal(std::size_t joint) const { return goals_.sent(joint); }
   /// The bytes that the joint's servo answered last, from feedback().address() on.
   Bytes received(std::size_t joint) const {
     return Bytes(received_).subspan(joint * feedback_.count(), feedback_.count());
@@ -182,9 +192,9 @@ class ServoGroup {
   bool torque_on() const { return torque_on_; }
   bool sitting() const { return sitting_since_.has_value(); }
   /// Why it sat down or let go by itself; none where it did not.
-  const std::optional<ServoFault>& fault() const { return care_.fault(); }
-  Reaction reaction() const { return care_.reaction(); }
-  Condition condition(std::size_t joint) const { return care_.condition(joint); }
+  const std::optional<ServoFault>& fault() const { return keeper_.care().fault(); }
+  Reaction reaction() const { return keeper_.care().reaction(); }
+  Condition condition(std::size_t joint) const { return keeper_.care().condition(joint); }
   /// Could the last stop() be sent?
   bool stopped() const { return stopped_; }
   /// Servos that did not say after the last stop() that their torque is off.
@@ -223,18 +233,23 @@ class ServoGroup {
 
   void note(const ServoEvent& event) {
     if (event.kind == ServoEventKind::let_go || event.kind == ServoEventKind::watchdog) limp_ = true;
-    if (events_.size() < events_.capacity()) events_.push_back(event);
+    events_.note(event);
   }
 
-  void check_before_start(std::size_t i) {
-    JointState& state = states_[i];
-    const std::uint32_t error = ask_before_start(*bus_, registers_, supply_, joints_[i], i, [&](const ServoState& s) {
-      state.voltage_v = s.voltage_v;
-      state.temperature_celsius = s.temperature_celsius;
-    });
-    const StartState measured{state.position_rad, state.voltage_v, state.temperature_celsius, error};
-    const StartCriteria criteria{options_.alarms, options_.most_beyond_limits_rad};
-    if (const auto why = why_not_to_start(joints_[i], measured, criteria)) fail(joints_[i], *why);
+  /// Health with the motion where a cycle has time for it, else by itself, in turn; and as many servos in a cycle as it
+  /// has time for: those asked answer to the end, whoever speaks meanwhile.
+  void choose_feedback() {
+    const Time time = from_seconds(options_.listen_s - bus_->options().latency_s);
+    const auto fits = [&](std::size_t servos) {
+      return reading_time<typename ServoBus::Wire>(servos, feedback_.count(), bus_->options().return_delay_s,
+                                                   bus_->port().bits_per_s()) <= time;
+    };
+    part_ = joints_.size();
+    if (fits(part_)) return;
+    options_.feedback = FeedbackKind::motion;
+    feedback_ = Feedback(*model_, options_.feedback);
+    received_.resize(joints_.size() * feedback_.count());
+    while (part_ > 1 && !fits(part_)) --part_;
   }
 
   void arm_guard() {
@@ -259,9 +274,7 @@ class ServoGroup {
   }
 
   std::size_t listen(Time latest, double at_most_s) {
-    const Time deadline = std::min(latest, bus_->port().now() + from_seconds(at_most_s));
-    const std::size_t answered = bus_->sync_read(feedback_.address(), feedback_.count(), registers_.ids(), received_,
-                                                 outcomes_, deadline);
+    const std::size_t answered = read_part(std::min(latest, bus_->port().now() + from_seconds(at_most_s)));
     const Time now = bus_->port().now();
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       const bool came = outcomes_[i] == Outcome::answered;
@@ -278,6 +291,27 @@ class ServoGroup {
         if (!sitting_since_) goals_.begin_softly(i, states_[i].position_rad, now, options_.soft_start_s);
       }
     }
+    return answered;
+  }
+
+  /// Those whose turn it is, which are all where a cycle has time for all.
+  std::size_t read_part(Time deadline) {
+    const std::size_t count = feedback_.count();
+    std::array<std::uint8_t, max_servos> ids{};
+    std::array<Outcome, max_servos> outcomes{};
+    const auto joint_of = [&](std::size_t k) { return (turn_ + k) % joints_.size(); };
+    for (std::size_t k = 0; k < part_; ++k) ids[k] = joints_[joint_of(k)].id;
+    const std::size_t answered = bus_->sync_read(feedback_.address(), feedback_.count(), Bytes(ids).first(part_),
+                                                 Buffer(heard_).first(part_ * count),
+                                                 std::span(outcomes).first(part_), deadline);
+    std::fill(outcomes_.begin(), outcomes_.end(), Outcome::skipped);
+    for (std::size_t k = 0; k < part_; ++k) {
+      outcomes_[joint_of(k)] = outcomes[k];
+      const Bytes bytes = Bytes(heard_).subspan(k * count, count);
+      if (outcomes[k] != Outcome::answered) continue;
+      std::copy(bytes.begin(), bytes.end(), received_.begin() + static_cast<std::ptrdiff_t>(joint_of(k) * count));
+    }
+    turn_ = joint_of(part_);
     return answered;
   }
 
@@ -298,29 +332,27 @@ class ServoGroup {
 
   /// Asks one servo how it is, and does what its answer and the others' silence ask for.
   void take_care(Time deadline) {
+    ServoCare& care = keeper_.care();
     const auto alert = [&](std::size_t i) {
-      return care_.condition(i) != Condition::failed && bus_->statistics(joints_[i].id).last_error_bits != 0;
+      return care.condition(i) != Condition::failed && bus_->statistics(joints_[i].id).last_error_bits != 0;
     };
     const Time now = bus_->port().now();
     for (std::size_t i = 0; i < joints_.size() && torque_on_; ++i) {
       const bool long_silent = now - presences_[i].last_heard() > from_seconds(options_.care.silent_longest_s);
-      if (long_silent && care_.condition(i) == Condition::silent) find(i, Finding::silent_for_long);
+      if (long_silent && care.condition(i) == Condition::silent) find(i, Finding::silent_for_long);
     }
-    if (const auto i = care_.next_to_ask(alert); i && torque_on_) {
-      const bool supply = options_.feedback == FeedbackKind::motion && ++supply_turn_ % 3 == 0;
-      supply ? ask_for_supply(*i, deadline) : ask_for_health(*i, deadline);
+    if (const auto i = care.next_to_ask(alert)) {
+      if (options_.feedback == FeedbackKind::motion && ++supply_turn_ % 3 == 0) {
+        ask_for_supply(*i, deadline);
+      } else if (const auto finding = keeper_.ask(*i, deadline)) {
+        find(*i, *finding);
+      }
     }
-    if (torque_on_) care_.look(now);
-    if (torque_on_ && care_.reaction() == Reaction::sit_down) sit_down();
-    if (torque_on_ && care_.reaction() == Reaction::let_go) let_go();
+    care.look(now);
+    if (care.reaction() == Reaction::sit_down) sit_down();
+    if (care.reaction() == Reaction::let_go) let_go();
   }
 
-  void ask_for_health(std::size_t i, Time deadline) {
-    const auto health = registers_.read_health(i, deadline);
-    if (!health) return;
-    if (health->watchdog_tripped) registers_.write_one(i, "bus_watchdog", 0);  // else it takes no goals
-    find(i, health->finding);
-  }
   void ask_for_supply(std::size_t i, Time deadline) {
     std::array<std::uint8_t, 16> bytes{};
     const Buffer read = Buffer(bytes).first(supply_.count());
@@ -328,47 +360,24 @@ class ServoGroup {
   }
 
   void find(std::size_t i, Finding finding) {
-    if (!torque_on_) return;
-    const Condition before = care_.condition(i);
-    const Reaction reaction = care_.take(i, finding);
-    const Condition now = care_.condition(i);
-    if (reaction == Reaction::restore) {
-      restore(i);
-      if (before != Condition::restoring) note({ServoEventKind::reset, i});
-    }
-    if (before == Condition::restoring && now == Condition::working) note({ServoEventKind::restored, i});
-    if (before != Condition::failed && now == Condition::failed) note({ServoEventKind::failed, i});
-  }
-
-  /// Its settings now, its torque with the next goals, which are where it is.
-  void restore(std::size_t i) {
-    registers_.write_one(i, "bus_watchdog", registers_.watchdog());
-    registers_.restore_settings(i);
-    if (!sitting_since_) goals_.begin_softly(i, states_[i].position_rad, bus_->port().now(), options_.care.restore_s);
-    torque_due_[i] = true;
-  }
-  void send_torque() {
-    for (std::size_t i = 0; i < joints_.size(); ++i) {
-      if (!std::exchange(torque_due_[i], false)) continue;
-      registers_.write_one(i, "torque_enable", 1);
-      registers_.write_one(i, "bus_watchdog", registers_.watchdog());
-    }
+    if (!torque_on_ || keeper_.take(i, finding, events_) != Reaction::restore || sitting_since_) return;
+    goals_.begin_softly(i, states_[i].position_rad, bus_->port().now(), options_.care.restore_s);
   }
 
   ServoBus* bus_;
+  const ServoModel* model_;
   std::vector<Joint> joints_;
   ServoGroupOptions options_;
   Feedback feedback_, supply_;
   ServoRegisters<ServoBus> registers_;
-  ServoCare care_;
+  ServoKeeper<ServoBus> keeper_;
   JointStates states_;
   JointGoals goals_;
   std::vector<Presence> presences_;
-  std::vector<char> torque_due_;  // was restored: gets its torque with the next goals
   std::vector<Outcome> outcomes_;
-  std::vector<std::uint8_t> received_;
-  std::vector<ServoEvent> events_;
-  std::size_t told_events_ = 0;  // the first of them were there after the last update()
+  std::vector<std::uint8_t> received_, heard_;  // of all; of those asked, in their order
+  std::size_t part_ = 0, turn_ = 0;             // how many are asked in a cycle, and who is the first
+  ServoEvents events_;
   bool torque_on_ = false;
   bool limp_ = false;  // let go while updates go on
   bool stopped_ = false;

@@ -1,10 +1,8 @@
-// Options, states and events of a group of servos.
+// Options and states of a group of servos.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include "../bus/transport.hpp"
@@ -12,6 +10,7 @@
 #include "feedback.hpp"
 #include "presence.hpp"
 #include "servo_care.hpp"
+#include "servo_events.hpp"
 #include "start_check.hpp"
 
 namespace dynamixel {
@@ -29,7 +28,7 @@ struct ServoGroupOptions {
   std::vector<double> sitting_rad{};  // of the joints, from where the torque may go off; none: it does so from anywhere
   double sit_s = 1.2;               // for the way there [s]
   BeyondLimits beyond_limits = BeyondLimits::clamp;  // refuse: the joint keeps its goal
-  FeedbackKind feedback = FeedbackKind::motion_and_health;
+  FeedbackKind feedback = FeedbackKind::motion_and_health;  // of each cycle; motion alone where that takes too long
   PresenceOptions presence{};
   AlarmOptions alarms{};
   double most_beyond_limits_rad = 0.5;  // where a joint may be at the start; see StartCriteria [rad]
@@ -49,46 +48,5 @@ struct JointState {
   std::uint64_t goals_beyond_limits = 0;  // clamped or refused
   int implausible = 0;                    // answers in a row that no motion explains
 };
-
-enum class ServoEventKind : std::uint8_t {
-  silent,
-  back,
-  hot,
-  cool,
-  voltage_wrong,
-  voltage_right,
-  watchdog,
-  reset,
-  restored,
-  failed,
-  sitting,
-  let_go
-};
-
-/// What happened, to be said of the joint, or of the program for the watchdog and the last two.
-constexpr std::string_view in_words(ServoEventKind kind) {
-  constexpr std::string_view words[] = {"is silent",
-                                        "is back",
-                                        "is hot",
-                                        "is cool again",
-                                        "has a wrong voltage",
-                                        "has its voltage back",
-                                        "switched the torque off",
-                                        "lost its torque or its settings",
-                                        "has its torque and its settings back",
-                                        "failed",
-                                        "sits down",
-                                        "let go: the torque of all is off"};
-  return words[static_cast<std::size_t>(kind)];
-}
-
-struct ServoEvent {
-  ServoEventKind kind = ServoEventKind::silent;
-  std::size_t joint = 0;  // its place in the group; 0 where it is of all
-};
-
-constexpr bool is_of_all(ServoEventKind kind) {
-  return kind == ServoEventKind::watchdog || kind == ServoEventKind::sitting || kind == ServoEventKind::let_go;
-}
 
 }  // namespace dynamixel

@@ -13,7 +13,9 @@
 #include "../bus/bus.hpp"
 #include "feedback.hpp"
 #include "joint.hpp"
+#include "servo_group_types.hpp"
 #include "servo_registers.hpp"
+#include "start_check.hpp"
 
 namespace dynamixel {
 
@@ -91,11 +93,10 @@ void find_servos(ServoBus& bus, ServoRegisters<ServoBus>& registers, const std::
   bus.set_patience(longest, before.latency_s);
 }
 
-/// Its settings, which are remembered, and its supply, for take(ServoState). Returns its hardware error. Throws
-/// BusError where the servo does not tell.
-template <class ServoBus, class Take>
-std::uint32_t ask_before_start(ServoBus& bus, ServoRegisters<ServoBus>& registers, const Feedback& supply,
-                               const Joint& joint, std::size_t i, Take take) {
+/// Keeps its settings and measures its supply. Throws BusError where the servo does not tell, or should not start.
+template <class ServoBus>
+void check_before_start(ServoBus& bus, ServoRegisters<ServoBus>& registers, const Feedback& supply, const Joint& joint,
+                        std::size_t i, const StartCriteria& criteria, JointState& state) {
   using namespace servo_start_detail;
   std::array<std::uint8_t, 16> bytes{};
   const Buffer read = Buffer(bytes).first(supply.count());
@@ -105,11 +106,14 @@ std::uint32_t ask_before_start(ServoBus& bus, ServoRegisters<ServoBus>& register
     health = registers.read_health(i);
     return health.has_value();
   });
-  if (told) {
-    take(supply.parse(read));
-    return health->hardware_error;
+  if (!told) {
+    fail(joint, "answers too seldom to be trusted with a robot; check its cable, the power and the speed of the bus");
   }
-  fail(joint, "answers too seldom to be trusted with a robot; check its cable, the power and the speed of the bus");
+  const ServoState servo = supply.parse(read);
+  state.voltage_v = servo.voltage_v;
+  state.temperature_celsius = servo.temperature_celsius;
+  const StartState measured{state.position_rad, servo.voltage_v, servo.temperature_celsius, health->hardware_error};
+  if (const auto why = why_not_to_start(joint, measured, criteria)) fail(joint, *why);
 }
 
 /// Goals first, which send_goals() sends, then the torque, then the servos' own watchdogs. Throws BusError where a servo

@@ -140,9 +140,9 @@ class Walk {
     row.enabled = orders_.enabled;
     row.phase = phase_;
     row.ball = view_ ? std::array{view_->x, view_->y, view_->angle} : std::array{unknown, unknown, unknown};
-    row.goals = goals_;
     for (std::size_t i = 0; i < goals_.size(); ++i) {
       const dynamixel::JointState& joint = group_->states()[i];
+      row.goals[i] = group_->sent_goal(i);
       row.positions[i] = joint.fresh ? joint.position_rad : unknown;
       row.voltages[i] = joint.fresh ? joint.voltage_v : unknown;
     }

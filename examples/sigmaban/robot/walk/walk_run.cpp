@@ -75,8 +75,8 @@ dynamixel::ServoGroupOptions group_options(const WalkRun& options, const WalkLoo
                                            dynamixel::TorqueGuard* guard) {
   dynamixel::ServoGroupOptions group;
   group.soft_start_s = loop.gait.rise_s - 0.5;
-  group.listen_s = 0.7 / options.rate_hz;
-  group.care.poll_s = 0.25 / options.rate_hz;
+  group.listen_s = 0.75 / options.rate_hz;
+  group.care.poll_s = 0.2 / options.rate_hz;
   group.bus_watchdog_s = options.bus_watchdog_s;
   group.guard = guard;
   if (is_virtual) group.watchdog_s = group.care.group.line_is_dead_s = 1;  // a machine that simulates may stand still
