@@ -100,8 +100,8 @@ struct Robot {
   }
   std::size_t with_torque() { return count(&VirtualServo::torque_on); }
   std::vector<std::string> walk() const {
-    return {"surefoot-walk", "run", "--problem", "ha", "--protocol", std::to_string(Protocol::version), "--port",
-            bus.path()};
+    return {"surefoot-walk", "run",     "--problem", "ha", "--protocol", std::to_string(Protocol::version),
+            "--port",        bus.path()};
   }
 
   VirtualBus<Protocol> bus = servos();
@@ -174,7 +174,8 @@ TEST_CASE("kill -9 of a walk: its guard switches the torque off, with servos of 
     const double limp = limp_after(*robot, program, [&] { program.signal(SIGKILL); });
     CHECK(limp < 5);
     CHECK(program.wait(10) == 128 + SIGKILL);
-    CHECK(within(5, [&] { return program.output().find("switched the torque of all servos off") != std::string::npos; }));
+    CHECK(
+        within(5, [&] { return program.output().find("switched the torque of all servos off") != std::string::npos; }));
   };
   check(std::make_unique<Robot<Protocol2>>());
   check(std::make_unique<Robot<Protocol1>>());

@@ -1,5 +1,5 @@
-// Ten thousand sequences of faults by chance, in virtual time: none hangs, and none leaves torque on where nothing could
-// have switched it off.
+// Ten thousand sequences of faults by chance, in virtual time: none hangs, and none leaves torque on where nothing
+// could have switched it off.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -59,7 +59,8 @@ class RandomRun {
     answerer_.advance(bus_.port().now());
   }
 
-  /// Torque that no program could switch off: the servo cannot be reached. Those of Protocol 2.0 then stop by themselves.
+  /// Torque that no program could switch off: the servo cannot be reached. Those of Protocol 2.0 then stop by
+  /// themselves.
   bool allowed(const VirtualServo& servo) {
     const bool reachable = servo.hears(bus_.port().now()) && !bus_.port().gone();
     return !reachable && (Protocol::version == 1 || servo.watchdog_tripped());
@@ -69,7 +70,9 @@ class RandomRun {
     std::vector<Joint> made;
     for (std::uint8_t id = 1; id <= joints; ++id) made.push_back({.name = std::to_string(id), .id = id});
     ServoGroup<Line> group(bus_, model, made,
-                           {.soft_start_s = 0.2, .sitting_rad = std::vector<double>(joints, 0.3), .sit_s = 0.2,
+                           {.soft_start_s = 0.2,
+                            .sitting_rad = std::vector<double>(joints, 0.3),
+                            .sit_s = 0.2,
                             .care = {.silent_longest_s = 0.4, .restore_s = 0.1}});
     group.start();
     for (int cycle = 0; cycle < 60 && group.torque_on(); ++cycle) {

@@ -1,11 +1,12 @@
 // The conditions of a servo: every finding in every condition, and what the whole group asks for.
+#include "examples/sigmaban/robot/servos/servo_condition.hpp"
+
 #include <doctest/doctest.h>
 
 #include <array>
 #include <optional>
 
 #include "examples/sigmaban/robot/servos/servo_care.hpp"
-#include "examples/sigmaban/robot/servos/servo_condition.hpp"
 
 using namespace dynamixel;
 

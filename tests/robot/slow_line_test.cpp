@@ -19,10 +19,10 @@ struct SlowLine {
 };
 
 struct Read {
-  double per_cycle = 0;    // answers
-  double slowest_s = 0;    // cycle
-  bool health_too = false; // in each cycle
-  double voltage_v = 0;    // of the last joint
+  double per_cycle = 0;     // answers
+  double slowest_s = 0;     // cycle
+  bool health_too = false;  // in each cycle
+  double voltage_v = 0;     // of the last joint
 };
 
 /// Two seconds at 100 Hz, with an adapter and an operating system that take no time.

@@ -1,7 +1,7 @@
 // Reasons not to start.
-#include <doctest/doctest.h>
-
 #include "examples/sigmaban/robot/servos/start_check.hpp"
+
+#include <doctest/doctest.h>
 
 using namespace dynamixel;
 

@@ -1,4 +1,6 @@
 // The process that switches the torque off, with a pipe for a port.
+#include "examples/sigmaban/robot/servos/torque_guard.hpp"
+
 #include <doctest/doctest.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -9,8 +11,6 @@
 #include <optional>
 #include <string>
 #include <thread>
-
-#include "examples/sigmaban/robot/servos/torque_guard.hpp"
 
 using namespace dynamixel;
 

@@ -42,12 +42,12 @@ enum class Torque { all_on, all_off, held, some_on };
 
 /// What a walk did about a fault.
 struct SceneResult {
-  std::string reaction;     // as in the table of the README
-  double reacted_s = 0;     // after the fault [s]
-  double limp_s = 0;        // after the fault, when the torque of all was off or held [s]
-  Torque torque{};          // some time after the fault, or at the end where the walk ended
-  Torque at_the_end{};      // when the program is gone
-  std::string message;      // of what it threw
+  std::string reaction;  // as in the table of the README
+  double reacted_s = 0;  // after the fault [s]
+  double limp_s = 0;     // after the fault, when the torque of all was off or held [s]
+  Torque torque{};       // some time after the fault, or at the end where the walk ended
+  Torque at_the_end{};   // when the program is gone
+  std::string message;   // of what it threw
   WalkEnd end{};
 };
 
@@ -60,11 +60,10 @@ class WalkScene {
   using Group = dynamixel::ServoGroup<Line>;
   static constexpr const dynamixel::ServoModel& model =
       Protocol::version == 1 ? dynamixel::mx_64_protocol_1 : dynamixel::mx_64_protocol_2;
-  static constexpr double fault_at_s = 2.2;    // by then it walks [s]
-  static constexpr double watched_for_s = 4;   // then it is asked to stop [s]
+  static constexpr double fault_at_s = 2.2;   // by then it walks [s]
+  static constexpr double watched_for_s = 4;  // then it is asked to stop [s]
 
-  WalkScene()
-      : answerer(servos(), {.seed = 3}), bus(Port(answerer), {.return_delay_s = 0, .latency_s = 200e-6}) {}
+  WalkScene() : answerer(servos(), {.seed = 3}), bus(Port(answerer), {.return_delay_s = 0, .latency_s = 200e-6}) {}
 
   /// once(): when the fault comes; always(): in each tick after it. Before the start: before().
   std::function<void()> before = [] {}, once = [] {}, always = [] {};

@@ -8,8 +8,8 @@
 
 namespace dynamixel {
 
-/// Of one instruction to `servos` and the answers of all, with `count` bytes each; without the adapter and the operating
-/// system. Bytes that a bus asks for beyond those wanted, to know its answers apart, count with their mean.
+/// Of one instruction to `servos` and the answers of all, with `count` bytes each; without the adapter and the
+/// operating system. Bytes that a bus asks for beyond those wanted, to know its answers apart, count with their mean.
 template <class Protocol>
 constexpr Time reading_time(std::size_t servos, std::size_t count, double return_delay_s, std::uint32_t bits_per_s) {
   constexpr std::size_t instruction_overhead = 14, per_servo = Protocol::version == 1 ? 3 : 1, mean_more = 5;

@@ -13,12 +13,12 @@
 namespace dynamixel {
 
 struct CareOptions {
-  double poll_s = 3e-3;            // that asking one servo for its health may take in a cycle [s]
-  double silent_longest_s = 1.5;   // a servo that starts anew is back within half a second [s]
-  double restore_s = 1.0;          // of the ramp after a reset [s]
-  double fastest_rad_per_s = 20;   // twice what an MX-64 turns at 14.8 V: faster is no motion of its own
-  double jump_rad = 0.2;           // that counts as none, however short the time [rad]
-  int most_implausible = 3;        // answers in a row; one may be damage that passed the check sum
+  double poll_s = 3e-3;           // that asking one servo for its health may take in a cycle [s]
+  double silent_longest_s = 1.5;  // a servo that starts anew is back within half a second [s]
+  double restore_s = 1.0;         // of the ramp after a reset [s]
+  double fastest_rad_per_s = 20;  // twice what an MX-64 turns at 14.8 V: faster is no motion of its own
+  double jump_rad = 0.2;          // that counts as none, however short the time [rad]
+  int most_implausible = 3;       // answers in a row; one may be damage that passed the check sum
   ConditionCriteria condition{};
   GroupCriteria group{};
 };

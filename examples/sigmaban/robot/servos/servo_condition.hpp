@@ -113,15 +113,15 @@ constexpr ConditionStep after(ServoCondition servo, Finding finding, const Condi
 /// How many servos of a group are in a bad way.
 struct GroupCondition {
   int joints = 0;
-  int limp = 0;                 // restoring or failed
-  int silent = 0;               // with those that have just returned
-  double silence_lasts_s = 0;   // since that many were silent [s]
+  int limp = 0;                // restoring or failed
+  int silent = 0;              // with those that have just returned
+  double silence_lasts_s = 0;  // since that many were silent [s]
 };
 
 struct GroupCriteria {
-  double most_limp = 0.25;         // share of joints: with more, a robot falls, whatever the others do
-  double most_silent = 0.34;       // share of joints, for longer than the next: the line is broken
-  double line_is_dead_s = 0.3;     // longer than one servo takes to start [s]
+  double most_limp = 0.25;      // share of joints: with more, a robot falls, whatever the others do
+  double most_silent = 0.34;    // share of joints, for longer than the next: the line is broken
+  double line_is_dead_s = 0.3;  // longer than one servo takes to start [s]
 };
 
 /// What the whole asks for, beyond what each servo does.
@@ -129,8 +129,8 @@ constexpr Reaction group_reaction(const GroupCondition& group, const GroupCriter
   const auto more_than = [&](int count, double share) { return count > 1 && count > share * group.joints; };
   if (more_than(group.limp, criteria.most_limp)) return Reaction::let_go;
   const bool all = group.silent == group.joints;
-  const bool dead = (all || more_than(group.silent, criteria.most_silent)) &&
-                    group.silence_lasts_s > criteria.line_is_dead_s;
+  const bool dead =
+      (all || more_than(group.silent, criteria.most_silent)) && group.silence_lasts_s > criteria.line_is_dead_s;
   return dead ? Reaction::let_go : Reaction::go_on;
 }
 

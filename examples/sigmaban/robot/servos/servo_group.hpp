@@ -18,8 +18,8 @@
 #include "../bus/bus.hpp"
 #include "joint.hpp"
 #include "joint_goals.hpp"
+#include "joint_reader.hpp"
 #include "joint_states.hpp"
-#include "reading_time.hpp"
 #include "servo_group_types.hpp"
 #include "servo_keeper.hpp"
 #include "servo_registers.hpp"
@@ -39,20 +39,15 @@ class ServoGroup {
   /// Throws BusError where joints make no sense. `bus` and `model` must outlive this.
   ServoGroup(ServoBus& bus, const ServoModel& model, std::vector<Joint> joints, ServoGroupOptions options = {})
       : bus_(&bus),
-        model_(&model),
         joints_(std::move(joints)),
         options_(std::move(options)),
-        feedback_(model, options_.feedback),
+        reader_(bus, model, joints_, options_.feedback),
         supply_(model, FeedbackKind::health),
         registers_(bus, model, ids_of(joints_), options_.bus_watchdog_s),
         keeper_(registers_, joints_.size(), options_.care),
         states_(joints_),
         goals_(joints_),
         presences_(joints_.size(), Presence(bus.port().now())),
-        outcomes_(joints_.size()),
-        received_(joints_.size() * feedback_.count()),
-        heard_(received_.size()),
-        part_(joints_.size()),
         events_(joints_.size()) {
     check_joints(joints_, max_servos);
     const std::size_t sitting = options_.sitting_rad.size();
@@ -74,11 +69,12 @@ class ServoGroup {
       keeper_.begin();
       std::fill(presences_.begin(), presences_.end(), Presence(bus_->port().now()));
       states_.forget();
-      part_ = joints_.size();
+      reader_.read_all();
       registers_.write_all("bus_watchdog", 0);  // of a program that was killed: it would refuse goals
-      find_servos(*bus_, registers_, joints_, options_.find_s, [&] { listen(Time::max(), options_.find_s); },
-                  [&](std::size_t i) { return states_.heard(i); });
-      choose_feedback();
+      find_servos(
+          *bus_, registers_, joints_, options_.find_s, [&] { listen(Time::max(), options_.find_s); },
+          [&](std::size_t i) { return states_.heard(i); });
+      reader_.fit_into(from_seconds(options_.listen_s - bus_->options().latency_s));
       const StartCriteria criteria{options_.alarms, options_.most_beyond_limits_rad};
       for (std::size_t i = 0; i < joints_.size(); ++i) {
         check_before_start(*bus_, registers_, supply_, joints_[i], i, criteria, states_[i]);
@@ -89,7 +85,8 @@ class ServoGroup {
       }
       arm_guard();
       torque_on_ = true;
-      switch_torque_on(*bus_, registers_, joints_, [&] { send_goals(); }, goals_.last_ticks());
+      switch_torque_on(
+          *bus_, registers_, joints_, [&] { send_goals(); }, goals_.last_ticks());
       last_goals_ = bus_->port().now();
       events_.clear();
     });
@@ -184,10 +181,8 @@ class ServoGroup {
   /// What the joint was sent last [rad].
   double sent_goal(std::size_t joint) const { return goals_.sent(joint); }
   /// The bytes that the joint's servo answered last, from feedback().address() on.
-  Bytes received(std::size_t joint) const {
-    return Bytes(received_).subspan(joint * feedback_.count(), feedback_.count());
-  }
-  const Feedback& feedback() const { return feedback_; }
+  Bytes received(std::size_t joint) const { return reader_.received(joint); }
+  const Feedback& feedback() const { return reader_.feedback(); }
   std::span<const Joint> joints() const { return joints_; }
   bool torque_on() const { return torque_on_; }
   bool sitting() const { return sitting_since_.has_value(); }
@@ -236,22 +231,6 @@ class ServoGroup {
     events_.note(event);
   }
 
-  /// Health with the motion where a cycle has time for it, else by itself, in turn; and as many servos in a cycle as it
-  /// has time for: those asked answer to the end, whoever speaks meanwhile.
-  void choose_feedback() {
-    const Time time = from_seconds(options_.listen_s - bus_->options().latency_s);
-    const auto fits = [&](std::size_t servos) {
-      return reading_time<typename ServoBus::Wire>(servos, feedback_.count(), bus_->options().return_delay_s,
-                                                   bus_->port().bits_per_s()) <= time;
-    };
-    part_ = joints_.size();
-    if (fits(part_)) return;
-    options_.feedback = FeedbackKind::motion;
-    feedback_ = Feedback(*model_, options_.feedback);
-    received_.resize(joints_.size() * feedback_.count());
-    while (part_ > 1 && !fits(part_)) --part_;
-  }
-
   void arm_guard() {
     if (options_.guard == nullptr) return;
     std::array<std::uint8_t, 512> packet;
@@ -274,13 +253,13 @@ class ServoGroup {
   }
 
   std::size_t listen(Time latest, double at_most_s) {
-    const std::size_t answered = read_part(std::min(latest, bus_->port().now() + from_seconds(at_most_s)));
+    const std::size_t answered = reader_.read(std::min(latest, bus_->port().now() + from_seconds(at_most_s)));
     const Time now = bus_->port().now();
     for (std::size_t i = 0; i < joints_.size(); ++i) {
-      const bool came = outcomes_[i] == Outcome::answered;
+      const bool came = reader_.outcome(i) == Outcome::answered;
       states_[i].fresh = came && take_answer(i, now);
       const PresenceChange change =
-          presences_[i].update(outcomes_[i] != Outcome::skipped, came, now, options_.presence);
+          presences_[i].update(reader_.outcome(i) != Outcome::skipped, came, now, options_.presence);
       states_[i].silent = presences_[i].silent();
       if (change == PresenceChange::silent) {
         note({ServoEventKind::silent, i});
@@ -294,40 +273,20 @@ class ServoGroup {
     return answered;
   }
 
-  /// Those whose turn it is, which are all where a cycle has time for all.
-  std::size_t read_part(Time deadline) {
-    const std::size_t count = feedback_.count();
-    std::array<std::uint8_t, max_servos> ids{};
-    std::array<Outcome, max_servos> outcomes{};
-    const auto joint_of = [&](std::size_t k) { return (turn_ + k) % joints_.size(); };
-    for (std::size_t k = 0; k < part_; ++k) ids[k] = joints_[joint_of(k)].id;
-    const std::size_t answered = bus_->sync_read(feedback_.address(), feedback_.count(), Bytes(ids).first(part_),
-                                                 Buffer(heard_).first(part_ * count),
-                                                 std::span(outcomes).first(part_), deadline);
-    std::fill(outcomes_.begin(), outcomes_.end(), Outcome::skipped);
-    for (std::size_t k = 0; k < part_; ++k) {
-      outcomes_[joint_of(k)] = outcomes[k];
-      const Bytes bytes = Bytes(heard_).subspan(k * count, count);
-      if (outcomes[k] != Outcome::answered) continue;
-      std::copy(bytes.begin(), bytes.end(), received_.begin() + static_cast<std::ptrdiff_t>(joint_of(k) * count));
-    }
-    turn_ = joint_of(part_);
-    return answered;
-  }
-
   /// False where it cannot be true.
   bool take_answer(std::size_t i, Time now) {
-    const ServoState servo = feedback_.parse(received(i));
+    const ServoState servo = reader_.feedback().parse(received(i));
     const Plausibility plausibility = states_.take_motion(i, servo, now, options_.care, torque_on_);
     if (plausibility == Plausibility::implausible) find(i, Finding::implausible);
     if (plausibility != Plausibility::taken) return false;
-    if (options_.feedback == FeedbackKind::motion_and_health) take_supply(i, servo);
+    if (reader_.kind() == FeedbackKind::motion_and_health) take_supply(i, servo);
     return true;
   }
 
   void take_supply(std::size_t i, const ServoState& servo) {
-    states_.take_supply(i, servo, options_.alarms, bus_->statistics(joints_[i].id),
-                        [&](ServoEventKind kind) { note({kind, i}); });
+    states_.take_supply(i, servo, options_.alarms, bus_->statistics(joints_[i].id), [&](ServoEventKind kind) {
+      note({kind, i});
+    });
   }
 
   /// Asks one servo how it is, and does what its answer and the others' silence ask for.
@@ -342,7 +301,7 @@ class ServoGroup {
       if (long_silent && care.condition(i) == Condition::silent) find(i, Finding::silent_for_long);
     }
     if (const auto i = care.next_to_ask(alert)) {
-      if (options_.feedback == FeedbackKind::motion && ++supply_turn_ % 3 == 0) {
+      if (reader_.kind() == FeedbackKind::motion && ++supply_turn_ % 3 == 0) {
         ask_for_supply(*i, deadline);
       } else if (const auto finding = keeper_.ask(*i, deadline)) {
         find(*i, *finding);
@@ -365,18 +324,15 @@ class ServoGroup {
   }
 
   ServoBus* bus_;
-  const ServoModel* model_;
   std::vector<Joint> joints_;
   ServoGroupOptions options_;
-  Feedback feedback_, supply_;
+  JointReader<ServoBus> reader_;
+  Feedback supply_;
   ServoRegisters<ServoBus> registers_;
   ServoKeeper<ServoBus> keeper_;
   JointStates states_;
   JointGoals goals_;
   std::vector<Presence> presences_;
-  std::vector<Outcome> outcomes_;
-  std::vector<std::uint8_t> received_, heard_;  // of all; of those asked, in their order
-  std::size_t part_ = 0, turn_ = 0;             // how many are asked in a cycle, and who is the first
   ServoEvents events_;
   bool torque_on_ = false;
   bool limp_ = false;  // let go while updates go on

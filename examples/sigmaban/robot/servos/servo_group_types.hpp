@@ -20,14 +20,14 @@ class TorqueGuard;
 enum class BeyondLimits : std::uint8_t { clamp, refuse };
 
 struct ServoGroupOptions {
-  double soft_start_s = 2.0;       // from the measured to the wanted angles [s]
-  double watchdog_s = 0.25;        // without goals, after which the torque goes off [s]
-  double bus_watchdog_s = 0.5;     // without any instruction, after which servos of Protocol 2.0 stop; 0: never [s]
-  double listen_s = 0.008;         // that reading all joints may take at most in a cycle [s]
-  double find_s = 0.5;             // that each servo has to be heard for the first time [s]
+  double soft_start_s = 2.0;          // from the measured to the wanted angles [s]
+  double watchdog_s = 0.25;           // without goals, after which the torque goes off [s]
+  double bus_watchdog_s = 0.5;        // without any instruction, after which servos of Protocol 2.0 stop; 0: never [s]
+  double listen_s = 0.008;            // that reading all joints may take at most in a cycle [s]
+  double find_s = 0.5;                // that each servo has to be heard for the first time [s]
   std::vector<double> sitting_rad{};  // of the joints, from where the torque may go off; none: it does so from anywhere
-  double sit_s = 1.2;               // for the way there [s]
-  BeyondLimits beyond_limits = BeyondLimits::clamp;  // refuse: the joint keeps its goal
+  double sit_s = 1.2;                 // for the way there [s]
+  BeyondLimits beyond_limits = BeyondLimits::clamp;         // refuse: the joint keeps its goal
   FeedbackKind feedback = FeedbackKind::motion_and_health;  // of each cycle; motion alone where that takes too long
   PresenceOptions presence{};
   AlarmOptions alarms{};

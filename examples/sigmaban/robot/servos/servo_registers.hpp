@@ -74,7 +74,8 @@ class ServoRegisters {
   void restore_settings(std::size_t servo) {
     std::size_t done = 0;
     for (const SettingsBlock& block : settings_of(*model_)) {
-      bus_->sync_write(block.address, Bytes(ids_).subspan(servo, 1), Bytes(settings_[servo]).subspan(done, block.count));
+      bus_->sync_write(block.address, Bytes(ids_).subspan(servo, 1),
+                       Bytes(settings_[servo]).subspan(done, block.count));
       done += block.count;
     }
   }
@@ -86,8 +87,7 @@ class ServoRegisters {
     const Reply reply = bus_->read(ids_[servo], health_.address(), read, deadline);
     if (!reply) return std::nullopt;
     return HealthAnswer{health_.finding(read, reply.error_bits, settings_[servo], watchdog_),
-                        health_.watchdog_tripped(read),
-                        health_.hardware_error(read, reply.error_bits)};
+                        health_.watchdog_tripped(read), health_.hardware_error(read, reply.error_bits)};
   }
 
   /// Torque off and bus watchdog off, told three times.

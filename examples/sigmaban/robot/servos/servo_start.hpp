@@ -48,7 +48,8 @@ std::string why_not_heard(ServoBus& bus, std::uint8_t id) {
     return "answers a ping but no question; its Status Return Level is 0, set it to 2";
   }
   bus.set_patience(largest_delay_s, long_patience_s);
-  const Time asked = bus.port().now();
+  static_cast<void>(bus.ping(id));                                      // until all that is under way has come
+  const Time asked = bus.port().now() + from_seconds(long_patience_s);  // a ping waits for as long a silence before
   const Reply reply = bus.ping(id);
   if (reply) {
     return "answers after " + std::to_string((bus.port().now() - asked).count() / 1'000'000) +
@@ -116,8 +117,8 @@ void check_before_start(ServoBus& bus, ServoRegisters<ServoBus>& registers, cons
   if (const auto why = why_not_to_start(joint, measured, criteria)) fail(joint, *why);
 }
 
-/// Goals first, which send_goals() sends, then the torque, then the servos' own watchdogs. Throws BusError where a servo
-/// does not take one of them.
+/// Goals first, which send_goals() sends, then the torque, then the servos' own watchdogs. Throws BusError where a
+/// servo does not take one of them.
 template <class ServoBus, class SendGoals>
 void switch_torque_on(const ServoBus& bus, ServoRegisters<ServoBus>& registers, const std::vector<Joint>& joints,
                       SendGoals send_goals, const std::vector<std::uint32_t>& goals) {

@@ -10,12 +10,12 @@
 namespace dynamixel {
 
 struct TorqueGuardOptions {
-  double longest_silence_s = 0.25;  // between beats, while armed [s]
+  double longest_silence_s = 0.25;    // between beats, while armed [s]
   const char* name = "torque guard";  // before what it says on standard error
 };
 
-/// Forks. The child has the port's descriptor and a pipe, lets nothing else of the parent live on, takes no signals, and
-/// is in a session of its own, so that what ends or stops its parent does not reach it (kill -9 of the whole cgroup
+/// Forks. The child has the port's descriptor and a pipe, lets nothing else of the parent live on, takes no signals,
+/// and is in a session of its own, so that what ends or stops its parent does not reach it (kill -9 of the whole cgroup
 /// does, and so does the end of the computer). It needs no answers and knows no protocol: it sends the bytes it was
 /// given. Time in which the machine itself stood still counts as one look.
 class TorqueGuard {

@@ -24,11 +24,11 @@ template <class Protocol>
 class Answerer {
  public:
   explicit Answerer(std::vector<VirtualServo> servos, AnswererOptions options = {})
-      : servos_(std::move(servos)), options_(options), rng_(options.seed), per_servo_(servos_.size()) {
-  }
+      : servos_(std::move(servos)), options_(options), rng_(options.seed), per_servo_(servos_.size()) {}
 
   std::uint32_t bits_per_s() const { return options_.bits_per_s; }
   Faults& faults() { return options_.faults; }
+  void set_latency_timer(double seconds) { options_.latency_timer_s = seconds; }
   const FaultCounts& counts() const { return counts_; }
   const FaultCounts& counts(std::uint8_t id) const { return per_servo_[place(id)].counts; }
   std::uint64_t instructions() const { return instructions_; }
@@ -180,7 +180,8 @@ class Answerer {
     if (!address || !count || *count == 0) return;
     for (; rest.size() > *count; rest = rest.subspan(1 + *count)) {
       const auto at = find(rest[0]);
-      if (at && servos_[*at].hears(line_free_)) static_cast<void>(servos_[*at].write(*address, rest.subspan(1, *count)));
+      if (at && servos_[*at].hears(line_free_))
+        static_cast<void>(servos_[*at].write(*address, rest.subspan(1, *count)));
     }
   }
 
@@ -286,7 +287,7 @@ class Answerer {
     outgoing_.add(packet);
   }
 
-  void count(PerServo& its, std::uint64_t FaultCounts::* which) {
+  void count(PerServo& its, std::uint64_t FaultCounts::*which) {
     ++(counts_.*which);
     ++(its.counts.*which);
   }

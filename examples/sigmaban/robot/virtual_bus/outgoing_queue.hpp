@@ -45,9 +45,8 @@ class OutgoingQueue {
  private:
   /// The first of those due first.
   std::size_t next() const {
-    const auto first =
-        std::min_element(packets_.begin(), packets_.end(),
-                         [](const OutgoingPacket& a, const OutgoingPacket& b) { return a.due < b.due; });
+    const auto first = std::min_element(packets_.begin(), packets_.end(),
+                                        [](const OutgoingPacket& a, const OutgoingPacket& b) { return a.due < b.due; });
     return static_cast<std::size_t>(first - packets_.begin());
   }
 

@@ -58,8 +58,8 @@ class VirtualServo {
   double load_inertia = 0;  // of what hangs on it [kg m^2]
   bool deaf = false;        // its cable is cut: it hears nothing and says nothing
 
-  static constexpr double starts_within_s = 0.3;   // after a reboot, until it hears and answers [s]
-  static constexpr double least_supply_v = 6.5;    // below it the servo's own computer stops [V]
+  static constexpr double starts_within_s = 0.3;  // after a reboot, until it hears and answers [s]
+  static constexpr double least_supply_v = 6.5;   // below it the servo's own computer stops [V]
 
   /// As after a moment without power: no torque, no errors, registers of the RAM as new, silent until it has started.
   void reboot(Time now) {
@@ -93,14 +93,14 @@ class VirtualServo {
     if (voltage_v < least_supply_v) reboot(now);
     if (overheated()) set(known_.torque_enable, 0);
     look_at_watchdog(now);
-    const MotorInputs inputs{
-        torque_on(),
-        goal_rad(),
-        p_gain(),
-        voltage_v,
-        load_nm,
-        load_inertia,
-        value(model_->protocol == 1 ? known_.torque_limit : known_.pwm_limit) / (model_->protocol == 1 ? 1023.0 : 885.0)};
+    const MotorInputs inputs{torque_on(),
+                             goal_rad(),
+                             p_gain(),
+                             voltage_v,
+                             load_nm,
+                             load_inertia,
+                             value(model_->protocol == 1 ? known_.torque_limit : known_.pwm_limit) /
+                                 (model_->protocol == 1 ? 1023.0 : 885.0)};
     for (; now - moved_to_ >= step_time; moved_to_ += step_time) state_ = step(motor_, state_, inputs, 1e-3);
     show();
   }
@@ -171,9 +171,7 @@ class VirtualServo {
 
   double return_delay() const { return value(known_.return_delay_time) * return_delay_s; }  // [s]
   /// Without effect where the model has no such register.
-  void set(std::string_view name, std::int64_t bits) {
-    set(model_->find(name), bits);
-  }
+  void set(std::string_view name, std::int64_t bits) { set(model_->find(name), bits); }
 
  private:
   using Table = std::array<std::uint8_t, 768>;

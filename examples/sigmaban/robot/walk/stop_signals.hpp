@@ -21,9 +21,9 @@ struct StopDeadlines {
   double at_once_s = 0.5;   // after the second [s]
 };
 
-/// While it lives: Ctrl-C, Ctrl-Z, Ctrl-\, a lost terminal, an ended session, timers and limits of the system. A program
-/// that has not stopped by its deadline ends with code 130 (an armed TorqueGuard then switches the torque off). A lost
-/// reader of what is printed, and files that become too long, are no signals any more but errors of writing.
+/// While it lives: Ctrl-C, Ctrl-Z, Ctrl-\, a lost terminal, an ended session, timers and limits of the system. A
+/// program that has not stopped by its deadline ends with code 130 (an armed TorqueGuard then switches the torque off).
+/// A lost reader of what is printed, and files that become too long, are no signals any more but errors of writing.
 /// Build it before any other thread: the signals are blocked in this thread and in those that it starts.
 class StopSignals {
  public:
@@ -68,8 +68,8 @@ class StopSignals {
       const bool first = request_ == StopRequest::none;
       request_ = first ? StopRequest::in_order : StopRequest::at_once;
       const double seconds = first ? deadlines_.in_order_s : deadlines_.at_once_s;
-      deadline = std::min(deadline, Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                                       std::chrono::duration<double>(seconds)));
+      deadline = std::min(
+          deadline, Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)));
     }
   }
 

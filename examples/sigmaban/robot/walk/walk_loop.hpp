@@ -45,9 +45,7 @@ constexpr std::string_view in_words(WalkEnd end) {
 }
 
 /// May the robot go on standing with its torque on?
-constexpr bool ended_well(WalkEnd end) {
-  return end == WalkEnd::time || end == WalkEnd::kick || end == WalkEnd::lost;
-}
+constexpr bool ended_well(WalkEnd end) { return end == WalkEnd::time || end == WalkEnd::kick || end == WalkEnd::lost; }
 
 /// Something that happened to a servo, or to all (no joint).
 struct WalkEvent {
@@ -220,7 +218,7 @@ void run_walk(const Problem& problem, const Policy& policy, Ball& ball, Engine e
     walk.obey(stop());
     walk.think(dt);
     const Time thought = group.now();
-    walk.act(to_seconds(start - begin));
+    walk.act(to_seconds(thought - begin));
     log.add(walk.row(to_seconds(start - begin), to_seconds(start - due)));
 
     const Time over = group.now();

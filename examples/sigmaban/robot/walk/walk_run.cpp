@@ -14,8 +14,8 @@
 #include "../bus/realtime.hpp"
 #include "../bus/serial_port.hpp"
 #include "../policy_option.hpp"
-#include "../virtual_bus/virtual_bus.hpp"
 #include "../servos/torque_guard.hpp"
+#include "../virtual_bus/virtual_bus.hpp"
 #include "joints_file.hpp"
 #include "sitting_pose.hpp"
 #include "stop_signals.hpp"
@@ -55,7 +55,9 @@ void print(const WalkReport& report, Bus& bus, const std::vector<dynamixel::Join
     const bool of_all = is_of_all(event.what.kind);
     const bool watchdog = event.what.kind == dynamixel::ServoEventKind::watchdog;
     std::printf("%8.2f s  %s %s\n", event.time,
-                watchdog ? "the watchdog" : of_all ? "the robot" : joints[event.what.joint].name.c_str(),
+                watchdog ? "the watchdog"
+                : of_all ? "the robot"
+                         : joints[event.what.joint].name.c_str(),
                 std::string(in_words(event.what.kind)).c_str());
   }
   if (log.lost() > 0) std::printf("%llu rows of the log were lost\n", static_cast<unsigned long long>(log.lost()));
@@ -117,8 +119,7 @@ void walk(const Problem& problem, const Policy& policy, Ball& ball, const WalkRu
   loop.gait.slowing = problem.constants.max_acceleration;
   std::optional<TorqueGuard> guard;  // virtual servos end with this program
   if (!line) guard.emplace(bus.port().port().file(), TorqueGuardOptions{.name = "surefoot-walk: torque guard"});
-  ServoGroup<Line> group(bus, model, joints,
-                         group_options(options, loop, line.has_value(), guard ? &*guard : nullptr));
+  ServoGroup<Line> group(bus, model, joints, group_options(options, loop, line.has_value(), guard ? &*guard : nullptr));
   const auto report = std::make_unique<WalkReport>();
   std::printf("%zu servos on %s, %g Hz, %s; Ctrl-C stops the walk, twice lets go\n", joints.size(),
               line ? ("virtual bus " + line->path()).c_str() : options.port.c_str(), options.rate_hz,
