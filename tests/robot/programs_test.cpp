@@ -14,8 +14,12 @@
 #include <utility>
 #include <vector>
 
+#include "examples/sigmaban/robot/bus/background_port.hpp"
 #include "examples/sigmaban/robot/bus/realtime.hpp"
+#include "examples/sigmaban/robot/bus/serial_port.hpp"
+#include "examples/sigmaban/robot/servos/servo_group.hpp"
 #include "examples/sigmaban/robot/virtual_bus/virtual_bus.hpp"
+#include "tests/robot/fault_table.hpp"
 #include "tests/support/program.hpp"
 
 using namespace dynamixel;
@@ -190,6 +194,36 @@ TEST_CASE("a frozen walk: its guard switches the torque off, and it ends when it
   program.signal(SIGCONT);
   CHECK(program.wait(10) == 2);
   CHECK(robot.with_torque() == 0);
+}
+
+TEST_CASE("a loop that hangs in a living process: the guard switches the torque off, and the loop is told") {
+  Robot<Protocol2> robot;
+  using Line = Bus<Protocol2, BackgroundPort<SerialPort>>;
+  Line bus(BackgroundPort(SerialPort(robot.bus.path(), 3'000'000)), {.return_delay_s = 0, .latency_s = 0.02});
+  TorqueGuard guard(bus.port().port().file(), {.longest_silence_s = 0.2, .name = "guard under test"});
+  std::vector<Joint> joints;
+  for (std::uint8_t id = 1; id <= 12; ++id) joints.push_back({.name = std::to_string(id), .id = id});
+  ServoGroup<Line> group(bus, Robot<Protocol2>::model, joints, {.watchdog_s = 100, .listen_s = 0.1, .guard = &guard});
+  group.start();
+  CHECK(robot.with_torque() == 12);
+  CHECK(within(10, [&] { return robot.with_torque() == 0; }));  // nobody calls update()
+  CHECK(guard.fired());
+  CHECK(group.torque_on());
+  static_cast<void>(group.update());
+  CHECK_FALSE(group.torque_on());
+  REQUIRE_FALSE(group.events().empty());
+  CHECK(group.events().front().kind == ServoEventKind::watchdog);
+}
+
+TEST_CASE("the table of faults says the same of killed and frozen programs") {
+  int rows = 0;
+  for (const auto& row : sigmaban::read_fault_table(SUREFOOT_SOURCE_DIR "/examples/sigmaban/robot/README.md")) {
+    if (row.fault.find("kill -9") == std::string::npos) continue;
+    ++rows;
+    CHECK(row.reaction == "lets go");
+    CHECK(row.torque == "off");
+  }
+  CHECK(rows == 2);
 }
 
 TEST_CASE("kill -9 of walk and guard: servos with a bus watchdog stop by themselves") {

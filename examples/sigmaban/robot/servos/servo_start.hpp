@@ -41,12 +41,10 @@ bool keep_trying(const ServoBus& bus, double at_least_s, Work work) {
   return false;
 }
 
-/// Why a servo was not heard.
+/// Why a servo was not heard; `if_it_is` where it answers a ping.
 template <class ServoBus>
-std::string why_not_heard(ServoBus& bus, std::uint8_t id) {
-  if (bus.ping(id)) {
-    return "answers a ping but no question; its Status Return Level is 0, set it to 2";
-  }
+std::string why_not_heard(ServoBus& bus, std::uint8_t id, const char* if_it_is) {
+  if (bus.ping(id)) return if_it_is;
   bus.set_patience(largest_delay_s, long_patience_s);
   static_cast<void>(bus.ping(id));                                      // until all that is under way has come
   const Time asked = bus.port().now() + from_seconds(long_patience_s);  // a ping waits for as long a silence before
@@ -82,7 +80,8 @@ void find_servos(ServoBus& bus, ServoRegisters<ServoBus>& registers, const std::
   });
   if (!found) {
     const Joint& joint = joints[missing()];
-    const std::string why = why_not_heard(bus, joint.id);
+    const std::string why =
+        why_not_heard(bus, joint.id, "answers a ping but no question; its Status Return Level is 0, set it to 2");
     bus.set_patience(before.return_delay_s, before.latency_s);
     fail(joint, why);
   }
@@ -108,7 +107,9 @@ void check_before_start(ServoBus& bus, ServoRegisters<ServoBus>& registers, cons
     return health.has_value();
   });
   if (!told) {
-    fail(joint, "answers too seldom to be trusted with a robot; check its cable, the power and the speed of the bus");
+    fail(joint, why_not_heard(bus, joint.id,
+                              "answers too seldom to be trusted with a robot; check its cable, the power and the speed "
+                              "of the bus"));
   }
   const ServoState servo = supply.parse(read);
   state.voltage_v = servo.voltage_v;
