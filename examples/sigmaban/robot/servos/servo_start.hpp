@@ -149,7 +149,7 @@ void switch_torque_on(const ServoBus& bus, ServoRegisters<ServoBus>& registers, 
   if (!registers.has_watchdog()) return;
   until_all([&](std::size_t i) { registers.write_one(i, "bus_watchdog", registers.watchdog()); },
             [&](std::size_t i) { return registers.read(i, "bus_watchdog") == registers.watchdog(); },
-            "does not take its Bus Watchdog; it needs newer firmware, or none is wanted");
+            "does not take its Bus Watchdog; update its firmware, or go without (surefoot-walk --bus-watchdog 0)");
 }
 
 }  // namespace dynamixel
