@@ -14,8 +14,9 @@ namespace {
 
 constexpr std::uint16_t torque_enable = 64, hardware_error = 70, p_gain = 84, bus_watchdog = 98, goal_position = 116;
 
-struct Line {
-  explicit Line(AnswererOptions options = {}) : answerer(two(), options), bus(MemoryTransport<Protocol2>(answerer)) {}
+struct FaultyLine {
+  explicit FaultyLine(AnswererOptions options = {})
+      : answerer(two(), options), bus(MemoryTransport<Protocol2>(answerer)) {}
 
   static std::vector<VirtualServo> two() { return {{mx_64_protocol_2, 1, 0.5}, {mx_64_protocol_2, 2}}; }
 
@@ -40,7 +41,7 @@ struct Line {
 }  // namespace
 
 TEST_CASE("a servo that starts anew is silent for a while, limp, and has forgotten its gains") {
-  Line line;
+  FaultyLine line;
   line.wait(0.1);
   CHECK(line.write(p_gain, {100, 0}));
   CHECK(line.write(torque_enable, {1}));
@@ -53,7 +54,7 @@ TEST_CASE("a servo that starts anew is silent for a while, limp, and has forgott
 }
 
 TEST_CASE("the instruction to reboot does the same") {
-  Line line;
+  FaultyLine line;
   line.wait(0.1);
   CHECK(line.write(torque_enable, {1}));
   std::array<std::uint8_t, 16> packet{};
@@ -63,7 +64,7 @@ TEST_CASE("the instruction to reboot does the same") {
 }
 
 TEST_CASE("a servo that shut itself down says why and takes no torque until it has started anew") {
-  Line line;
+  FaultyLine line;
   line.wait(0.1);
   CHECK(line.write(torque_enable, {1}));
   line.answerer.servo(1).shut_down(protocol2::overload_error);
@@ -78,7 +79,7 @@ TEST_CASE("a servo that shut itself down says why and takes no torque until it h
 }
 
 TEST_CASE("a bus watchdog trips without instructions, stops the servo where it is, and is cleared by 0") {
-  Line line;
+  FaultyLine line;
   line.wait(0.1);
   CHECK(line.write(torque_enable, {1}));
   CHECK(line.write(bus_watchdog, {5}));  // 100 ms
@@ -94,7 +95,7 @@ TEST_CASE("a bus watchdog trips without instructions, stops the servo where it i
 }
 
 TEST_CASE("a bus watchdog does nothing while the torque is off") {
-  Line line;
+  FaultyLine line;
   line.wait(0.1);
   CHECK(line.write(bus_watchdog, {5}));
   line.wait(0.5);
@@ -102,7 +103,7 @@ TEST_CASE("a bus watchdog does nothing while the torque is off") {
 }
 
 TEST_CASE("a supply that breaks down resets all servos, one that sags is told") {
-  Line line;
+  FaultyLine line;
   line.wait(0.1);
   CHECK(line.write(torque_enable, {1}));
   line.answerer.set_voltage(9);
@@ -118,7 +119,7 @@ TEST_CASE("a supply that breaks down resets all servos, one that sags is told") 
 }
 
 TEST_CASE("a Status Return Level of 1 answers questions, one of 0 only pings") {
-  Line line;
+  FaultyLine line;
   line.answerer.servo(1).set("status_return_level", 1);
   CHECK(line.byte(torque_enable) == 0);
   CHECK_FALSE(line.write(torque_enable, {1}));  // no answer, but done
@@ -129,14 +130,14 @@ TEST_CASE("a Status Return Level of 1 answers questions, one of 0 only pings") {
 }
 
 TEST_CASE("an adapter's latency timer hands answers over late, all at once") {
-  Line line({.latency_timer_s = 0.016});
+  FaultyLine line({.latency_timer_s = 0.016});
   line.bus.set_patience(0, 0.05);
   CHECK(line.bus.ping(1));
   CHECK(line.bus.port().now() % std::chrono::milliseconds(16) == Time::zero());
 }
 
 TEST_CASE("a servo whose cable is cut hears nothing, and swapped ids move the other joint") {
-  Line line;
+  FaultyLine line;
   line.answerer.servo(2).deaf = true;
   CHECK_FALSE(line.bus.ping(2));
   line.answerer.servo(2).deaf = false;
@@ -148,13 +149,13 @@ TEST_CASE("a servo whose cable is cut hears nothing, and swapped ids move the ot
 }
 
 TEST_CASE("instructions that are not heard have no effect") {
-  Line line({.faults = {.unheard = 1}});
+  FaultyLine line({.faults = {.unheard = 1}});
   CHECK_FALSE(line.bus.ping(1));
   CHECK(line.answerer.instructions() > 0);
 }
 
 TEST_CASE("a port that is gone says so, to whoever reads or writes") {
-  Line line;
+  FaultyLine line;
   line.bus.port().hang_up();
   CHECK_THROWS_AS(static_cast<void>(line.bus.ping(1)), BusError);
 }

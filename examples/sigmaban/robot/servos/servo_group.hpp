@@ -24,7 +24,7 @@
 #include "servo_keeper.hpp"
 #include "servo_registers.hpp"
 #include "servo_start.hpp"
-#include "torque_guard.hpp"
+#include "torque_switch.hpp"
 
 namespace dynamixel {
 
@@ -44,6 +44,7 @@ class ServoGroup {
         reader_(bus, model, joints_, options_.feedback),
         supply_(model, FeedbackKind::health),
         registers_(bus, model, ids_of(joints_), options_.bus_watchdog_s),
+        torque_(bus, registers_, options_.guard),
         keeper_(registers_, joints_.size(), options_.care),
         states_(joints_),
         goals_(joints_),
@@ -55,7 +56,7 @@ class ServoGroup {
   }
 
   ~ServoGroup() {
-    if (torque_on_) stop();
+    if (torque_on()) stop();
   }
   ServoGroup(const ServoGroup&) = delete;
   ServoGroup& operator=(const ServoGroup&) = delete;
@@ -83,8 +84,7 @@ class ServoGroup {
         goals_.hold(i, states_[i].position_rad);
         goals_.begin_softly(i, states_[i].position_rad, bus_->port().now(), options_.soft_start_s);
       }
-      arm_guard();
-      torque_on_ = true;
+      torque_.on();
       switch_torque_on(
           *bus_, registers_, joints_, [&] { send_goals(); }, goals_.last_ticks());
       last_goals_ = bus_->port().now();
@@ -94,28 +94,12 @@ class ServoGroup {
 
   /// Torque off, told three times, and again to those who say that theirs is on. Throws nothing.
   void stop() noexcept {
-    torque_on_ = false;
     sitting_since_.reset();
-    try {
-      registers_.torque_off();
-      stopped_ = true;
-      unconfirmed_ = registers_.confirm_torque_off(bus_->port().now() + from_seconds(confirm_s));
-      if (options_.guard != nullptr) options_.guard->disarm();
-    } catch (...) {
-      stopped_ = false;  // the port is gone, and with it all that can be done here; an armed guard tries once more
-      unconfirmed_ = joints_.size();
-    }
+    torque_.off();
   }
 
   /// Leaves the torque as it is, for good: nothing switches it off any more, neither here nor in the servos.
-  void keep_torque() noexcept {
-    torque_on_ = false;
-    try {
-      for (int i = 0; i < 3; ++i) registers_.write_all("bus_watchdog", 0);
-    } catch (...) {  // the port is gone
-    }
-    if (options_.guard != nullptr) options_.guard->disarm();
-  }
+  void keep_torque() noexcept { torque_.leave(); }
 
   /// Angles of the joints in their order [rad]. False if there are not as many, or one is not finite: then none counts.
   bool set_goals(std::span<const double> goals_rad) {
@@ -136,7 +120,7 @@ class ServoGroup {
   /// From the present goals to sitting_rad, then torque off; goals do not count from now on. At once where there is no
   /// sitting_rad.
   void sit_down() {
-    if (!torque_on_ || sitting_since_) return;
+    if (!torque_on() || sitting_since_) return;
     if (options_.sitting_rad.empty()) return let_go();
     sitting_since_ = bus_->port().now();
     for (std::size_t i = 0; i < joints_.size(); ++i) {
@@ -148,7 +132,7 @@ class ServoGroup {
 
   /// Torque off now.
   void let_go() {
-    if (!torque_on_) return;
+    if (!torque_on()) return;
     stop();
     note({ServoEventKind::let_go, 0});
   }
@@ -160,16 +144,16 @@ class ServoGroup {
     guarded([&] {
       events_.begin_cycle();
       const Time now = bus_->port().now();
-      if (torque_on_) look_at_watchdogs();
+      if (torque_on()) look_at_watchdogs();
       if (sitting_since_ && now - *sitting_since_ > from_seconds(options_.sit_s + settle_s)) let_go();
-      if (torque_on_) {
+      if (torque_on()) {
         send_goals();
         keeper_.send_torque();
       } else if (limp_) {
         registers_.write_all("torque_enable", 0);  // for those who did not hear it
       }
       answered = listen(deadline, options_.listen_s);
-      if (torque_on_) take_care(std::min(deadline, now + from_seconds(options_.listen_s + options_.care.poll_s)));
+      if (torque_on()) take_care(std::min(deadline, now + from_seconds(options_.listen_s + options_.care.poll_s)));
       events_.end_cycle();
     });
     return answered;
@@ -184,16 +168,16 @@ class ServoGroup {
   Bytes received(std::size_t joint) const { return reader_.received(joint); }
   const Feedback& feedback() const { return reader_.feedback(); }
   std::span<const Joint> joints() const { return joints_; }
-  bool torque_on() const { return torque_on_; }
+  bool torque_on() const { return torque_.is_on(); }
   bool sitting() const { return sitting_since_.has_value(); }
   /// Why it sat down or let go by itself; none where it did not.
   const std::optional<ServoFault>& fault() const { return keeper_.care().fault(); }
   Reaction reaction() const { return keeper_.care().reaction(); }
   Condition condition(std::size_t joint) const { return keeper_.care().condition(joint); }
   /// Could the last stop() be sent?
-  bool stopped() const { return stopped_; }
+  bool stopped() const { return torque_.sent(); }
   /// Servos that did not say after the last stop() that their torque is off.
-  std::size_t unconfirmed() const { return unconfirmed_; }
+  std::size_t unconfirmed() const { return torque_.unconfirmed(); }
   std::uint64_t refused_goals() const { return refused_goals_; }  // calls of set_goals() that returned false
 
   Time now() const { return bus_->port().now(); }
@@ -207,8 +191,7 @@ class ServoGroup {
   }
 
  private:
-  static constexpr double confirm_s = 0.1;  // for asking all whether their torque is off, at most [s]
-  static constexpr double settle_s = 0.1;   // that servos are behind their goals, about [s]
+  static constexpr double settle_s = 0.1;  // that servos are behind their goals, about [s]
 
   static std::vector<std::uint8_t> ids_of(const std::vector<Joint>& joints) {
     std::vector<std::uint8_t> ids;
@@ -231,25 +214,18 @@ class ServoGroup {
     events_.note(event);
   }
 
-  void arm_guard() {
-    if (options_.guard == nullptr) return;
-    std::array<std::uint8_t, 512> packet;
-    options_.guard->arm(registers_.torque_off_packet(packet));
-  }
-
   bool goals_are_late() const {
-    return torque_on_ && bus_->port().now() - last_goals_ > from_seconds(options_.watchdog_s);
+    return torque_on() && bus_->port().now() - last_goals_ > from_seconds(options_.watchdog_s);
   }
   void look_at_watchdogs() {
-    const bool guard_fired = options_.guard != nullptr && options_.guard->fired();
-    if (!guard_fired && !goals_are_late()) return;
+    if (!torque_.guard_fired() && !goals_are_late()) return;
     stop();
     note({ServoEventKind::watchdog, 0});
   }
 
   void send_goals() {
     registers_.write_each("goal_position", goals_.ticks(bus_->port().now()));
-    if (options_.guard != nullptr) options_.guard->beat();
+    torque_.beat();
   }
 
   std::size_t listen(Time latest, double at_most_s) {
@@ -276,7 +252,7 @@ class ServoGroup {
   /// False where it cannot be true.
   bool take_answer(std::size_t i, Time now) {
     const ServoState servo = reader_.feedback().parse(received(i));
-    const Plausibility plausibility = states_.take_motion(i, servo, now, options_.care, torque_on_);
+    const Plausibility plausibility = states_.take_motion(i, servo, now, options_.care, torque_on());
     if (plausibility == Plausibility::implausible) find(i, Finding::implausible);
     if (plausibility != Plausibility::taken) return false;
     if (reader_.kind() == FeedbackKind::motion_and_health) take_supply(i, servo);
@@ -296,7 +272,7 @@ class ServoGroup {
       return care.condition(i) != Condition::failed && bus_->statistics(joints_[i].id).last_error_bits != 0;
     };
     const Time now = bus_->port().now();
-    for (std::size_t i = 0; i < joints_.size() && torque_on_; ++i) {
+    for (std::size_t i = 0; i < joints_.size() && torque_on(); ++i) {
       const bool long_silent = now - presences_[i].last_heard() > from_seconds(options_.care.silent_longest_s);
       if (long_silent && care.condition(i) == Condition::silent) find(i, Finding::silent_for_long);
     }
@@ -319,7 +295,7 @@ class ServoGroup {
   }
 
   void find(std::size_t i, Finding finding) {
-    if (!torque_on_ || keeper_.take(i, finding, events_) != Reaction::restore || sitting_since_) return;
+    if (!torque_on() || keeper_.take(i, finding, events_) != Reaction::restore || sitting_since_) return;
     goals_.begin_softly(i, states_[i].position_rad, bus_->port().now(), options_.care.restore_s);
   }
 
@@ -329,18 +305,16 @@ class ServoGroup {
   JointReader<ServoBus> reader_;
   Feedback supply_;
   ServoRegisters<ServoBus> registers_;
+  TorqueSwitch<ServoBus> torque_;
   ServoKeeper<ServoBus> keeper_;
   JointStates states_;
   JointGoals goals_;
   std::vector<Presence> presences_;
   ServoEvents events_;
-  bool torque_on_ = false;
   bool limp_ = false;  // let go while updates go on
-  bool stopped_ = false;
   std::optional<Time> sitting_since_;
   Time last_goals_{};
   std::size_t supply_turn_ = 0;
-  std::size_t unconfirmed_ = 0;
   std::uint64_t refused_goals_ = 0;
 };
 

@@ -141,7 +141,8 @@ void switch_torque_on(const ServoBus& bus, ServoRegisters<ServoBus>& registers, 
       if (!right[i]) fail(joints[i], what);
     }
   };
-  until_all([](std::size_t) {}, [&](std::size_t i) { return registers.read(i, "goal_position") == goals[i]; },
+  until_all([&](std::size_t i) { registers.write_one(i, "bus_watchdog", 0); },
+            [&](std::size_t i) { return registers.read(i, "goal_position") == goals[i]; },
             "does not take its goal; see its limits and its operating mode");
   until_all([&](std::size_t i) { registers.write_one(i, "torque_enable", 1); },
             [&](std::size_t i) { return registers.read(i, "torque_enable") == 1U; },
