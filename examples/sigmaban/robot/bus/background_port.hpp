@@ -30,6 +30,7 @@ class BackgroundPort {
   Time now() const { return std::chrono::steady_clock::now().time_since_epoch(); }
   std::uint32_t bits_per_s() const { return shared_->port.bits_per_s(); }
   void write(Bytes bytes, Time deadline) { shared_->port.write(bytes, deadline); }
+  const Port& port() const { return shared_->port; }
 
   std::size_t read(Buffer out, Time deadline) {
     Shared& shared = *shared_;

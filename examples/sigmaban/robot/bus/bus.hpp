@@ -38,6 +38,7 @@ namespace dynamixel {
 template <class Protocol, Transport Port>
 class Bus {
  public:
+  using Wire = Protocol;
   static constexpr std::size_t max_data = 128;  // from one servo [bytes]
 
   explicit Bus(Port port, BusOptions options = {})
@@ -105,7 +106,13 @@ class Bus {
   void listen() { drain(0); }
 
   Port& port() { return port_; }
+  const Port& port() const { return port_; }
   const BusOptions& options() const { return options_; }
+  /// From now on answers are waited for that long [s], apart from the line's own time.
+  void set_patience(double return_delay_s, double latency_s) {
+    options_.return_delay_s = return_delay_s;
+    options_.latency_s = latency_s;
+  }
 
  private:
   static constexpr std::size_t marks = 10;  // lengths that reads take turns with

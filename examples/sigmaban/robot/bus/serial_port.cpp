@@ -19,6 +19,8 @@ namespace dynamixel {
 
 namespace {
 
+constexpr const char* port_is_gone = "the port is gone; was the adapter unplugged?";
+
 [[noreturn]] void fail(const std::string& path, const std::string& what) { throw BusError(path + ": " + what); }
 
 std::string why_not_opened(int error) {
@@ -113,7 +115,7 @@ bool SerialPort::wait(short events, Time deadline) const {
     pollfd waiting{file_, events, 0};
     const int ready = ppoll(&waiting, 1, &timeout, nullptr);
     if (ready > 0 && (waiting.revents & events) != 0) return true;
-    if (ready > 0) fail(path_, "the port is gone; was the adapter unplugged?");
+    if (ready > 0) fail(path_, port_is_gone);
     if (ready < 0 && errno != EINTR) fail(path_, std::string("cannot be waited for: ") + std::strerror(errno));
     if (left == Time::zero()) return false;
   }
@@ -122,10 +124,13 @@ bool SerialPort::wait(short events, Time deadline) const {
 void SerialPort::write(Bytes bytes, Time deadline) {
   while (!bytes.empty()) {
     const ssize_t count = ::write(file_, bytes.data(), bytes.size());
-    if (count >= 0) {
+    if (count > 0) {
       bytes = bytes.subspan(static_cast<std::size_t>(count));
-    } else if (errno == EAGAIN) {
+    } else if (count == 0 || errno == EAGAIN) {
+      if (hung_up()) fail(path_, port_is_gone);
       if (!wait(POLLOUT, deadline)) fail(path_, "takes no bytes; is the speed of the port right?");
+    } else if (errno == EIO) {
+      fail(path_, port_is_gone);
     } else if (errno != EINTR) {
       fail(path_, std::string("cannot be written to: ") + std::strerror(errno));
     }
@@ -133,14 +138,23 @@ void SerialPort::write(Bytes bytes, Time deadline) {
 }
 
 std::size_t SerialPort::read(Buffer bytes, Time deadline) {
+  constexpr int most_empty_reads = 3;  // of a port that says it has bytes; one may be empty where they were flushed
+  int empty = 0;
   while (wait(POLLIN, deadline)) {
     const ssize_t count = ::read(file_, bytes.data(), bytes.size());
     if (count > 0) return static_cast<std::size_t>(count);
+    if (count == 0 && (hung_up() || ++empty == most_empty_reads)) fail(path_, port_is_gone);
+    if (count < 0 && errno == EIO) fail(path_, port_is_gone);
     if (count < 0 && errno != EAGAIN && errno != EINTR) {
       fail(path_, std::string("cannot be read from: ") + std::strerror(errno));
     }
   }
   return 0;
+}
+
+bool SerialPort::hung_up() const {
+  pollfd asked{file_, 0, 0};
+  return ::poll(&asked, 1, 0) > 0 && (asked.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
 }
 
 }  // namespace dynamixel

@@ -23,6 +23,8 @@ class SerialPort {
   /// Of the monotonic clock.
   Time now() const;
   std::uint32_t bits_per_s() const { return bits_per_s_; }
+  /// The descriptor of the open port, for a TorqueGuard.
+  int file() const { return file_; }
 
   /// All of `bytes`. Throws BusError if the port is gone, or does not take them before the deadline.
   void write(Bytes bytes, Time deadline);
@@ -34,6 +36,7 @@ class SerialPort {
 
  private:
   bool wait(short events, Time deadline) const;  // false at the deadline
+  bool hung_up() const;
 
   std::string path_;
   int file_ = -1;

@@ -62,7 +62,8 @@ Findings run(const Options& options, VirtualBus<Protocol2>& line, ServoBus& bus,
              StallWatch& watch, const example::Interrupt& interrupt) {
   Findings found;
   const Time period = from_seconds(1 / options.rate_hz);
-  ServoGroup<ServoBus> group(bus, mx_64_protocol_2, std::move(joints), {.listen_s = 0.7 / options.rate_hz});
+  ServoGroup<ServoBus> group(bus, mx_64_protocol_2, std::move(joints),
+                             {.listen_s = 0.7 / options.rate_hz, .care = {.silent_longest_s = 1e9}});
   group.start();
   const std::size_t victim = group.joints().size() / 2;
   const std::uint8_t victim_id = group.joints()[victim].id;

@@ -8,10 +8,10 @@
 #include <thread>
 #include <vector>
 
-#include "../../../../apps/common/interrupt.hpp"
 #include "../../../../apps/common/run_program.hpp"
 #include "../bus/realtime.hpp"
 #include "../virtual_bus/virtual_bus.hpp"
+#include "../walk/stop_signals.hpp"
 #include "servo_ids.hpp"
 
 namespace {
@@ -26,6 +26,11 @@ struct Options {
   double silent_from_s = 0, silent_to_s = 1e9;
   std::string hot;
   double voltage_v = 12;
+  double return_delay_us = 0;
+  int status_return_level = 2;
+  std::string reboot, overload, cut;
+  double then_s = 5, voltage_then_v = 0;
+  bool hang_up = false;
   AnswererOptions answerer;
 };
 
@@ -52,9 +57,54 @@ class PortLink {
   std::string link_;
 };
 
+template <class Action>
+void each(const std::string& ids, Action action) {
+  if (!ids.empty()) std::ranges::for_each(example::parse_ids(ids), action);
+}
+
+/// What is so from the start.
+template <class Protocol>
+void set_up(Answerer<Protocol>& answerer, const Options& options) {
+  answerer.set_voltage(options.voltage_v);
+  each(options.hot, [&](std::uint8_t id) { answerer.servo(id).temperature_celsius = 90; });
+  each(options.ids, [&](std::uint8_t id) {
+    const double counts = options.return_delay_us * 1e-6 / return_delay_s;
+    answerer.servo(id).set("return_delay_time", static_cast<std::int64_t>(counts));
+    answerer.servo(id).set("status_return_level", options.status_return_level);
+  });
+}
+
+/// What happens later, once.
+template <class Protocol>
+void happen(VirtualBus<Protocol>& bus, const Options& options) {
+  bus.with([&](auto& answerer) {
+    each(options.reboot, [&](std::uint8_t id) { answerer.reboot(id, PseudoTerminal::now()); });
+    each(options.overload, [&](std::uint8_t id) { answerer.servo(id).shut_down(protocol2::overload_error); });
+    each(options.cut, [&](std::uint8_t id) { answerer.servo(id).deaf = true; });
+    if (options.voltage_then_v > 0) answerer.set_voltage(options.voltage_then_v);
+  });
+  if (options.hang_up) bus.hang_up();
+}
+
+template <class Protocol>
+void print_counts(const Answerer<Protocol>& answerer) {
+  const FaultCounts& counts = answerer.counts();
+  std::cout << answerer.instructions() << " instructions; faults made: " << counts.lost << " lost, " << counts.corrupted
+            << " corrupted, " << counts.late << " late, " << counts.duplicated << " duplicated, " << counts.wrong_id
+            << " wrong id, " << counts.silent << " silent\n";
+  std::size_t on = 0, held = 0;
+  for (const VirtualServo& servo : answerer.servos()) {
+    on += servo.torque_on() ? 1U : 0U;
+    held += servo.torque_on() && servo.watchdog_tripped() ? 1U : 0U;
+  }
+  std::cout << on << " of " << answerer.servos().size() << " servos have their torque on, " << held
+            << " of them stopped by their bus watchdog\n";
+}
+
 template <class Protocol>
 void serve(const Options& options, const ServoModel& model) {
-  const example::Interrupt interrupt;
+  sigmaban::StopSignals signals;
+  signals.no_more_deadlines();
   std::vector<VirtualServo> servos;
   for (const std::uint8_t id : example::parse_ids(options.ids)) servos.emplace_back(model, id);
   ask_for_realtime();
@@ -62,26 +112,19 @@ void serve(const Options& options, const ServoModel& model) {
   const PortLink link(options.link, bus.path());
   std::cout << bus.path() << '\n' << std::flush;
 
-  const auto each = [](const std::string& ids, auto action) {
-    if (!ids.empty()) std::ranges::for_each(example::parse_ids(ids), action);
-  };
-  bus.with([&](auto& answerer) {
-    answerer.set_voltage(options.voltage_v);
-    each(options.hot, [&](std::uint8_t id) { answerer.servo(id).temperature_celsius = 90; });
-  });
+  bus.with([&](auto& answerer) { set_up(answerer, options); });
   const Time begin = PseudoTerminal::now();
-  while (!interrupt.requested()) {
+  for (bool happened = false; !signals.requested();) {
     const double now_s = to_seconds(PseudoTerminal::now() - begin);
     const bool silent = now_s >= options.silent_from_s && now_s < options.silent_to_s;
     bus.with([&](auto& answerer) { each(options.silent, [&](std::uint8_t id) { answerer.set_silent(id, silent); }); });
+    if (!happened && now_s >= options.then_s) {
+      happen(bus, options);
+      happened = true;
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  bus.with([](const auto& answerer) {
-    const FaultCounts& counts = answerer.counts();
-    std::cout << answerer.instructions() << " instructions; faults made: " << counts.lost << " lost, "
-              << counts.corrupted << " corrupted, " << counts.late << " late, " << counts.duplicated << " duplicated, "
-              << counts.wrong_id << " wrong id, " << counts.silent << " silent\n";
-  });
+  bus.with([](const auto& answerer) { print_counts(answerer); });
 }
 
 }  // namespace
@@ -114,6 +157,23 @@ int main(int argc, char** argv) {
   program.add_option("--silent-to", options.silent_to_s, "[s] after the start");
   program.add_option("--hot", options.hot, "ids that are 90 degrees hot");
   program.add_option("--voltage", options.voltage_v, "[V]")->check(CLI::Range(0.0, 25.0))->capture_default_str();
+  program.add_option("--unheard", faults.unheard, "share of instructions that no servo hears")
+      ->check(CLI::Range(0.0, 1.0));
+  program.add_option("--return-delay", options.return_delay_us, "of the servos; new ones have 500 [us]")
+      ->check(CLI::Range(0.0, 508.0))
+      ->capture_default_str();
+  program.add_option("--status-return-level", options.status_return_level)
+      ->check(CLI::Range(0, 2))
+      ->capture_default_str();
+  program.add_option("--latency-timer", options.answerer.latency_timer_s, "of the adapter [s]")
+      ->check(CLI::Range(0.0, 0.1))
+      ->capture_default_str();
+  program.add_option("--then", options.then_s, "when the next ones happen [s]")->capture_default_str();
+  program.add_option("--reboot", options.reboot, "ids that start anew");
+  program.add_option("--overload", options.overload, "ids that shut themselves down");
+  program.add_option("--cut", options.cut, "ids whose cable is cut");
+  program.add_option("--voltage-then", options.voltage_then_v, "[V]")->check(CLI::Range(0.0, 25.0));
+  program.add_flag("--hang-up", options.hang_up, "the port goes away");
   program.callback([&] {
     if (faults.lost + faults.corrupted + faults.late + faults.duplicated + faults.wrong_id > 1) {
       throw example::UsageError("the shares of faults add up to more than 1; an answer has at most one");

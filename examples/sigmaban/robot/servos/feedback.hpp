@@ -20,8 +20,8 @@ struct ServoState {
   double temperature_celsius = 0;  // 0 where it is not read
 };
 
-/// How much is read in every cycle.
-enum class FeedbackKind : std::uint8_t { motion, motion_and_health };
+/// How much is read in every cycle; health is voltage and temperature.
+enum class FeedbackKind : std::uint8_t { motion, motion_and_health, health };
 
 class Feedback {
  public:
@@ -32,6 +32,7 @@ class Feedback {
         voltage_(find(model, {"present_input_voltage", "present_voltage"})),
         temperature_(model.find("present_temperature")) {
     if (kind == FeedbackKind::motion) voltage_ = temperature_ = nullptr;
+    if (kind == FeedbackKind::health) position_ = velocity_ = nullptr;
     std::size_t end = 0, begin = static_cast<std::size_t>(-1);
     for (const Register* r : {position_, velocity_, voltage_, temperature_}) {
       if (r == nullptr) continue;
@@ -47,7 +48,7 @@ class Feedback {
 
   ServoState parse(Bytes bytes) const {
     ServoState state;
-    state.angle_rad = value(bytes, position_) - center_ticks * position_rad;
+    if (position_ != nullptr) state.angle_rad = value(bytes, position_) - center_ticks * position_rad;
     state.velocity_rad_per_s = value(bytes, velocity_);
     state.voltage_v = value(bytes, voltage_);
     state.temperature_celsius = value(bytes, temperature_);

@@ -1,5 +1,6 @@
 // Joints on one bus, made safe: nothing leaves its limits, nothing jumps, and the torque goes off when nobody gives
-// goals any more, when the program ends and when anything throws.
+// goals any more, when the program ends and when anything throws. What becomes of faults of servos is in the table of
+// servo_condition.hpp; the README has it in words.
 #pragma once
 
 #include <algorithm>
@@ -7,131 +8,98 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
-#include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "../bus/bus.hpp"
-#include "alarms.hpp"
-#include "feedback.hpp"
 #include "joint.hpp"
-#include "presence.hpp"
-#include "soft_start.hpp"
+#include "joint_goals.hpp"
+#include "joint_reader.hpp"
+#include "joint_states.hpp"
+#include "servo_group_types.hpp"
+#include "servo_keeper.hpp"
+#include "servo_registers.hpp"
+#include "servo_start.hpp"
+#include "torque_switch.hpp"
 
 namespace dynamixel {
-
-enum class BeyondLimits : std::uint8_t { clamp, refuse };
-
-struct ServoGroupOptions {
-  double soft_start_s = 2.0;                         // from the measured to the wanted angles [s]
-  double watchdog_s = 0.25;                          // without goals, after which the torque goes off [s]
-  double listen_s = 0.008;                           // that update() may take at most [s]
-  BeyondLimits beyond_limits = BeyondLimits::clamp;  // refuse: the joint keeps its goal
-  FeedbackKind feedback = FeedbackKind::motion_and_health;
-  PresenceOptions presence{};
-  AlarmOptions alarms{};
-};
-
-struct JointState {
-  double position_rad = 0;  // of the joint
-  double velocity_rad_per_s = 0;
-  double voltage_v = 0;
-  double temperature_celsius = 0;
-  Time measured{};     // when it was received
-  bool fresh = false;  // in the last update()
-  bool silent = false;
-  Alarms alarms{};
-  std::uint64_t goals_beyond_limits = 0;  // clamped or refused
-};
-
-enum class ServoEventKind : std::uint8_t { silent, back, hot, cool, voltage_wrong, voltage_right, watchdog };
-
-/// What happened, to be said of the joint (or of the watchdog).
-constexpr std::string_view in_words(ServoEventKind kind) {
-  constexpr std::string_view words[] = {"is silent",
-                                        "is back",
-                                        "is hot",
-                                        "is cool again",
-                                        "has a wrong voltage",
-                                        "has its voltage back",
-                                        "switched the torque off"};
-  return words[static_cast<std::size_t>(kind)];
-}
-
-struct ServoEvent {
-  ServoEventKind kind = ServoEventKind::silent;
-  std::size_t joint = 0;  // its place in the group; 0 for the watchdog
-};
 
 /// `ServoBus` is a Bus. Nothing is allocated after construction. For one thread.
 ///
 ///   ServoGroup group(bus, mx_64_protocol_2, joints);
 ///   group.start();                               // torque on, where the joints are
-///   while (walking) { group.set_goals(goals); group.update(); sleep_until_next_cycle(); }
+///   while (group.torque_on()) { group.set_goals(goals); group.update(); sleep_until_next_cycle(); }
 template <class ServoBus>
 class ServoGroup {
  public:
   /// Throws BusError where joints make no sense. `bus` and `model` must outlive this.
   ServoGroup(ServoBus& bus, const ServoModel& model, std::vector<Joint> joints, ServoGroupOptions options = {})
       : bus_(&bus),
-        model_(&model),
         joints_(std::move(joints)),
-        options_(options),
-        feedback_(model, options.feedback),
-        states_(joints_.size()),
-        goals_(joints_.size()),
-        starts_(joints_.size()),
+        options_(std::move(options)),
+        reader_(bus, model, joints_, options_.feedback),
+        supply_(model, FeedbackKind::health),
+        registers_(bus, model, ids_of(joints_), options_.bus_watchdog_s),
+        torque_(bus, registers_, options_.guard),
+        keeper_(registers_, joints_.size(), options_.care),
+        states_(joints_),
+        goals_(joints_),
         presences_(joints_.size(), Presence(bus.port().now())),
-        outcomes_(joints_.size()),
-        received_(joints_.size() * feedback_.count()) {
+        events_(joints_.size()) {
     check_joints(joints_, max_servos);
-    for (const Joint& joint : joints_) ids_.push_back(joint.id);
-    events_.reserve(3 * joints_.size() + 1);
-    to_send_.reserve(4 * joints_.size());
+    const std::size_t sitting = options_.sitting_rad.size();
+    if (sitting != 0 && sitting != joints_.size()) throw BusError("joints: the way they sit is of another number");
   }
 
   ~ServoGroup() {
-    if (torque_on_) stop();
+    if (torque_on()) stop();
   }
   ServoGroup(const ServoGroup&) = delete;
   ServoGroup& operator=(const ServoGroup&) = delete;
 
   /// Torque on at the measured angles, which are the first goals. Throws BusError, torque off, where a servo does not
-  /// answer.
+  /// answer or something is wrong with it; see why_not_to_start().
   void start() {
     guarded([&] {
-      for (int tries = 0; tries < most_tries && listen() < joints_.size(); ++tries) {
-      }
-      const Time now = bus_->port().now();
+      sitting_since_.reset();
+      limp_ = false;
+      keeper_.begin();
+      std::fill(presences_.begin(), presences_.end(), Presence(bus_->port().now()));
+      states_.forget();
+      reader_.read_all();
+      registers_.write_all("bus_watchdog", 0);  // of a program that was killed: it would refuse goals
+      find_servos(
+          *bus_, registers_, joints_, options_.find_s, [&] { listen(Time::max(), options_.find_s); },
+          [&](std::size_t i) { return states_.heard(i); });
+      reader_.fit_into(from_seconds(options_.listen_s - bus_->options().latency_s));
+      const StartCriteria criteria{options_.alarms, options_.most_beyond_limits_rad};
       for (std::size_t i = 0; i < joints_.size(); ++i) {
-        if (!states_[i].fresh) fail(i, "does not answer; check its id, its cable and the power");
-        goals_[i] = states_[i].position_rad;
-        begin_softly(i, now);
+        check_before_start(*bus_, registers_, supply_, joints_[i], i, criteria, states_[i]);
       }
-      send_goals(now);
-      for (std::size_t i = 0; i < joints_.size(); ++i) set_torque(i);
-      torque_on_ = true;
+      for (std::size_t i = 0; i < joints_.size(); ++i) {
+        goals_.hold(i, states_[i].position_rad);
+        goals_.begin_softly(i, states_[i].position_rad, bus_->port().now(), options_.soft_start_s);
+      }
+      torque_.on();
+      switch_torque_on(
+          *bus_, registers_, joints_, [&] { send_goals(); }, goals_.last_ticks());
       last_goals_ = bus_->port().now();
+      events_.clear();
     });
   }
 
-  /// Torque off, told three times, as nobody answers to that. Throws nothing.
+  /// Torque off, told three times, and again to those who say that theirs is on. Throws nothing.
   void stop() noexcept {
-    torque_on_ = false;
-    const Register* torque = model_->find("torque_enable");
-    std::array<std::uint8_t, max_servos> off{};
-    try {
-      for (int i = 0; i < 3; ++i) bus_->sync_write(torque->address, ids_, Bytes(off).first(ids_.size()));
-      stopped_ = true;
-    } catch (...) {
-      stopped_ = false;  // the port is gone, and with it all that can be done
-    }
+    sitting_since_.reset();
+    torque_.off();
   }
 
-  /// Leaves the torque as it is, for good: nothing here switches it off any more.
-  void keep_torque() noexcept { torque_on_ = false; }
+  /// Leaves the torque as it is, for good: nothing switches it off any more, neither here nor in the servos.
+  void keep_torque() noexcept { torque_.leave(); }
 
   /// Angles of the joints in their order [rad]. False if there are not as many, or one is not finite: then none counts.
   bool set_goals(std::span<const double> goals_rad) {
@@ -141,51 +109,94 @@ class ServoGroup {
       ++refused_goals_;
       return false;
     }
-    for (std::size_t i = 0; i < joints_.size(); ++i) {
-      const double within = std::clamp(goals_rad[i], joints_[i].min_rad, joints_[i].max_rad);
-      if (within != goals_rad[i]) ++states_[i].goals_beyond_limits;
-      if (within == goals_rad[i] || options_.beyond_limits == BeyondLimits::clamp) goals_[i] = within;
+    for (std::size_t i = 0; i < joints_.size() && !sitting_since_; ++i) {
+      const bool within = goals_.set(i, goals_rad[i], options_.beyond_limits == BeyondLimits::refuse);
+      states_[i].goals_beyond_limits += within ? 0U : 1U;
     }
-    last_goals_ = bus_->port().now();
+    if (!goals_are_late()) last_goals_ = bus_->port().now();  // else it is for update() to switch the torque off
     return true;
   }
 
-  /// One cycle: sends the goals if the torque is on, then reads all joints. Returns how many answered. Where it throws,
-  /// the torque is off. Ends at `deadline` or after listen_s, whichever is first.
+  /// From the present goals to sitting_rad, then torque off; goals do not count from now on. At once where there is no
+  /// sitting_rad.
+  void sit_down() {
+    if (!torque_on() || sitting_since_) return;
+    if (options_.sitting_rad.empty()) return let_go();
+    sitting_since_ = bus_->port().now();
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      goals_.begin_softly(i, *sitting_since_, options_.sit_s);
+      goals_.set(i, options_.sitting_rad[i], false);
+    }
+    note({ServoEventKind::sitting, 0});
+  }
+
+  /// Torque off now.
+  void let_go() {
+    if (!torque_on()) return;
+    stop();
+    note({ServoEventKind::let_go, 0});
+  }
+
+  /// One cycle: sends the goals if the torque is on, then reads all joints and the health of one. Returns how many
+  /// answered. Where it throws, the torque is off. Ends at `deadline` or after listen_s and poll_s, whichever is first.
   std::size_t update(Time deadline = Time::max()) {
     std::size_t answered = 0;
     guarded([&] {
-      events_.clear();
+      events_.begin_cycle();
       const Time now = bus_->port().now();
-      if (torque_on_ && now - last_goals_ > from_seconds(options_.watchdog_s)) {
-        stop();
-        events_.push_back({ServoEventKind::watchdog, 0});
+      if (torque_on()) look_at_watchdogs();
+      if (sitting_since_ && now - *sitting_since_ > from_seconds(options_.sit_s + settle_s)) let_go();
+      if (torque_on()) {
+        send_goals();
+        keeper_.send_torque();
+      } else if (limp_) {
+        registers_.write_all("torque_enable", 0);  // for those who did not hear it
       }
-      if (torque_on_) send_goals(now);
-      answered = listen(deadline);
+      answered = listen(deadline, options_.listen_s);
+      if (torque_on()) take_care(std::min(deadline, now + from_seconds(options_.listen_s + options_.care.poll_s)));
+      events_.end_cycle();
     });
     return answered;
   }
 
-  /// Of the last update().
-  std::span<const ServoEvent> events() const { return events_; }
-  std::span<const JointState> states() const { return states_; }
+  /// Of the last update(), with what was done between it and the one before it.
+  std::span<const ServoEvent> events() const { return events_.all(); }
+  std::span<const JointState> states() const { return states_.all(); }
+  /// What the joint was sent last [rad].
+  double sent_goal(std::size_t joint) const { return goals_.sent(joint); }
   /// The bytes that the joint's servo answered last, from feedback().address() on.
-  Bytes received(std::size_t joint) const {
-    return Bytes(received_).subspan(joint * feedback_.count(), feedback_.count());
-  }
-  const Feedback& feedback() const { return feedback_; }
+  Bytes received(std::size_t joint) const { return reader_.received(joint); }
+  const Feedback& feedback() const { return reader_.feedback(); }
   std::span<const Joint> joints() const { return joints_; }
-  bool torque_on() const { return torque_on_; }
+  bool torque_on() const { return torque_.is_on(); }
+  bool sitting() const { return sitting_since_.has_value(); }
+  /// Why it sat down or let go by itself; none where it did not.
+  const std::optional<ServoFault>& fault() const { return keeper_.care().fault(); }
+  Reaction reaction() const { return keeper_.care().reaction(); }
+  Condition condition(std::size_t joint) const { return keeper_.care().condition(joint); }
   /// Could the last stop() be sent?
-  bool stopped() const { return stopped_; }
+  bool stopped() const { return torque_.sent(); }
+  /// Servos that did not say after the last stop() that their torque is off.
+  std::size_t unconfirmed() const { return torque_.unconfirmed(); }
   std::uint64_t refused_goals() const { return refused_goals_; }  // calls of set_goals() that returned false
 
- private:
-  static constexpr int most_tries = 5;  // of each step of the start
+  Time now() const { return bus_->port().now(); }
+  /// Until then by the clock of the bus.
+  void wait_until(Time time) {
+    if constexpr (requires { bus_->port().wait_until(time); }) {
+      bus_->port().wait_until(time);
+    } else {
+      std::this_thread::sleep_until(std::chrono::steady_clock::time_point(time));
+    }
+  }
 
-  [[noreturn]] void fail(std::size_t joint, const std::string& what) const {
-    throw BusError("joint " + joints_[joint].name + " (servo " + std::to_string(joints_[joint].id) + "): " + what);
+ private:
+  static constexpr double settle_s = 0.1;  // that servos are behind their goals, about [s]
+
+  static std::vector<std::uint8_t> ids_of(const std::vector<Joint>& joints) {
+    std::vector<std::uint8_t> ids;
+    for (const Joint& joint : joints) ids.push_back(joint.id);
+    return ids;
   }
 
   template <class Action>
@@ -198,95 +209,112 @@ class ServoGroup {
     }
   }
 
-  void begin_softly(std::size_t joint, Time now) {
-    starts_[joint] = {now, states_[joint].position_rad, options_.soft_start_s};
+  void note(const ServoEvent& event) {
+    if (event.kind == ServoEventKind::let_go || event.kind == ServoEventKind::watchdog) limp_ = true;
+    events_.note(event);
   }
 
-  void set_torque(std::size_t joint) {
-    const std::uint8_t on = 1;
-    Reply reply;
-    for (int tries = 0; tries < most_tries && !reply; ++tries) {
-      reply = bus_->write(ids_[joint], model_->find("torque_enable")->address, Bytes(&on, 1));
-    }
-    if (!reply) fail(joint, "does not switch its torque on (" + std::string(name_of(reply.outcome)) + ")");
+  bool goals_are_late() const {
+    return torque_on() && bus_->port().now() - last_goals_ > from_seconds(options_.watchdog_s);
+  }
+  void look_at_watchdogs() {
+    if (!torque_.guard_fired() && !goals_are_late()) return;
+    stop();
+    note({ServoEventKind::watchdog, 0});
   }
 
-  void send_goals(Time now) {
-    const Register& goal = *model_->find("goal_position");
-    to_send_.clear();
-    for (std::size_t i = 0; i < joints_.size(); ++i) {
-      const double softly = std::clamp(starts_[i](goals_[i], now), lowest(i), highest(i));
-      const double within =
-          std::clamp(servo_angle(joints_[i], softly), radians_from_ticks(0), radians_from_ticks(max_ticks));
-      const std::uint16_t ticks = ticks_from_radians(within).value_or(center_ticks);  // there always is one
-      for (unsigned byte = 0; byte < goal.size; ++byte) {
-        to_send_.push_back(byte < 2 ? static_cast<std::uint8_t>(ticks >> (8 * byte)) : std::uint8_t{0});
-      }
-    }
-    bus_->sync_write(goal.address, ids_, to_send_);
+  void send_goals() {
+    registers_.write_each("goal_position", goals_.ticks(bus_->port().now()));
+    torque_.beat();
   }
 
-  /// A joint that starts beyond its limits comes back softly, too.
-  double lowest(std::size_t i) const { return std::min(joints_[i].min_rad, starts_[i].from_rad); }
-  double highest(std::size_t i) const { return std::max(joints_[i].max_rad, starts_[i].from_rad); }
-
-  std::size_t listen(Time latest = Time::max()) {
-    const Time deadline = std::min(latest, bus_->port().now() + from_seconds(options_.listen_s));
-    const std::size_t answered =
-        bus_->sync_read(feedback_.address(), feedback_.count(), ids_, received_, outcomes_, deadline);
+  std::size_t listen(Time latest, double at_most_s) {
+    const std::size_t answered = reader_.read(std::min(latest, bus_->port().now() + from_seconds(at_most_s)));
     const Time now = bus_->port().now();
     for (std::size_t i = 0; i < joints_.size(); ++i) {
-      states_[i].fresh = outcomes_[i] == Outcome::answered;
-      if (states_[i].fresh) take(i, now);
+      const bool came = reader_.outcome(i) == Outcome::answered;
+      states_[i].fresh = came && take_answer(i, now);
       const PresenceChange change =
-          presences_[i].update(outcomes_[i] != Outcome::skipped, states_[i].fresh, now, options_.presence);
+          presences_[i].update(reader_.outcome(i) != Outcome::skipped, came, now, options_.presence);
       states_[i].silent = presences_[i].silent();
-      if (change == PresenceChange::silent) events_.push_back({ServoEventKind::silent, i});
-      if (change != PresenceChange::back) continue;
-      events_.push_back({ServoEventKind::back, i});
-      begin_softly(i, now);
+      if (change == PresenceChange::silent) {
+        note({ServoEventKind::silent, i});
+        find(i, Finding::fell_silent);
+      } else if (change == PresenceChange::back) {
+        note({ServoEventKind::back, i});
+        find(i, Finding::heard);
+        if (!sitting_since_) goals_.begin_softly(i, states_[i].position_rad, now, options_.soft_start_s);
+      }
     }
     return answered;
   }
 
-  void take(std::size_t i, Time now) {
-    const ServoState servo = feedback_.parse(received(i));
-    JointState& state = states_[i];
-    state.position_rad = joint_angle(joints_[i], servo.angle_rad);
-    state.velocity_rad_per_s = joints_[i].sign * servo.velocity_rad_per_s;
-    state.measured = now;
-    if (options_.feedback == FeedbackKind::motion) return;
-    state.voltage_v = servo.voltage_v;
-    state.temperature_celsius = servo.temperature_celsius;
-    note_voltage(bus_->statistics(ids_[i]), servo.voltage_v);
-    note_temperature(bus_->statistics(ids_[i]), servo.temperature_celsius);
-    const Alarms alarms = update_alarms(state.alarms, servo.temperature_celsius, servo.voltage_v, options_.alarms);
-    if (alarms.hot != state.alarms.hot) {
-      events_.push_back({alarms.hot ? ServoEventKind::hot : ServoEventKind::cool, i});
+  /// False where it cannot be true.
+  bool take_answer(std::size_t i, Time now) {
+    const ServoState servo = reader_.feedback().parse(received(i));
+    const Plausibility plausibility = states_.take_motion(i, servo, now, options_.care, torque_on());
+    if (plausibility == Plausibility::implausible) find(i, Finding::implausible);
+    if (plausibility != Plausibility::taken) return false;
+    if (reader_.kind() == FeedbackKind::motion_and_health) take_supply(i, servo);
+    return true;
+  }
+
+  void take_supply(std::size_t i, const ServoState& servo) {
+    states_.take_supply(i, servo, options_.alarms, bus_->statistics(joints_[i].id), [&](ServoEventKind kind) {
+      note({kind, i});
+    });
+  }
+
+  /// Asks one servo how it is, and does what its answer and the others' silence ask for.
+  void take_care(Time deadline) {
+    ServoCare& care = keeper_.care();
+    const auto alert = [&](std::size_t i) {
+      return care.condition(i) != Condition::failed && bus_->statistics(joints_[i].id).last_error_bits != 0;
+    };
+    const Time now = bus_->port().now();
+    for (std::size_t i = 0; i < joints_.size() && torque_on(); ++i) {
+      const bool long_silent = now - presences_[i].last_heard() > from_seconds(options_.care.silent_longest_s);
+      if (long_silent && care.condition(i) == Condition::silent) find(i, Finding::silent_for_long);
     }
-    if (alarms.voltage != state.alarms.voltage) {
-      events_.push_back({alarms.voltage ? ServoEventKind::voltage_wrong : ServoEventKind::voltage_right, i});
+    if (const auto i = care.next_to_ask(alert)) {
+      if (reader_.kind() == FeedbackKind::motion && ++supply_turn_ % 3 == 0) {
+        ask_for_supply(*i, deadline);
+      } else if (const auto finding = keeper_.ask(*i, deadline)) {
+        find(*i, *finding);
+      }
     }
-    state.alarms = alarms;
+    care.look(now);
+    if (care.reaction() == Reaction::sit_down) sit_down();
+    if (care.reaction() == Reaction::let_go) let_go();
+  }
+
+  void ask_for_supply(std::size_t i, Time deadline) {
+    std::array<std::uint8_t, 16> bytes{};
+    const Buffer read = Buffer(bytes).first(supply_.count());
+    if (bus_->read(joints_[i].id, supply_.address(), read, deadline)) take_supply(i, supply_.parse(read));
+  }
+
+  void find(std::size_t i, Finding finding) {
+    if (!torque_on() || keeper_.take(i, finding, events_) != Reaction::restore || sitting_since_) return;
+    goals_.begin_softly(i, states_[i].position_rad, bus_->port().now(), options_.care.restore_s);
   }
 
   ServoBus* bus_;
-  const ServoModel* model_;
   std::vector<Joint> joints_;
   ServoGroupOptions options_;
-  Feedback feedback_;
-  std::vector<JointState> states_;
-  std::vector<double> goals_;  // within limits [rad]
-  std::vector<SoftStart> starts_;
+  JointReader<ServoBus> reader_;
+  Feedback supply_;
+  ServoRegisters<ServoBus> registers_;
+  TorqueSwitch<ServoBus> torque_;
+  ServoKeeper<ServoBus> keeper_;
+  JointStates states_;
+  JointGoals goals_;
   std::vector<Presence> presences_;
-  std::vector<Outcome> outcomes_;
-  std::vector<std::uint8_t> received_;
-  std::vector<std::uint8_t> ids_;
-  std::vector<std::uint8_t> to_send_;
-  std::vector<ServoEvent> events_;
-  bool torque_on_ = false;
-  bool stopped_ = false;
+  ServoEvents events_;
+  bool limp_ = false;  // let go while updates go on
+  std::optional<Time> sitting_since_;
   Time last_goals_{};
+  std::size_t supply_turn_ = 0;
   std::uint64_t refused_goals_ = 0;
 };
 

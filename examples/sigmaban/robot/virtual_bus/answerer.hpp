@@ -11,6 +11,7 @@
 #include "../bus/protocols.hpp"
 #include "../bus/transport.hpp"
 #include "answerer_options.hpp"
+#include "outgoing_queue.hpp"
 #include "surefoot/core/rng.hpp"
 #include "virtual_servo.hpp"
 
@@ -23,12 +24,11 @@ template <class Protocol>
 class Answerer {
  public:
   explicit Answerer(std::vector<VirtualServo> servos, AnswererOptions options = {})
-      : servos_(std::move(servos)), options_(options), rng_(options.seed), per_servo_(servos_.size()) {
-    outgoing_.reserve(256);
-  }
+      : servos_(std::move(servos)), options_(options), rng_(options.seed), per_servo_(servos_.size()) {}
 
   std::uint32_t bits_per_s() const { return options_.bits_per_s; }
   Faults& faults() { return options_.faults; }
+  void set_latency_timer(double seconds) { options_.latency_timer_s = seconds; }
   const FaultCounts& counts() const { return counts_; }
   const FaultCounts& counts(std::uint8_t id) const { return per_servo_[place(id)].counts; }
   std::uint64_t instructions() const { return instructions_; }
@@ -66,31 +66,28 @@ class Answerer {
   }
 
   /// When the next answer is due.
-  std::optional<Time> next_due() const {
-    if (outgoing_.empty()) return std::nullopt;
-    return outgoing_[next_outgoing()].due;
-  }
+  std::optional<Time> next_due() const { return outgoing_.next_due(); }
 
   /// The next answer that is due by `now`, if `out` has room for it; its size, or 0.
   std::size_t take(Time now, Buffer out) {
-    if (outgoing_.empty()) return 0;
-    const std::size_t next = next_outgoing();
-    const Outgoing& packet = outgoing_[next];
-    if (packet.due > now || packet.size > out.size()) return 0;
-    const std::size_t size = packet.size;
-    std::copy_n(packet.bytes.begin(), size, out.begin());
-    outgoing_.erase(outgoing_.begin() + static_cast<std::ptrdiff_t>(next));
+    const std::size_t size = outgoing_.take(now, out);
     sent_bytes_ += size;
     return size;
   }
 
- private:
-  struct Outgoing {
-    Time due{};
-    std::size_t size = 0;
-    std::array<std::uint8_t, 256> bytes{};
-  };
+  /// Moves the motors to `now`, and their watchdogs.
+  void advance(Time now) {
+    for (VirtualServo& each : servos_) each.advance(now);
+  }
+  /// As by a switch: they lose their RAM and are silent until they have started.
+  void reboot(std::uint8_t id, Time now) { servo(id).reboot(now); }
+  void swap_ids(std::uint8_t a, std::uint8_t b) {
+    VirtualServo &first = servo(a), &second = servo(b);
+    first.set("id", b);
+    second.set("id", a);
+  }
 
+ private:
   struct PerServo {
     bool silent = false;
     FaultCounts counts;
@@ -110,13 +107,6 @@ class Answerer {
     return std::nullopt;
   }
 
-  /// The first of those due first.
-  std::size_t next_outgoing() const {
-    const auto first = std::min_element(outgoing_.begin(), outgoing_.end(),
-                                        [](const Outgoing& a, const Outgoing& b) { return a.due < b.due; });
-    return static_cast<std::size_t>(first - outgoing_.begin());
-  }
-
   /// An address, a count: one or two bytes, taken from the front. Too few count as none.
   static std::optional<std::size_t> take_number(Bytes& parameters) {
     if (parameters.size() < Protocol::number_size) return std::nullopt;
@@ -128,7 +118,9 @@ class Answerer {
 
   void obey(const Packet& packet) {
     ++instructions_;
-    for (VirtualServo& each : servos_) each.advance(line_free_);
+    advance(line_free_);
+    if (options_.faults.unheard > 0 && rng_.uniform() < options_.faults.unheard) return;
+    for (VirtualServo& each : servos_) each.note_instruction(line_free_);
     Bytes rest = packet.parameters;
     switch (static_cast<Instruction>(packet.code)) {
       case Instruction::sync_write:
@@ -140,7 +132,7 @@ class Answerer {
         return obey_bulk_read(rest);
       case Instruction::action:
         for (VirtualServo& each : servos_) {
-          if (packet.id == broadcast_id || packet.id == each.id()) each.act();
+          if ((packet.id == broadcast_id || packet.id == each.id()) && each.hears(line_free_)) each.act();
         }
         if (packet.id != broadcast_id) acknowledge(packet.id, Refusal::none);
         return;
@@ -154,6 +146,7 @@ class Answerer {
 
   void obey_single(std::uint8_t id, const Packet& packet, bool answers) {
     VirtualServo& servo = servos_[place(id)];
+    if (!servo.hears(line_free_)) return;
     Bytes rest = packet.parameters;
     const auto code = static_cast<Instruction>(packet.code);
     if (code == Instruction::ping) {
@@ -163,9 +156,13 @@ class Answerer {
         const std::array<std::uint8_t, 3> data{head[0], head[1], head[6]};  // model number, firmware
         if (answers) answer(servo, {id, servo.error_bits(Refusal::none), false, data});
       } else if (answers) {
-        acknowledge(id, Refusal::none);
+        answer(servo, {id, servo.error_bits(Refusal::none), false, {}});
       }
       return;
+    }
+    if (code == Instruction::reboot) {
+      if (answers) acknowledge(id, Refusal::none);
+      return servo.reboot(line_free_);
     }
     const auto address = take_number(rest);
     if (!address) return;
@@ -182,7 +179,9 @@ class Answerer {
     const auto address = take_number(rest), count = take_number(rest);
     if (!address || !count || *count == 0) return;
     for (; rest.size() > *count; rest = rest.subspan(1 + *count)) {
-      if (const auto at = find(rest[0])) static_cast<void>(servos_[*at].write(*address, rest.subspan(1, *count)));
+      const auto at = find(rest[0]);
+      if (at && servos_[*at].hears(line_free_))
+        static_cast<void>(servos_[*at].write(*address, rest.subspan(1, *count)));
     }
   }
 
@@ -226,11 +225,14 @@ class Answerer {
   }
 
   void acknowledge(std::uint8_t id, Refusal refusal) {
-    if (const auto at = find(id)) answer(servos_[*at], {id, servos_[*at].error_bits(refusal), false, {}});
+    const auto at = find(id);
+    if (!at || servos_[*at].status_return_level() < 2) return;
+    answer(servos_[*at], {id, servos_[*at].error_bits(refusal), false, {}});
   }
 
   bool answer_read(std::uint8_t id, std::size_t address, std::size_t count) {
     VirtualServo& servo = servos_[place(id)];
+    if (servo.status_return_level() < 1) return false;
     std::array<std::uint8_t, 160> data;
     Refusal refusal = count <= data.size() ? Refusal::none : Refusal::range;
     if (refusal == Refusal::none) refusal = servo.read(address, Buffer(data).first(count));
@@ -241,7 +243,7 @@ class Answerer {
   /// Puts a status packet on the line, with what happens to it. False where the servo sends nothing in its turn.
   bool answer(VirtualServo& servo, Status status) {
     PerServo& its = per_servo_[place(servo.id())];
-    if (its.silent) return count(its, &FaultCounts::silent), false;
+    if (its.silent || !servo.hears(line_free_)) return count(its, &FaultCounts::silent), false;
     const Fault fault = draw_fault(options_.faults, rng_);
     if (fault == Fault::lost) return count(its, &FaultCounts::lost), false;
     if (fault == Fault::wrong_id && servos_.size() > 1) {
@@ -255,11 +257,11 @@ class Answerer {
       given.size = status.data.size();
       std::copy(status.data.begin(), status.data.end(), given.data.begin());
     }
-    Outgoing packet;
+    OutgoingPacket packet;
     packet.size = Protocol::status(packet.bytes, status).size();
     if (fault == Fault::late) {
       packet.due = line_free_ + from_seconds(options_.faults.late_s);
-      outgoing_.push_back(packet);
+      hand_over(packet);
       return count(its, &FaultCounts::late), false;
     }
     line_free_ += from_seconds(servo.return_delay()) + line_time(packet.size, options_.bits_per_s);
@@ -269,16 +271,23 @@ class Answerer {
       count(its, &FaultCounts::corrupted);
     } else if (fault == Fault::duplicated) {
       count(its, &FaultCounts::duplicated);
-      outgoing_.push_back(packet);
+      hand_over(packet);
       line_free_ += line_time(packet.size, options_.bits_per_s);
       packet.due = line_free_;
     }
-    outgoing_.push_back(packet);
+    hand_over(packet);
     answers_end_ = line_free_;
     return true;
   }
 
-  void count(PerServo& its, std::uint64_t FaultCounts::* which) {
+  /// The adapter hands bytes over each time its latency timer has run out.
+  void hand_over(OutgoingPacket packet) {
+    const Time period = from_seconds(options_.latency_timer_s);
+    if (period > Time::zero()) packet.due = (packet.due / period + 1) * period;
+    outgoing_.add(packet);
+  }
+
+  void count(PerServo& its, std::uint64_t FaultCounts::*which) {
     ++(counts_.*which);
     ++(its.counts.*which);
   }
@@ -289,7 +298,7 @@ class Answerer {
   std::vector<PerServo> per_servo_;  // in the order of servos_
   FaultCounts counts_;
   typename Protocol::template Decoder<1024> decoder_;
-  std::vector<Outgoing> outgoing_;
+  OutgoingQueue outgoing_;
   Time line_free_{};    // when the last byte put on the line is over
   Time answers_end_{};  // when the last byte of the servos is
   std::uint64_t instructions_ = 0;

@@ -14,6 +14,7 @@ struct AnswererOptions {
   std::uint32_t bits_per_s = 3'000'000;
   Chain chain = Chain::stops;
   double chain_patience_s = 300e-6;  // after which a chain that goes on does so [s]
+  double latency_timer_s = 0;        // of the adapter: what it received is handed over each time it runs out [s]
   Faults faults{};
   std::uint64_t seed = 1;
 };

@@ -17,6 +17,7 @@ struct Faults {
   double late = 0;          // sent too late; the chain behind it stops
   double duplicated = 0;    // the host gets it twice, one after the other
   double wrong_id = 0;      // sent under the id of another servo of the bus
+  double unheard = 0;       // share of instructions that no servo hears, whatever becomes of answers
   double late_s = 0.012;    // how much later [s]
   int corrupted_bytes = 2;  // of an answer, at most, one after the other. A CRC-16 finds all damage to two, but only
                             // 65,535 of 65,536 damages to more; the sum of Protocol 1.0 all damage to one

@@ -25,8 +25,13 @@ class MemoryTransport {
   std::uint32_t bits_per_s() const { return answerer_->bits_per_s(); }
   /// Lets time pass.
   void wait(Time duration) { now_ += duration; }
+  void wait_until(Time time) { now_ = std::max(now_, time); }
+  /// As an adapter that is pulled out.
+  void hang_up() { gone_ = true; }
+  bool gone() const { return gone_; }
 
   void write(Bytes bytes, Time) {
+    if (gone_) throw BusError("memory: the port is gone");
     if (echo_) inject(bytes);
     answerer_->receive(bytes, now_);
   }
@@ -39,6 +44,7 @@ class MemoryTransport {
   }
 
   std::size_t read(Buffer out, Time deadline) {
+    if (gone_) throw BusError("memory: the port is gone");
     if (begin_ == end_) {
       begin_ = end_ = 0;
       const auto due = answerer_->next_due();
@@ -59,6 +65,7 @@ class MemoryTransport {
   Answerer<Protocol>* answerer_;
   std::size_t chunk_;
   bool echo_;
+  bool gone_ = false;
   Time now_{};
   std::array<std::uint8_t, 1024> waiting_{};
   std::size_t begin_ = 0, end_ = 0;

@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <utility>
 
 namespace dynamixel {
 
@@ -42,9 +43,14 @@ PseudoTerminal::PseudoTerminal() {
 }
 
 PseudoTerminal::~PseudoTerminal() {
+  hang_up();
   ::close(waker_);
-  ::close(theirs_);
-  ::close(ours_);
+}
+
+void PseudoTerminal::hang_up() {
+  if (ours_ < 0) return;
+  ::close(std::exchange(theirs_, -1));
+  ::close(std::exchange(ours_, -1));
 }
 
 std::size_t PseudoTerminal::read(Buffer bytes, Time deadline) {

@@ -23,6 +23,9 @@ class PseudoTerminal {
   std::size_t read(Buffer bytes, Time deadline);
   /// What the other end does not take in time is dropped: a line does not wait.
   void write(Bytes bytes);
+  /// As an adapter that is pulled out: whoever has the other end open finds it gone. For good. By the thread that
+  /// reads.
+  void hang_up();
   /// Ends a read() of another thread.
   void wake();
 

@@ -32,6 +32,12 @@ class VirtualBus {
 
   const std::string& path() const { return terminal_.path(); }
 
+  /// As an adapter that is pulled out. The servos live on, without instructions.
+  void hang_up() {
+    hanging_up_ = true;
+    terminal_.wake();
+  }
+
   /// action(answerer), while nothing else happens to it; returns what it does.
   template <class Action>
   auto with(Action action) {
@@ -43,10 +49,14 @@ class VirtualBus {
   void run() {
     std::array<std::uint8_t, 4096> bytes;
     while (!ending_) {
-      const Time idle = PseudoTerminal::now() + std::chrono::milliseconds(100);
+      if (hanging_up_.exchange(false)) terminal_.hang_up();
+      const Time idle = PseudoTerminal::now() + std::chrono::milliseconds(20);
       const Time deadline = with([&](auto& answerer) { return answerer.next_due().value_or(idle); });
       const std::size_t count = terminal_.read(bytes, deadline);
-      if (count > 0) with([&](auto& answerer) { answerer.receive(Bytes(bytes).first(count), PseudoTerminal::now()); });
+      with([&](auto& answerer) {
+        const Time now = PseudoTerminal::now();
+        count > 0 ? answerer.receive(Bytes(bytes).first(count), now) : answerer.advance(now);
+      });
       const auto take = [&](auto& answerer) { return answerer.take(PseudoTerminal::now(), bytes); };
       while (const std::size_t size = with(take)) terminal_.write(Bytes(bytes).first(size));
     }
@@ -55,7 +65,7 @@ class VirtualBus {
   PseudoTerminal terminal_;
   std::mutex mutex_;
   Answerer<Protocol> answerer_;
-  std::atomic<bool> ending_{false};
+  std::atomic<bool> ending_{false}, hanging_up_{false};
   std::thread thread_;
 };
 

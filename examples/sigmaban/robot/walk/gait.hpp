@@ -54,6 +54,12 @@ class Gait {
     cycles_ = 0;
   }
 
+  /// Lets the step under way fade out, and stands. No way back from it.
+  void stop_quickly() {
+    if (stage_ != GaitStage::done) stage_ = GaitStage::settle;
+    still_ = std::max(still_, options_.settle_s - short_settle_s);
+  }
+
   /// The orders for the next `duration` [s].
   WalkOrders advance(double duration) {
     const bool steps =
@@ -76,6 +82,7 @@ class Gait {
   surefoot::Vec<3> speed_ = surefoot::Vec<3>::Zero();
   double time_ = 0, still_ = 0, enabled_ = 0;
   int cycles_ = 0;
+  static constexpr double short_settle_s = 0.1;  // standing still before it sits down in a hurry [s]
 };
 
 }  // namespace sigmaban

@@ -39,8 +39,13 @@ void add_run(CLI::App& program) {
   command->add_option("--rate", options->rate_hz, "of the servos' goals [Hz]")
       ->check(CLI::Range(10.0, 500.0))
       ->capture_default_str();
-  command->add_option("--after", options->after, "off: torque off when it stands again; hold: keep it")
+  command->add_option("--after", options->after, "off: sit down, then torque off; hold: go on standing")
       ->check(CLI::IsMember({"off", "hold"}))
+      ->capture_default_str();
+  command
+      ->add_option("--bus-watchdog", options->bus_watchdog_s,
+                   "after which servos of Protocol 2.0 stop without instructions; 0: never [s]")
+      ->check(CLI::Range(0.0, 2.5))
       ->capture_default_str();
   command->add_option("--log", options->log, "recording (CSV) of every tick");
   command->add_option("--trunk-x", options->walk.trunk_x_offset, "of the trunk before the feet [m]")

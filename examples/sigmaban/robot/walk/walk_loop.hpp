@@ -1,14 +1,11 @@
 // The control loop of the robot: ball, policy, gait, walk engine, servos, at a fixed rate of the monotonic clock.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <string_view>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -17,7 +14,9 @@
 #include "../walk_engine/walk_engine.hpp"
 #include "ball.hpp"
 #include "durations.hpp"
+#include "far_ball.hpp"
 #include "gait.hpp"
+#include "stop_signals.hpp"
 #include "surefoot/core/policy.hpp"
 #include "surefoot/core/rng.hpp"
 #include "walk_log.hpp"
@@ -27,27 +26,26 @@ namespace sigmaban {
 struct WalkLoopOptions {
   double rate_hz = 100;
   double longest_walk_s = std::numeric_limits<double>::infinity();  // after which it stops [s]
+  bool hold = false;  // a walk that ends as it should keeps the torque on and stands; others never do
   GaitOptions gait;
+  FarBallCriteria far_ball;
 };
 
 /// Why a walk ended.
-enum class WalkEnd : std::uint8_t { asked, time, kick, lost, alarm };
+enum class WalkEnd : std::uint8_t { asked, time, kick, lost, alarm, fault };
 
 constexpr std::string_view in_words(WalkEnd end) {
-  switch (end) {
-    case WalkEnd::asked:
-      return "stopped as asked";
-    case WalkEnd::time:
-      return "stopped after its time";
-    case WalkEnd::kick:
-      return "stands where it may kick";
-    case WalkEnd::lost:
-      return "lost the ball";
-    case WalkEnd::alarm:
-      break;
-  }
-  return "stopped: a servo is too hot or its voltage is wrong";
+  constexpr std::string_view words[] = {"stopped as asked",
+                                        "stopped after its time",
+                                        "stands where it may kick",
+                                        "lost the ball",
+                                        "stopped: a servo is too hot or its voltage is wrong",
+                                        "gave up: something is wrong with a servo or the bus"};
+  return words[static_cast<std::size_t>(end)];
 }
+
+/// May the robot go on standing with its torque on?
+constexpr bool ended_well(WalkEnd end) { return end == WalkEnd::time || end == WalkEnd::kick || end == WalkEnd::lost; }
 
 /// Something that happened to a servo, or to all (no joint).
 struct WalkEvent {
@@ -67,94 +65,167 @@ struct WalkReport {
   std::vector<WalkEvent> events;  // the first hundred
 };
 
-/// Until the gait is done. `stop` is asked in every tick. Where it throws, the torque is off. Nothing is allocated
-/// while it runs, unless policy or ball do.
-template <class Problem, surefoot::Policy<Problem> Policy, BallSource Ball, WalkEngine Engine, class Group, class Stop>
-void run_walk(const Problem& problem, const Policy& policy, Ball& ball, Engine engine, Group& group, WalkLog& log,
-              const WalkLoopOptions& options, const surefoot::Rng& rng, Stop&& stop, WalkReport& report) {
-  using Clock = std::chrono::steady_clock;
-  const auto seconds = [](Clock::duration d) { return std::chrono::duration<double>(d).count(); };
-  const double dt = 1 / options.rate_hz;
-  const auto period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(dt));
-  auto&& acting = surefoot::start_of_run<Problem>(policy, rng);
-  Gait gait(options.gait);
-  surefoot::Vec<3> before = surefoot::Vec<3>::Zero();  // speed of the cycle before
-  std::optional<BallView> view;
-  std::array<double, 12> goals = {};
-  for (std::size_t i = 0; i < goals.size(); ++i) goals[i] = group.states()[i].position_rad;
-  report.events.reserve(100);
-  LogRow row;
-  const auto end = [&](WalkEnd why) {
-    if (gait.stage() == GaitStage::slow_down || gait.stage() == GaitStage::settle) return;
-    report.end = why;
-    gait.stop();
-  };
+namespace walk_loop_detail {
 
-  bool cycle_begins = true;
-  double walked = 0;
-  const Clock::time_point begin = Clock::now();
-  Clock::time_point due = begin;
-  while (gait.stage() != GaitStage::done) {
-    std::this_thread::sleep_until(due);
-    const Clock::time_point start = Clock::now();
-    if (stop()) end(WalkEnd::asked);
+/// One walk. `Acting` is what start_of_run() gives. Nothing is allocated in a tick, unless policy or ball do.
+template <class Problem, class Acting, class Ball, class Engine, class Group>
+class Walk {
+ public:
+  Walk(const Problem& problem, Acting& acting, Ball& ball, Engine engine, Group& group, const WalkLoopOptions& options,
+       WalkReport& report)
+      : problem_(&problem),
+        acting_(&acting),
+        ball_(&ball),
+        engine_(std::move(engine)),
+        group_(&group),
+        options_(options),
+        report_(&report),
+        gait_(options.gait),
+        far_(options.far_ball) {
+    for (std::size_t i = 0; i < goals_.size(); ++i) goals_[i] = group.states()[i].position_rad;
+    report.events.reserve(100);
+  }
 
-    const bool stepping = gait.stage() == GaitStage::step_in_place || gait.stage() == GaitStage::walk ||
-                          gait.stage() == GaitStage::slow_down;
-    if (stepping && cycle_begins) {
-      const surefoot::Vec<3> speed = gait.speed();
-      view = ball.see(speed, before);
-      surefoot::Vec<3> wanted = problem.speed_after(speed, -speed);  // where nothing is seen: towards a halt
-      if (gait.walking()) {
-        if (view) {
-          const auto seen = problem.arrive(view->x, view->y, view->angle, speed);
-          if (seen.reward == 0) end(WalkEnd::kick);
-          if (seen.terminal) end(WalkEnd::lost);
-          wanted = problem.speed_after(speed, acting(seen.next));
-        }
-        ++report.walk_cycles;
-      }
-      gait.begin_cycle(wanted);
-      before = speed;
+  /// The robot stands with its torque on, and may, or its torque is off.
+  bool over() const {
+    if (!group_->torque_on()) return true;
+    return gait_.stage() == GaitStage::done && options_.hold && ended_well(report_->end);
+  }
+
+  void obey(StopRequest request) {
+    if (request == StopRequest::none) return;
+    if (!hurries_) report_->end = WalkEnd::asked;
+    hurries_ = true;
+    gait_.stop_quickly();
+    if (request == StopRequest::at_once) group_->let_go();
+  }
+
+  /// The goals of this tick.
+  void think(double dt) {
+    const GaitStage stage = gait_.stage();
+    const bool stepping =
+        stage == GaitStage::step_in_place || stage == GaitStage::walk || stage == GaitStage::slow_down;
+    if (stepping && cycle_begins_) begin_cycle();
+    orders_ = gait_.advance(dt);
+    phase_ = engine_.phase();
+    const auto targets = engine_.step(orders_, stepping ? dt : 0);
+    if (targets) goals_ = targets->array();
+    if (!targets) ++report_->unreachable;
+    cycle_begins_ = engine_.phase() < phase_ || !stepping;
+    if (gait_.walking() && (walked_ += dt) >= options_.longest_walk_s) end(WalkEnd::time);
+  }
+
+  /// Goals to the servos, and what they say. `time` since the start [s].
+  void act(double time) {
+    group_->set_goals(goals_);
+    group_->update();
+    for (const dynamixel::ServoEvent& event : group_->events()) {
+      if (report_->events.size() < report_->events.capacity()) report_->events.push_back({time, event});
+      using enum dynamixel::ServoEventKind;
+      if (event.kind == hot) end(WalkEnd::alarm);
+      if (event.kind == voltage_wrong) hurry(WalkEnd::alarm);
+      if (event.kind == watchdog) hurry(WalkEnd::fault);
     }
-    const WalkOrders orders = gait.advance(dt);
-    const double phase = engine.phase();
-    const auto targets = engine.step(orders, stepping ? dt : 0);
-    if (targets) goals = targets->array();
-    if (!targets) ++report.unreachable;
-    cycle_begins = engine.phase() < phase || !stepping;
-    if (gait.walking() && (walked += dt) >= options.longest_walk_s) end(WalkEnd::time);
-    const Clock::time_point thought = Clock::now();
+    if (group_->fault()) hurry(WalkEnd::fault);
+    if (gait_.stage() == GaitStage::done && !over() && !group_->sitting()) group_->sit_down();
+  }
 
-    group.set_goals(goals);
-    group.update();
-    for (const dynamixel::ServoEvent& event : group.events()) {
-      if (report.events.size() < report.events.capacity()) report.events.push_back({seconds(start - begin), event});
-      if (event.kind == dynamixel::ServoEventKind::hot || event.kind == dynamixel::ServoEventKind::voltage_wrong) {
-        end(WalkEnd::alarm);
-      }
-    }
-
-    row.time = seconds(start - begin);
-    row.orders = {orders.forward, orders.left, orders.turn};
-    row.enabled = orders.enabled;
-    row.phase = phase;
+  LogRow row(double time, double lateness) const {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    row.ball = view ? std::array{view->x, view->y, view->angle} : std::array{unknown, unknown, unknown};
-    row.goals = goals;
-    for (std::size_t i = 0; i < goals.size(); ++i) {
-      const dynamixel::JointState& joint = group.states()[i];
+    LogRow row;
+    row.time = time;
+    row.orders = {orders_.forward, orders_.left, orders_.turn};
+    row.enabled = orders_.enabled;
+    row.phase = phase_;
+    row.ball = view_ ? std::array{view_->x, view_->y, view_->angle} : std::array{unknown, unknown, unknown};
+    for (std::size_t i = 0; i < goals_.size(); ++i) {
+      const dynamixel::JointState& joint = group_->states()[i];
+      row.goals[i] = group_->sent_goal(i);
       row.positions[i] = joint.fresh ? joint.position_rad : unknown;
       row.voltages[i] = joint.fresh ? joint.voltage_v : unknown;
     }
-    row.lateness = seconds(start - due);
-    log.add(row);
+    row.lateness = lateness;
+    return row;
+  }
 
-    const Clock::time_point over = Clock::now();
+ private:
+  void end(WalkEnd why) {
+    if (gait_.stage() >= GaitStage::slow_down) return;
+    report_->end = why;
+    gait_.stop();
+  }
+  void hurry(WalkEnd why) {
+    if (!hurries_) report_->end = why;
+    hurries_ = true;
+    gait_.stop_quickly();
+  }
+
+  void begin_cycle() {
+    const surefoot::Vec<3> speed = gait_.speed();
+    view_ = ball_->see(speed, before_);
+    surefoot::Vec<3> wanted = problem_->speed_after(speed, -speed);  // where nothing is seen: towards a halt
+    if (gait_.walking()) {
+      if (view_) wanted = problem_->speed_after(speed, approach(speed));
+      ++report_->walk_cycles;
+    }
+    gait_.begin_cycle(wanted);
+    before_ = speed;
+  }
+
+  /// What the policy does about the ball in view, or ends the walk for.
+  auto approach(const surefoot::Vec<3>& speed) {
+    const BallView near = far_.within(*view_, problem_->constants.max_distance);
+    const auto seen = problem_->arrive(near.x, near.y, near.angle, speed);
+    if (seen.reward == 0) end(WalkEnd::kick);
+    if (far_.lost()) end(WalkEnd::lost);
+    return (*acting_)(seen.next);
+  }
+
+  const Problem* problem_;
+  Acting* acting_;
+  Ball* ball_;
+  Engine engine_;
+  Group* group_;
+  WalkLoopOptions options_;
+  WalkReport* report_;
+  Gait gait_;
+  FarBall far_;
+  surefoot::Vec<3> before_ = surefoot::Vec<3>::Zero();  // speed of the cycle before
+  std::optional<BallView> view_;
+  std::array<double, 12> goals_ = {};
+  WalkOrders orders_;
+  double phase_ = 0, walked_ = 0;
+  bool cycle_begins_ = true;
+  bool hurries_ = false;
+};
+
+}  // namespace walk_loop_detail
+
+/// Until the robot sits limp or, where it may, stands; by the clock of the group's bus. `stop` is asked in every tick
+/// for a StopRequest. Where it throws, the torque is off.
+template <class Problem, surefoot::Policy<Problem> Policy, BallSource Ball, WalkEngine Engine, class Group, class Stop>
+void run_walk(const Problem& problem, const Policy& policy, Ball& ball, Engine engine, Group& group, WalkLog& log,
+              const WalkLoopOptions& options, const surefoot::Rng& rng, Stop&& stop, WalkReport& report) {
+  using dynamixel::Time, dynamixel::to_seconds;
+  const double dt = 1 / options.rate_hz;
+  const Time period = dynamixel::from_seconds(dt);
+  auto&& acting = surefoot::start_of_run<Problem>(policy, rng);
+  walk_loop_detail::Walk walk(problem, acting, ball, std::move(engine), group, options, report);
+  const Time begin = group.now();
+  for (Time due = begin; !walk.over();) {
+    group.wait_until(due);
+    const Time start = group.now();
+    walk.obey(stop());
+    walk.think(dt);
+    const Time thought = group.now();
+    walk.act(to_seconds(thought - begin));
+    log.add(walk.row(to_seconds(start - begin), to_seconds(start - due)));
+
+    const Time over = group.now();
     ++report.ticks;
-    report.lateness.add(seconds(start - due));
-    report.thinking.add(seconds(thought - start));
-    report.ticking.add(seconds(over - start));
+    report.lateness.add(to_seconds(start - due));
+    report.thinking.add(to_seconds(thought - start));
+    report.ticking.add(to_seconds(over - start));
     due += period;
     if (over > due) ++report.overruns;
     while (over > due + period) due += period;  // what was missed is not made up for

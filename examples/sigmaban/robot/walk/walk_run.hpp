@@ -17,6 +17,7 @@ struct WalkRun {
   std::vector<double> ball;
   std::filesystem::path log;
   double rate_hz = 100, seconds = 30;
+  double bus_watchdog_s = 0.5;
   int protocol = 2;
   std::uint32_t bits_per_s = 3'000'000;
   std::uint64_t seed = 1;
