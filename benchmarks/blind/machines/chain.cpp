@@ -86,7 +86,7 @@ class Chain {
       parameter((s_.turns ? "J" : "m") + index(i), s_.mass_unit, s_.mass * share, 0.3);
       if (i > 0) link(i - 1, i, index(i - 1));
     }
-    if (s_.count == 3 && random_.chance(0.5)) link(0, 2, "p");
+    if (s_.count == 3 && random_.chance(0.5)) link(0, 2, "b");
     if (s_.clamped) {
       const std::size_t where = grammar_.draw_own(random_) ? s_.count - 1 : 0;
       parameter("k0", s_.force_unit + "/" + s_.length_unit,

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -119,6 +120,16 @@ TEST_CASE("an initial angle that strayed a whole turn away is read off again") {
   const Fit fitted = fit(bound, start, problem, serially());
   CHECK(fitted.hypothesis.initial[0][0] == doctest::Approx(0));
   CHECK(fitted.loss < 1e-12);
+}
+
+TEST_CASE("a start that is no number gives no fit") {
+  const BoundSimulator bound = bind_simulator(LeakyTank{}, tanks(2, 100, 1, 1));
+  Hypothesis start = nominal_hypothesis(bound);
+  start.effects = attachments(bound, {effects::leak()}, {});
+  start.values.emplace_back(Eigen::VectorXd::Constant(1, std::numeric_limits<double>::quiet_NaN()));
+  const Fit fitted = fit(bound, start, problem_of(2, 0.01), serially());
+  CHECK_FALSE(fitted.ok);
+  CHECK(fitted.loss == std::numeric_limits<double>::infinity());
 }
 
 TEST_CASE("bounds hold, and what is not free stays") {

@@ -95,9 +95,19 @@ TEST_CASE("each strength of an effect has a share of its own") {
 TEST_CASE("nearly collinear signatures, of which neither explains anything, are found at their full size") {
   const double angle = 0.05;  // apart
   const Eigen::MatrixXd one = column(std::cos(angle), std::sin(angle), 0), other = column(std::cos(angle), 0, 0);
-  const auto pairs = propose_pairs({proposal("one", one, rest, -100, 100), proposal("other", other, rest, -100, 100)}, 1);
+  const auto pairs =
+      propose_pairs({proposal("one", one, rest, -100, 100), proposal("other", other, rest, -100, 100)}, 1);
   REQUIRE(pairs.size() == 1);
   CHECK(pairs[0].gain == doctest::Approx(1));
+}
+
+TEST_CASE("a signature that runs away is in no pair") {
+  const auto pairs = propose_pairs({proposal("one", column(1, 1, 0), rest), proposal("other", column(1, 0, 0), rest),
+                                    proposal("away", column(1e200, 1e200, 0), rest)},
+                                   9);
+  REQUIRE(pairs.size() == 1);
+  CHECK(pairs[0].first.effect.effect->name == "one");
+  CHECK(pairs[0].second.effect.effect->name == "other");
 }
 
 TEST_CASE("two forms of one effect at one place are no pair") {

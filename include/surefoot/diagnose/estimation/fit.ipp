@@ -120,6 +120,7 @@ SUREFOOT_INLINE Fit descend(const BoundSimulator& bound, const Hypothesis& start
   const FitFunctions functions(bound, start, problem, parallel);
   Fit result{.hypothesis = start};
   const Eigen::VectorXd z = functions.start();
+  if (!all_finite(z)) return result;
   const Eigen::VectorXd first = functions.residuals(z);
   result.loss = mean_loss(first, problem.weighting.robust);
   if (!all_finite(first) || first.size() == 0) return result;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -130,7 +131,9 @@ SUREFOOT_INLINE std::vector<ProposedPair> propose_pairs(const std::vector<Propos
     for (std::size_t j = i + 1; j < proposals.size(); ++j) {
       const bool both = proposals[i].beyond.cols() > 0 && proposals[j].beyond.cols() > 0;
       if (!both || same_but_for_form(proposals[i].effect, proposals[j].effect)) continue;
-      ranked.push_back({i, j, shares_of_pair(all, i, j)});
+      Shares shares = shares_of_pair(all, i, j);
+      if (!std::isfinite(shares.gain) || !all_finite(shares.value)) continue;  // a signature that runs away
+      ranked.push_back({i, j, std::move(shares)});
     }
   }
   sort_items(ranked, [](const Ranked& a, const Ranked& b) { return a.shares.gain > b.shares.gain; });
