@@ -20,20 +20,6 @@ function(surefoot_unity target files)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${SUREFOOT_UNITY} UNITY_BUILD_BATCH_SIZE ${files})
 endfunction()
 
-# What nearly every file includes, compiled once for all targets.
-if(SUREFOOT_UNITY)
-  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/common_headers.cpp CONTENT "")
-  add_library(surefoot_common_headers OBJECT ${PROJECT_BINARY_DIR}/common_headers.cpp)
-  target_link_libraries(surefoot_common_headers PRIVATE surefoot_own)
-  target_precompile_headers(surefoot_common_headers PRIVATE <Eigen/Dense> <algorithm> <cmath> <filesystem> <fstream>
-                            <functional> <map> <memory> <sstream> <string> <thread> <vector>)
-endif()
-function(surefoot_precompiled target)
-  if(SUREFOOT_UNITY)
-    target_precompile_headers(${target} REUSE_FROM surefoot_common_headers)
-  endif()
-endfunction()
-
 if(SUREFOOT_TIDY)
   find_program(SUREFOOT_CLANG_TIDY NAMES clang-tidy-19 clang-tidy)
   if(SUREFOOT_CLANG_TIDY)
