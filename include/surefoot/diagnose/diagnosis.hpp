@@ -69,7 +69,7 @@ struct FoundEffect {
 /// Effects that might have been chosen instead.
 struct Alternative {
   std::vector<std::pair<std::string, std::string>> effects;  // name, attached to
-  double fitted_rmse = 0;                           // in units as in RecordingFit
+  double fitted_rmse = 0;                                    // in units as in RecordingFit
   double probability = 0;                                    // posterior, of this structure among all that were tried
   bool indistinguishable = false;                            // these recordings cannot tell them from the chosen ones
 };

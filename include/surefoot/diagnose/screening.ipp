@@ -65,7 +65,7 @@ SUREFOOT_INLINE void check_readings(const SimulatorInfo& info, const std::vector
   }
   if (readings >= enough * std::max<std::size_t>(1, unknowns)) return;
   throw DiagnoseError("the recordings hold " + std::to_string(readings) +
-                      " readings after their first rows, too few to " + "tell " + std::to_string(unknowns) +
+                      " readings after their first rows, too few to tell " + std::to_string(unknowns) +
                       " parameters and initial states; record at least " +
                       std::to_string(enough * std::max<std::size_t>(1, unknowns)));
 }

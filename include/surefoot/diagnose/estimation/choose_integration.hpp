@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 
 #include "surefoot/diagnose/estimation/hypothesis.hpp"
 
@@ -12,6 +13,11 @@ namespace surefoot::diagnosis {
 /// unit), tried on one recording.
 Integration choose_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                const Eigen::VectorXd& residual_size, const Integration& now, std::size_t recording);
+
+/// The same where it is finer than now: what effects explain leaves smaller residuals. None where it is not.
+std::optional<Integration> finer_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                             const Eigen::VectorXd& residual_size, const Integration& now,
+                                             std::size_t recording);
 
 }  // namespace surefoot::diagnosis
 

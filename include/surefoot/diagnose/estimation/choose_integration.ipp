@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -50,6 +51,14 @@ SUREFOOT_INLINE Integration choose_integration(const BoundSimulator& bound, cons
     if (good) return coarse;
   }
   return fine;
+}
+
+SUREFOOT_INLINE std::optional<Integration> finer_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                             const Eigen::VectorXd& residual_size,
+                                                             const Integration& now, std::size_t recording) {
+  const Integration chosen = choose_integration(bound, hypothesis, residual_size, now, recording);
+  if (chosen.order <= now.order && chosen.step >= now.step) return std::nullopt;
+  return chosen;
 }
 
 }  // namespace surefoot::diagnosis

@@ -77,8 +77,8 @@ void test_losses(const std::vector<double>& before, const std::vector<double>& a
 /// the choice.
 Comparison compare_losses(const BlockLosses& before, const BlockLosses& after);
 
-/// By fold, a fit to the recordings of the problem that are not in it, from `start` on; the unknown initial states of the
-/// fold are estimated with all else as it is.
+/// By fold, a fit to the recordings of the problem that are not in it, from `start` on; the unknown initial states of
+/// the fold are estimated with all else as it is.
 std::vector<Hypothesis> fits_to_other_folds(const BoundSimulator& bound, const Hypothesis& start,
                                             const FitProblem& problem,
                                             const std::vector<std::vector<std::size_t>>& folds,

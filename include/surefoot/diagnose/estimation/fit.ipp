@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -114,17 +115,23 @@ SUREFOOT_INLINE double mean_loss(const Eigen::VectorXd& residuals, double robust
   return sum / static_cast<double>(residuals.size());
 }
 
+/// A fit and its residuals, recording after recording.
+struct Descent {
+  Fit fit;
+  Eigen::VectorXd residuals;
+};
+
 /// One descent, from the parameters of `start` on.
-SUREFOOT_INLINE Fit descend(const BoundSimulator& bound, const Hypothesis& start, const FitProblem& problem,
-                            const Parallel& parallel) {
+SUREFOOT_INLINE Descent descend(const BoundSimulator& bound, const Hypothesis& start, const FitProblem& problem,
+                                const Parallel& parallel) {
   const FitFunctions functions(bound, start, problem, parallel);
-  Fit result{.hypothesis = start};
+  Descent result{Fit{.hypothesis = start}, {}};
   const Eigen::VectorXd z = functions.start();
   if (!all_finite(z)) return result;
-  const Eigen::VectorXd first = functions.residuals(z);
-  result.loss = mean_loss(first, problem.weighting.robust);
+  const Eigen::VectorXd first = result.residuals = functions.residuals(z);
+  result.fit.loss = mean_loss(first, problem.weighting.robust);
   if (!all_finite(first) || first.size() == 0) return result;
-  result.ok = true;
+  result.fit.ok = true;
   if (functions.variables().empty()) return result;
   LeastSquaresOptions options;
   options.box = functions.box();
@@ -147,43 +154,52 @@ SUREFOOT_INLINE Fit descend(const BoundSimulator& bound, const Hypothesis& start
     return functions.jacobian(x, residuals(x));
   };
   const auto fitted = least_squares(residuals, z, options, jacobian);
-  result.hypothesis = functions.at(fitted.x);
-  result.loss = mean_loss(fitted.residuals, problem.weighting.robust);
+  result.fit.hypothesis = functions.at(fitted.x);
+  result.fit.loss = mean_loss(fitted.residuals, problem.weighting.robust);
+  result.residuals = fitted.residuals;
   return result;
 }
 
-/// Puts the unknown initial states of a recording back to what was read off it, where that fits better; true if it does
-/// so anywhere.
-SUREFOOT_INLINE bool read_off_again(const BoundSimulator& bound, Hypothesis& hypothesis, const FitProblem& problem,
-                                    const Parallel& parallel) {
-  std::vector<char> better(problem.recordings.size(), 0);
-  parallel(problem.recordings.size(), [&](std::size_t i) {
+/// A fitted hypothesis with the unknown initial states of a recording put back to what was read off it, where that fits
+/// better; none where it does so nowhere.
+SUREFOOT_INLINE std::optional<Hypothesis> read_off_again(const BoundSimulator& bound, const Descent& fitted,
+                                                         const FitProblem& problem, const Parallel& parallel) {
+  const std::size_t count = problem.recordings.size();
+  std::vector<Eigen::Index> begin{0};
+  for (const std::size_t r : problem.recordings) {
+    begin.push_back(begin.back() + static_cast<Eigen::Index>(cells_of(bound.recordings[r]).size()));
+  }
+  std::vector<char> better(count, 0);
+  parallel(count, [&](std::size_t i) {
     const std::size_t r = problem.recordings[i];
     const Recording& recording = bound.recordings[r];
     if (!has_unknown_initial_state(recording)) return;
-    const std::vector<Cell> cells = cells_of(recording);
-    const auto loss = [&](const Hypothesis& one) {
-      const SimulatedRun run = simulate(bound, one, r, problem.integration);
-      return mean_loss(weighted_residuals(bound, r, run, cells, problem.weighting), problem.weighting.robust);
-    };
-    Hypothesis as_read = hypothesis;
+    Hypothesis as_read = fitted.fit.hypothesis;
     as_read.initial[r] = recording.initial;
-    better[i] = loss(as_read) < loss(hypothesis) ? 1 : 0;
+    const SimulatedRun run = simulate(bound, as_read, r, problem.integration);
+    const Eigen::VectorXd there = weighted_residuals(bound, r, run, cells_of(recording), problem.weighting);
+    Eigen::VectorXd here(there.size());
+    std::copy_n(fitted.residuals.data() + begin[i], here.size(), here.data());
+    const double robust = problem.weighting.robust;
+    better[i] = mean_loss(there, robust) < mean_loss(here, robust) ? 1 : 0;
   });
-  for (std::size_t i = 0; i < better.size(); ++i) {
+  if (std::ranges::find(better, 1) == better.end()) return std::nullopt;
+  Hypothesis result = fitted.fit.hypothesis;
+  for (std::size_t i = 0; i < count; ++i) {
     const std::size_t r = problem.recordings[i];
-    if (better[i] != 0) hypothesis.initial[r] = bound.recordings[r].initial;
+    if (better[i] != 0) result.initial[r] = bound.recordings[r].initial;
   }
-  return std::ranges::find(better, 1) != better.end();
+  return result;
 }
 
 SUREFOOT_INLINE Fit fit(const BoundSimulator& bound, const Hypothesis& start, const FitProblem& problem,
                         const Parallel& parallel) {
-  Fit result = descend(bound, start, problem, parallel);
-  Hypothesis elsewhere = result.hypothesis;
-  if (!result.ok || problem.stopped() || !read_off_again(bound, elsewhere, problem, parallel)) return result;
-  const Fit again = descend(bound, elsewhere, problem, parallel);
-  return again.ok && again.loss < result.loss ? again : result;
+  const Descent first = descend(bound, start, problem, parallel);
+  if (!first.fit.ok || problem.stopped()) return first.fit;
+  const std::optional<Hypothesis> elsewhere = read_off_again(bound, first, problem, parallel);
+  if (!elsewhere) return first.fit;
+  const Fit again = descend(bound, *elsewhere, problem, parallel).fit;
+  return again.ok && again.loss < first.fit.loss ? again : first.fit;
 }
 
 SUREFOOT_INLINE Hypothesis with_estimated_initial_states(const BoundSimulator& bound, const Hypothesis& hypothesis,

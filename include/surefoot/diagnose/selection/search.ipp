@@ -93,11 +93,10 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> extended_from_nominal(Search se
 
 SUREFOOT_INLINE bool refine_integration(Search& search, const EvaluatedHypothesis& best) {
   FitProblem& problem = search.problem.fit;
-  const Integration finer = choose_integration(search.bound, best.hypothesis, problem.weighting.sigma,
-                                               problem.integration, problem.recordings.front());
-  if (finer.order <= problem.integration.order && finer.step >= problem.integration.step) return false;
-  problem.integration = finer;
-  return true;
+  const auto finer = finer_integration(search.bound, best.hypothesis, problem.weighting.sigma, problem.integration,
+                                       problem.recordings.front());
+  if (finer) problem.integration = *finer;
+  return finer.has_value();
 }
 
 /// A hypothesis, fitted and evaluated again.

@@ -285,15 +285,15 @@ SUREFOOT_INLINE void evaluate_selection(const EstimationSetup& setup, const Cali
   diagnosis.noise_findings = find_noise(setup.bound, choice.chosen.hypothesis, training, setup.noise, run.parallel);
 }
 
-/// Effects may need finer steps than the model without them: these are chosen anew, by what the effects leave.
-SUREFOOT_INLINE void integrate_finer(EstimationSetup& setup, Selection& selection, const RunContext& run) {
+/// The choice, fitted to all recordings, may need finer steps than the search took: it is fitted once more with these.
+SUREFOOT_INLINE void refit_with_finer_steps(EstimationSetup& setup, Selection& selection, const RunContext& run) {
   auto& [bound, split, noise, problem] = setup;
   Hypothesis& chosen = selection.chosen.hypothesis;
   if (chosen.effects.size() == selection.nominal.hypothesis.effects.size()) return;
-  const Integration finer =
-      choose_integration(bound, chosen, problem.weighting.sigma, bound.integration, split.training.front());
-  if (finer.order <= bound.integration.order && finer.step >= bound.integration.step) return;
-  bound.integration = problem.integration = finer;
+  const auto finer =
+      finer_integration(bound, chosen, problem.weighting.sigma, bound.integration, split.training.front());
+  if (!finer) return;
+  bound.integration = problem.integration = *finer;
   chosen = fit(bound, chosen, problem, run.parallel).hypothesis;
 }
 
@@ -331,7 +331,7 @@ SUREFOOT_INLINE void diagnose_recordings(const BindSimulator& bind, std::vector<
   diagnosis.complete = !run.search_has_ended();
   setup.problem = selection.fit;
   setup.bound.integration = setup.problem.integration;
-  integrate_finer(setup, selection, run);
+  refit_with_finer_steps(setup, selection, run);
   remove_outliers_from(setup, selection.chosen.hypothesis, run, diagnosis);
 
   run.progress("evaluating", progress_evaluation);
