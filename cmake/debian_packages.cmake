@@ -10,7 +10,7 @@ set(CPACK_COMPONENTS_ALL headers compiled apps_library apps)
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libsurefoot-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4), libmuparser-dev")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4)")
 
 set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME surefoot-tools)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)

@@ -31,4 +31,4 @@ require_packages() {
 
 # What every program of ours is built with.
 # shellcheck disable=SC2034
-build_packages=(g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev libmuparser-dev libtoml11-dev)
+build_packages=(g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev libtoml11-dev)

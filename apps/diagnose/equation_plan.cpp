@@ -1,10 +1,13 @@
 #include "equation_plan.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 
 #include "expression.hpp"
+#include "known_operations.hpp"
 
 namespace diagnose_program {
 namespace {
@@ -38,6 +41,7 @@ class Planner {
     name_signals();
     plan_.outputs = part(outputs);
     plan_.efforts = part(efforts);
+    plan_.prepare = std::move(prepare_.operations);
     return std::move(plan_);
   }
 
@@ -49,61 +53,76 @@ class Planner {
     bool is_input = false;   // another name for an input
   };
 
+  // Operations on their way, and the slots of those that are there already.
+  using Operands = std::tuple<Operation::Code, const void*, int, int, int>;
+  struct Block {
+    Operations operations;
+    std::map<Operands, int> slots;
+  };
+
   int add(double value, bool fixed) {
     plan_.slots.push_back(value);
     fixed_.push_back(fixed);
     return static_cast<int>(plan_.slots.size()) - 1;
   }
 
-  static std::string variable(int slot) { return "v" + std::to_string(slot); }
+  bool is_fixed(int slot) const { return fixed_[static_cast<std::size_t>(slot)]; }
 
-  bool is_fixed(const Expression& e, int i) const {
-    const Node& node = e[i];
-    if (node.kind == Node::Kind::name) return fixed_[static_cast<std::size_t>(slot_of_.at(node.text))];
-    return std::ranges::all_of(node.arguments, [&](int argument) { return is_fixed(e, argument); });
-  }
-
-  // The text of a node, its fixed parts replaced by slots that prepare computes.
-  std::string text(const Expression& e, int i) {
-    const int slot = known_slot(e, i);
-    return slot >= 0 ? variable(slot) : plain_text(e, i);
-  }
-
-  std::string plain_text(const Expression& e, int i) {
-    const Node& node = e[i];
-    const auto argument = [&](std::size_t k) { return text(e, node.arguments[k]); };
-    switch (node.kind) {
-      case Node::Kind::number:
-      case Node::Kind::name:
-        return variable(known_slot(e, i));
-      case Node::Kind::negate:
-        return "(-" + argument(0) + ")";
-      case Node::Kind::binary:
-        return "(" + argument(0) + node.text + argument(1) + ")";
-      case Node::Kind::choice:
-        return "(" + argument(0) + "?" + argument(1) + ":" + argument(2) + ")";
-      case Node::Kind::call:
-        break;
+  // The slot of an operation's result. What depends on fixed slots alone is computed once, in prepare.
+  int result_of(Operation operation, Block& block) {
+    const bool fixed = is_fixed(operation.a) && is_fixed(operation.b) && is_fixed(operation.c);
+    Block& home = fixed ? prepare_ : block;
+    const void* function = operation.unary != nullptr ? reinterpret_cast<const void*>(operation.unary)
+                                                      : reinterpret_cast<const void*>(operation.binary);
+    const Operands key{operation.code, function, operation.a, operation.b, operation.c};
+    const auto [at, added] = home.slots.emplace(key, 0);
+    if (added) {
+      operation.to = at->second = add(unknown, fixed);
+      home.operations.push_back(operation);
     }
-    if (node.arguments.size() == 1) return node.text + "(" + argument(0) + ")";
-    std::string folded = argument(0);
-    for (std::size_t k = 1; k < node.arguments.size(); ++k) folded = node.text + "(" + folded + "," + argument(k) + ")";
-    return folded;
+    return at->second;
   }
 
-  // EffectSlot that already holds, or after prepare will hold, the value of a node; -1: it changes and must be computed.
-  int known_slot(const Expression& e, int i) {
+  int with(Operation::Code code, int a, int b, Block& block) { return result_of({code, 0, a, b, a}, block); }
+
+  int power(int base, const Node& exponent, int exponent_slot, Block& block) {
+    constexpr double most_products = 4;
+    const bool products = exponent.kind == Node::Kind::number && exponent.value >= 1 &&
+                          exponent.value <= most_products && exponent.value == std::floor(exponent.value);
+    if (!products) return with(Operation::Code::power, base, exponent_slot, block);
+    int result = base;
+    for (int k = 1; k < static_cast<int>(exponent.value); ++k) {
+      result = with(Operation::Code::multiply, result, base, block);
+    }
+    return result;
+  }
+
+  // The slot of a node's value, which operations of `block` or of prepare compute.
+  int slot_of(const Expression& e, int i, Block& block) {
     const Node& node = e[i];
     if (node.kind == Node::Kind::name) return slot_of_.at(node.text);
     if (node.kind == Node::Kind::number) return number_slot(node.value);
-    if (!is_fixed(e, i)) return -1;
-    const std::string value = plain_text(e, i);
-    const auto [at, added] = prepared_.emplace(value, 0);
-    if (added) {
-      at->second = add(unknown, true);
-      plan_.prepare.push_back({at->second, value});
+    std::vector<int> arguments;
+    for (const int argument : node.arguments) arguments.push_back(slot_of(e, argument, block));
+    switch (node.kind) {
+      case Node::Kind::negate:
+        return with(Operation::Code::negate, arguments[0], arguments[0], block);
+      case Node::Kind::binary:
+        if (node.text == "^") return power(arguments[0], e[node.arguments[1]], arguments[1], block);
+        return with(code_of_operator(node.text), arguments[0], arguments[1], block);
+      case Node::Kind::choice:
+        return result_of({Operation::Code::choice, 0, arguments[0], arguments[1], arguments[2]}, block);
+      default:
+        break;
     }
-    return at->second;
+    Operation call = call_of(node.text, arguments.size());
+    int result = arguments[0];
+    for (std::size_t k = std::min<std::size_t>(1, arguments.size() - 1); k < arguments.size(); ++k) {
+      call.a = result;
+      call.b = call.c = arguments[k];
+      result = result_of(call, block);
+    }
+    return result;
   }
 
   int number_slot(double value) {
@@ -120,32 +139,33 @@ class Planner {
 
   void add_let(const ModelLet& let) {
     const Expression e = parse_expression(let.value.text);
-    const int known = known_slot(e, e.root);
-    const bool changes = known < 0 || !fixed_[static_cast<std::size_t>(known)];
-    if (!changes) {
-      slot_of_[let.name] = known;
+    Block block;
+    const int value = slot_of(e, e.root, block);
+    if (is_fixed(value)) {
+      slot_of_[let.name] = value;
       return;
     }
-    const std::string value = text(e, e.root);
+    // in a slot of its own, since an effect may change it
     const int slot = slot_of_[let.name] = add(unknown, false);
-    const bool is_input = known >= plan_.states && known < plan_.states + plan_.inputs;
-    lets_.push_back({let.name, {slot, value}, slots_in(e), is_input});
+    if (block.operations.empty()) {
+      block.operations.push_back({Operation::Code::copy, slot, value, value, value});
+    } else {
+      block.operations.back().to = slot;
+    }
+    const bool is_input = value >= plan_.states && value < plan_.states + plan_.inputs;
+    lets_.push_back({let.name, {slot, std::move(block.operations)}, slots_in(e), is_input});
   }
 
   PlanPart part(const std::vector<Formula>& formulas) {
     PlanPart result;
+    Block block;
     std::vector<bool> needed(plan_.slots.size(), false);
     for (const Formula& formula : formulas) {
       const Expression e = parse_expression(formula.text);
       for (const int slot : slots_in(e)) needed[static_cast<std::size_t>(slot)] = true;
-      int slot = known_slot(e, e.root);
-      if (slot < 0) {
-        const std::string value = text(e, e.root);
-        slot = add(unknown, false);
-        result.steps.push_back({slot, value});
-      }
-      result.results.push_back(slot);
+      result.results.push_back(slot_of(e, e.root, block));
     }
+    result.operations = std::move(block.operations);
     for (std::size_t i = lets_.size(); i-- > 0;) {
       if (!needed[static_cast<std::size_t>(lets_[i].step.slot)]) continue;
       for (const int slot : lets_[i].needs) needed[static_cast<std::size_t>(slot)] = true;
@@ -173,7 +193,7 @@ class Planner {
   EquationPlan plan_;
   std::vector<bool> fixed_;  // by slot: stays the same during a run
   std::map<std::string, int> slot_of_;
-  std::map<std::string, int> prepared_;  // texts
+  Block prepare_;
   std::map<double, int> numbers_;
   std::vector<Let> lets_;
 };

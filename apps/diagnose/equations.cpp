@@ -26,17 +26,17 @@ surefoot::SimulatorInfo info_of(const ModelFile& model, const EquationPlan& plan
   return info;
 }
 
-// A first let with its own formula each, in the order of the plan.
 std::vector<Formulas> one_by_one(std::span<const PlanStep> steps, std::span<double> slots) {
   std::vector<Formulas> result;
-  for (const PlanStep& step : steps) result.emplace_back(std::span(&step, 1), slots);
+  for (const PlanStep& step : steps) result.emplace_back(step.operations, slots);
   return result;
 }
 
 Formulas together(const PlanPart& part, std::span<double> slots) {
-  std::vector<PlanStep> steps = part.lets;
-  steps.insert(steps.end(), part.steps.begin(), part.steps.end());
-  return {steps, slots};
+  Operations all;
+  for (const PlanStep& let : part.lets) all.insert(all.end(), let.operations.begin(), let.operations.end());
+  all.insert(all.end(), part.operations.begin(), part.operations.end());
+  return {all, slots};
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ void Equations::build() {
   prepare_ = Formulas(plan_->prepare, slots_);
   whole_change_ = together(plan_->change, slots_);
   lets_ = one_by_one(plan_->change.lets, slots_);
-  change_ = Formulas(plan_->change.steps, slots_);
+  change_ = Formulas(plan_->change.operations, slots_);
   outputs_ = together(plan_->outputs, slots_);
   efforts_ = together(plan_->efforts, slots_);
 }

@@ -1,32 +1,29 @@
-// Several expressions computed by muParser in one go.
+// The operations of formulas on the memory that holds their slots.
 #pragma once
 
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "equation_plan.hpp"
-
-namespace mu {
-class Parser;
-}
 
 namespace diagnose_program {
 
 /// Bound to the memory of `slots`: that must stay where it is.
 class Formulas {
  public:
-  Formulas();
-  Formulas(std::span<const PlanStep> steps, std::span<double> slots);
-  Formulas(Formulas&&) noexcept;
-  Formulas& operator=(Formulas&&) noexcept;
-  ~Formulas();
+  Formulas() = default;
+  Formulas(std::span<const Operation> operations, std::span<double> slots);
 
-  /// Computes every step in order. Never throws; results may be NaN or infinite.
+  /// Computes every operation in order. Never throws; results may be NaN or infinite.
   void evaluate() const;
 
  private:
-  std::unique_ptr<mu::Parser> parser_;  // none: nothing to compute
+  struct Bound {
+    Operation operation;
+    double* to;
+    const double *a, *b, *c;
+  };
+  std::vector<Bound> operations_;
 };
 
 }  // namespace diagnose_program
