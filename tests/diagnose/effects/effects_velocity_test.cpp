@@ -47,7 +47,7 @@ struct Cart {
   Output observe(const State& x, const Input&, const Eigen::VectorXd&) const { return Output(x[0]); }
 };
 
-Recording recording_of(int rows, double step, double q, double v, const std::vector<double>& force = {}) {
+Recording driven(int rows, double step, double q, double v, const std::vector<double>& force = {}) {
   Recording recording;
   recording.name = "test";
   recording.time = Eigen::VectorXd::LinSpaced(rows, 0, step * (rows - 1));
@@ -59,7 +59,7 @@ Recording recording_of(int rows, double step, double q, double v, const std::vec
   return recording;
 }
 
-Eigen::MatrixXd simulated(const Effect& effect, const std::vector<double>& values, const Recording& recording,
+Eigen::MatrixXd states_of(const Effect& effect, const std::vector<double>& values, const Recording& recording,
                           const Cart& cart = {}) {
   Augmented augmented;
   augmented.effects = {{.name = effect.name, .attached_to = "v", .form = effect.form, .values = values}};
@@ -71,41 +71,41 @@ double energy(const Eigen::Vector2d& state, const Cart& cart = {}) {
 }
 
 TEST_CASE("viscous friction slows a rolling cart down exponentially") {
-  const auto x = simulated(effects::viscous_friction(), {3}, recording_of(101, 0.01, 0, 2));
+  const auto x = states_of(effects::viscous_friction(), {3}, driven(101, 0.01, 0, 2));
   CHECK(x(1, 100) == doctest::Approx(2 * std::exp(-3 / mass)).epsilon(1e-8));
 }
 
 TEST_CASE("quadratic drag slows a rolling cart down hyperbolically") {
-  const auto x = simulated(effects::quadratic_drag(), {3}, recording_of(101, 0.01, 0, -2));
+  const auto x = states_of(effects::quadratic_drag(), {3}, driven(101, 0.01, 0, -2));
   CHECK(x(1, 100) == doctest::Approx(-2 / (1 + 3 / mass * 2)).epsilon(1e-8));
 }
 
 TEST_CASE("dry friction stops a rolling cart at the right place, for good") {
-  const auto x = simulated(effects::coulomb_friction(), {4}, recording_of(201, 0.007, 0, 1));
+  const auto x = states_of(effects::coulomb_friction(), {4}, driven(201, 0.007, 0, 1));
   CHECK(x(0, 200) == doctest::Approx(0.5 * mass / 4).epsilon(1e-6));
   CHECK(x(1, 200) == 0);
 }
 
 TEST_CASE("dry friction holds against forces up to its level") {
   for (const double force : {3.9, -3.9}) {
-    const auto x = simulated(effects::coulomb_friction(), {4}, recording_of(50, 0.01, 0, 0, std::vector(50, force)));
+    const auto x = states_of(effects::coulomb_friction(), {4}, driven(50, 0.01, 0, 0, std::vector(50, force)));
     CHECK(x.row(0).cwiseAbs().maxCoeff() == 0);
   }
-  const auto x = simulated(effects::coulomb_friction(), {4}, recording_of(101, 0.01, 0, 0, std::vector(101, 5.0)));
+  const auto x = states_of(effects::coulomb_friction(), {4}, driven(101, 0.01, 0, 0, std::vector(101, 5.0)));
   CHECK(x(1, 100) == doctest::Approx((5 - 4) / mass).epsilon(1e-6));
 }
 
 TEST_CASE("Stribeck friction holds more at rest than in fast motion") {
   const std::vector<double> p = {4, 2, 0.1};
-  const auto rest = simulated(effects::stribeck_friction(), p, recording_of(50, 0.01, 0, 0, std::vector(50, 5.9)));
+  const auto rest = states_of(effects::stribeck_friction(), p, driven(50, 0.01, 0, 0, std::vector(50, 5.9)));
   CHECK(rest.row(0).cwiseAbs().maxCoeff() == 0);
-  const auto fast = simulated(effects::stribeck_friction(), p, recording_of(51, 0.01, 0, 5, std::vector(51, 5.9)));
+  const auto fast = states_of(effects::stribeck_friction(), p, driven(51, 0.01, 0, 5, std::vector(51, 5.9)));
   CHECK(fast(1, 50) == doctest::Approx(5 + 0.5 * 1.9 / mass).epsilon(1e-6));
 }
 
 TEST_CASE("friction that depends on the load takes its share of the force") {
   const Effect effect = effects::load_dependent_friction();
-  const auto x = simulated(effect, {0.25}, recording_of(101, 0.01, 0, 0, std::vector(101, 4.0)));
+  const auto x = states_of(effect, {0.25}, driven(101, 0.01, 0, 0, std::vector(101, 4.0)));
   CHECK(x(1, 100) == doctest::Approx(0.75 * 4 / mass).epsilon(1e-6));
   EffectContext m;
   m.drive = -3;
@@ -130,7 +130,7 @@ TEST_CASE("friction never adds energy") {
       for (const EffectParameter& parameter : effect.parameters) {
         p.push_back(parameter.low + rng.uniform() * (parameter.high - parameter.low));
       }
-      const auto x = simulated(effect, p, recording_of(300, 0.005, 0.5, 2 * rng.uniform() - 1), cart);
+      const auto x = states_of(effect, p, driven(300, 0.005, 0.5, 2 * rng.uniform() - 1), cart);
       for (Eigen::Index i = 1; i < x.cols(); ++i) {
         CHECK(energy(x.col(i), cart) <= energy(x.col(i - 1), cart) * (1 + 1e-5) + 1e-9);
       }
@@ -139,18 +139,18 @@ TEST_CASE("friction never adds energy") {
 }
 
 TEST_CASE("a constant force accelerates evenly") {
-  const auto x = simulated(effects::constant_force(), {-3}, recording_of(101, 0.01, 0, 0));
+  const auto x = states_of(effects::constant_force(), {-3}, driven(101, 0.01, 0, 0));
   CHECK(x(0, 100) == doctest::Approx(-0.5 * 3 / mass).epsilon(1e-9));
 }
 
 TEST_CASE("cubic stiffness and cogging are springs without losses") {
-  const Recording recording = recording_of(2001, 0.005, 0.3, 0.4);
-  const auto cubic = simulated(effects::cubic_stiffness(), {50}, recording);
+  const Recording recording = driven(2001, 0.005, 0.3, 0.4);
+  const auto cubic = states_of(effects::cubic_stiffness(), {50}, recording);
   for (const Eigen::Index i : {500, 1000, 2000}) {
     CHECK(energy(cubic.col(i)) + 12.5 * std::pow(cubic(0, i), 4) ==
           doctest::Approx(energy(cubic.col(0)) + 12.5 * std::pow(0.3, 4)).epsilon(1e-4));
   }
-  const auto ripple = simulated(effects::cogging(), {0.2, 0, 0.25}, recording);
+  const auto ripple = states_of(effects::cogging(), {0.2, 0, 0.25}, recording);
   const auto potential = [](double q) {
     return 0.2 * 0.25 / (2 * std::numbers::pi) * std::cos(8 * std::numbers::pi * q);
   };
@@ -180,10 +180,10 @@ TEST_CASE("weight off the line is largest at angle 0 and gone at a right angle")
 }
 
 TEST_CASE("an end stop holds the position and takes its part of the speed") {
-  const auto upper = simulated(effects::end_stop_upper(), {0.5, 0.25}, recording_of(200, 0.01, 0, 1));
+  const auto upper = states_of(effects::end_stop_upper(), {0.5, 0.25}, driven(200, 0.01, 0, 1));
   CHECK(upper.row(0).maxCoeff() <= 0.5);
   CHECK(upper(1, 199) == doctest::Approx(-0.25));
-  const auto lower = simulated(effects::end_stop_lower(), {-0.5, 0}, recording_of(200, 0.01, 0, -1));
+  const auto lower = states_of(effects::end_stop_lower(), {-0.5, 0}, driven(200, 0.01, 0, -1));
   CHECK(lower.row(0).minCoeff() >= -0.5);
   CHECK(lower(1, 199) == 0);
 }
