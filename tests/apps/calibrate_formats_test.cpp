@@ -41,7 +41,7 @@ const std::string many =
     "# steps_per_cycle: 2\nseq,cycle,order_dx_m,order_dy_m,order_dtheta_rad,x_m,y_m,theta_rad\n"
     "3,0,0.01,0.02,0.1,,,\n3,1,0.02,0,0,1,2,0.5\n5,0,0.03,0,0,nan,nan,\n7,0,0.04,0,-0.1,0.1,0.2,\n";
 
-std::string with(std::string text, const std::string& what, const std::string& instead) {
+std::string replaced(std::string text, const std::string& what, const std::string& instead) {
   const auto at = text.find(what);
   REQUIRE(at != std::string::npos);
   return text.replace(at, what.size(), instead);
@@ -154,8 +154,8 @@ TEST_CASE("what cannot be read is refused in one sentence that names the place")
                       "no column was recognised as the position to the left");
   check_walks_refused("dx_m,dy_m,turn_rad,x_m,y_m,theta_rad\n1,0,0,1,1,\n1,0,0,1,1,0\n",
                       "line 2: the first row holds part of a pose");
-  check_walks_refused(with(many, "cycle: 2", "cycle: two"), "'steps_per_cycle: two' must give a number");
-  check_walks_refused(with(many, "cycle: 2", "cycle: -1"), "must give a number");
+  check_walks_refused(replaced(many, "cycle: 2", "cycle: two"), "'steps_per_cycle: two' must give a number");
+  check_walks_refused(replaced(many, "cycle: 2", "cycle: -1"), "must give a number");
   LoadOptions named;
   named.columns.commands = {"ordr_dx_m", "order_dy_m", "order_dtheta_rad"};
   check_walks_refused(many, "did you mean 'order_dx_m'?", named);

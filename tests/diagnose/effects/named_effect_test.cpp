@@ -14,7 +14,7 @@ namespace {
 
 const SimulatorInfo servo = toys::ServoPendulum{}.info();
 
-std::string refusal(const NamedEffect& named) {
+std::string refusal_of_named(const NamedEffect& named) {
   try {
     attach(servo, named, all_effects());
   } catch (const DiagnoseError& error) {
@@ -42,23 +42,25 @@ TEST_CASE("forms of one name are told apart, and one name may mean several place
   const auto effects = all_effects();
   CHECK(attach(servo, {"dead_zone", "duty", "step", {}, {0.1}}, effects).effect->form == "step");
   CHECK(attach(servo, {"dead_zone", "duty", {}, {}, {0.1}}, effects).effect->form.empty());
-  CHECK(refusal({"dead_zone", "duty", "square", {}, {0.1}}).find("there is no effect 'dead_zone' of form 'square'") ==
-        0);
+  CHECK(refusal_of_named({"dead_zone", "duty", "square", {}, {0.1}})
+            .find("there is no effect 'dead_zone' of form 'square'") == 0);
 }
 
 TEST_CASE("what does not exist is refused with a list of what there is") {
-  const std::string ghost = refusal({"ghost", "omega", {}, {}, {}});
+  const std::string ghost = refusal_of_named({"ghost", "omega", {}, {}, {}});
   CHECK(ghost.find("there is no effect 'ghost'; there are: ") == 0);
   CHECK(ghost.find("coulomb_friction") != std::string::npos);
-  CHECK(refusal({"coulomb_friction", "elbow", {}, {}, {0.1}}) == "effect 'coulomb_friction' cannot attach to 'elbow'");
-  CHECK(refusal({"body_drift", "planar", {}, {}, {0, 0, 0}}) == "effect 'body_drift' cannot attach to 'planar'");
+  CHECK(refusal_of_named({"coulomb_friction", "elbow", {}, {}, {0.1}}) ==
+        "effect 'coulomb_friction' cannot attach to 'elbow'");
+  CHECK(refusal_of_named({"body_drift", "planar", {}, {}, {0, 0, 0}}) ==
+        "effect 'body_drift' cannot attach to 'planar'");
   CHECK(attach(toys::WalkingRobot{}.info(), {"body_drift", "planar", {}, {}, {0, 0, 0}}, all_effects()).at == 0);
 }
 
 TEST_CASE("a wrong number of values, or a second state that does not exist, is refused") {
-  CHECK(refusal({"coulomb_friction", "omega", {}, {}, {0.1, 0.2}}) ==
+  CHECK(refusal_of_named({"coulomb_friction", "omega", {}, {}, {0.1, 0.2}}) ==
         "effect 'coulomb_friction' has 1 parameters, got 2");
-  CHECK(refusal({"coulomb_friction", "omega", {}, "elbow", {0.1}}) ==
+  CHECK(refusal_of_named({"coulomb_friction", "omega", {}, "elbow", {0.1}}) ==
         "effect 'coulomb_friction': there is no state 'elbow'");
   CHECK(attach(servo, {"coulomb_friction", "omega", {}, "theta", {0.1}}, all_effects()).other == 0);
 }
