@@ -35,8 +35,8 @@ struct Operation {
     binary
   };
   Code code = Code::copy;
-  int to = 0, a = 0, b = 0, c = 0;              // slots
-  double (*unary)(double) = nullptr;            // a function of a
+  int to = 0, a = 0, b = 0, c = 0;             // slots
+  double (*unary)(double) = nullptr;           // a function of a
   double (*binary)(double, double) = nullptr;  // or of a and b
 };
 using Operations = std::vector<Operation>;
@@ -49,10 +49,10 @@ struct PlanStep {
 
 /// The quantities of one kind (rates, outputs or efforts), and the lets that they need.
 struct PlanPart {
-  std::vector<PlanStep> lets;   // in order
-  std::vector<int> signals;     // by let: its number among the signals
-  std::vector<int> results;     // slots of the results
-  Operations operations;        // for those results that are no mere variable or number
+  std::vector<PlanStep> lets;  // in order
+  std::vector<int> signals;    // by let: its number among the signals
+  std::vector<int> results;    // slots of the results
+  Operations operations;       // for those results that are no mere variable or number
 };
 
 struct EquationPlan {

@@ -164,6 +164,42 @@ TEST_CASE("points where the residuals are not finite are stepped back from") {
   CHECK(fit.x[0] == doctest::Approx(std::exp(-5.0)).epsilon(1e-4));
 }
 
+// Two damped oscillations that overlap, without noise.
+struct Oscillations {
+  VectorXd truth = VectorXd{{1, 0.3, 2, 0.7, 0.5, 3.1}};
+  static VectorXd at(const VectorXd& p) {
+    const VectorXd t = VectorXd::LinSpaced(200, 0, 10);
+    return (p[0] * (-p[1] * t.array()).exp() * (p[2] * t.array()).cos() +
+            p[3] * (-p[4] * t.array()).exp() * (p[5] * t.array()).cos())
+        .matrix();
+  }
+  VectorXd operator()(const VectorXd& p) const { return at(p) - at(truth); }
+};
+
+TEST_CASE("secant steps lead to the same minimum with fewer Jacobians") {
+  const Oscillations oscillations;
+  const VectorXd start = oscillations.truth.array() * 1.1;
+  const auto jacobians_with = [&](int secant_steps) {
+    int count = 0;
+    const auto jacobian = [&](const VectorXd& x) -> MatrixXd {
+      ++count;
+      return numeric_jacobian(oscillations, x, {});
+    };
+    const LeastSquaresResult fit = least_squares(oscillations, start, {.secant_steps = secant_steps}, jacobian);
+    CHECK(fit.x.isApprox(oscillations.truth, 1e-6));
+    CHECK(fit.covariance.diagonal().allFinite());
+    return count;
+  };
+  CHECK(2 * jacobians_with(3) < jacobians_with(0) + 3);
+}
+
+TEST_CASE("a fit with secant steps ends only where a Jacobian says so") {
+  const auto rosenbrock = [](const VectorXd& x) { return VectorXd{{10 * (x[1] - x[0] * x[0]), 1 - x[0]}}; };
+  const LeastSquaresResult valley = least_squares(rosenbrock, VectorXd{{-1.2, 1}}, {.secant_steps = 5});
+  CHECK(valley.x.isApprox(VectorXd::Ones(2), 1e-6));
+  CHECK_THROWS_AS(least_squares(rosenbrock, VectorXd{{-1.2, 1}}, {.secant_steps = -1}), OptimizeError);
+}
+
 TEST_CASE("it says why it stopped") {
   const Line line(6);
   CHECK(least_squares(line, VectorXd::Zero(2), {.max_iterations = 0}).reason == LeastSquaresStop::max_iterations);

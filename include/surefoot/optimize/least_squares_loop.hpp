@@ -47,6 +47,7 @@ struct LeastSquaresOptions {
   double tol_step = 1e-10;      // length of a step [length of the parameters]
   double tol_cost = 1e-14;      // decrease of the cost in a step [cost]
   double max_seconds = std::numeric_limits<double>::infinity();  // wall clock [s]
+  int secant_steps = 0;  // steps between Jacobians that change it by a rank-one update (Broyden 1965); for costly ones
   bool covariance = true;  // false: saves the last Jacobian; covariance, deviation, rank and active_bound are not set
 
   /// Called after every iteration with its number, from 1 on, and the cost that it reached.

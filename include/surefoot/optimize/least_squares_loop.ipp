@@ -26,6 +26,7 @@ SUREFOOT_INLINE void check(const LeastSquaresOptions& options) {
   demand(options.max_iterations >= 0, "max_iterations must not be negative");
   demand(options.tol_gradient >= 0 && options.tol_step >= 0 && options.tol_cost >= 0,
          "tol_gradient, tol_step and tol_cost must not be negative");
+  demand(options.secant_steps >= 0, "secant_steps must not be negative");
   demand(options.max_seconds >= 0, "max_seconds must not be negative");
 }
 
@@ -65,8 +66,15 @@ class LeastSquaresFit {
         break;
       }
       if (options_.on_progress) options_.on_progress(iteration + 1, cost_);
-      if (options_.covariance || iteration + 1 < options_.max_iterations) linearise();
+      const bool last = iteration + 1 == options_.max_iterations;
+      if (linearised_) continue;
+      if (!last && jacobian_holds_ && secant_steps_ < options_.secant_steps) {
+        update_by_secant();
+      } else if (options_.covariance || !last) {
+        linearise();
+      }
     }
+    if (options_.covariance && secant_steps_ > 0) linearise();
     LeastSquaresResult result{.x = x_,
                               .cost = cost_,
                               .residuals = residuals_,
@@ -86,9 +94,35 @@ class LeastSquaresFit {
     return 0.5 * options_.loss_scale * options_.loss_scale * sum;
   }
 
-  // Gradient and Gauss-Newton matrix of the cost at x_, and which parameters are at an active bound.
+  // What the last step showed, put into the Jacobian (Broyden, "A class of methods for solving nonlinear simultaneous
+  // equations", Mathematics of Computation 19, 1965) in the norm of its columns, so that units do not matter.
+  void update_by_secant() {
+    ++secant_steps_;
+    Eigen::VectorXd direction(x_.size());
+    double length = 0;
+    for (Eigen::Index j = 0; j < x_.size(); ++j) {
+      direction[j] = hessian_(j, j) * last_step_[j];
+      length += direction[j] * last_step_[j];
+    }
+    const Eigen::VectorXd expected = product(jacobian_at_x_, last_step_);
+    for (Eigen::Index j = 0; length > 0 && j < x_.size(); ++j) {
+      const double share = direction[j] / length;
+      for (Eigen::Index i = 0; i < residuals_.size(); ++i) {
+        jacobian_at_x_(i, j) += (last_change_[i] - expected[i]) * share;
+      }
+    }
+    take_jacobian();
+  }
+
   void linearise() {
     jacobian_at_x_ = jacobian_(x_);
+    secant_steps_ = 0;
+    take_jacobian();
+  }
+
+  // Gradient and Gauss-Newton matrix of the cost at x_, and which parameters are at an active bound.
+  void take_jacobian() {
+    linearised_ = true;
     if (jacobian_at_x_.rows() != residuals_.size() || jacobian_at_x_.cols() != x_.size() ||
         !all_finite(jacobian_at_x_)) {
       throw OptimizeError(
@@ -152,47 +186,71 @@ class LeastSquaresFit {
     return options_.box ? options_.box->clamp(next) : next;
   }
 
-  // Steps until one makes the cost smaller; the reason to stop when there is nothing left to gain.
-  std::optional<LeastSquaresStop> improve() {
-    const std::vector<Eigen::Index> free = free_parameters();
-    double steepest = 0;
+  // The largest cosine between the residuals and a column of the Jacobian.
+  double steepest(const std::vector<Eigen::Index>& free) const {
+    double largest = 0;
     for (const Eigen::Index i : free) {
       const double length = column_norm(jacobian_at_x_, i);
-      if (length > 0 && weighted_norm_ > 0) {
-        steepest = std::max(steepest, std::abs(gradient_[i]) / (length * weighted_norm_));
-      }
+      if (length > 0 && weighted_norm_ > 0)
+        largest = std::max(largest, std::abs(gradient_[i]) / (length * weighted_norm_));
     }
-    if (steepest <= options_.tol_gradient) return LeastSquaresStop::gradient;
+    return largest;
+  }
 
+  // Steps until one makes the cost smaller; the reason to stop when there is nothing left to gain. What ends a fit must
+  // be seen with a Jacobian that is no update.
+  std::optional<LeastSquaresStop> improve() {
+    const std::optional<LeastSquaresStop> ended = descend();
+    if (!ended || secant_steps_ == 0) return ended;
+    linearise();
+    return *ended == LeastSquaresStop::cost ? std::nullopt : descend();
+  }
+
+  std::optional<LeastSquaresStop> descend() {
+    const std::vector<Eigen::Index> free = free_parameters();
+    if (steepest(free) <= options_.tol_gradient) return LeastSquaresStop::gradient;
     const ScaledStep scaled_step = scale_to_unit_diagonal(free);
     while (true) {
       const Eigen::VectorXd next = damped_step(free, scaled_step);
       Eigen::VectorXd step = next;
       for (Eigen::Index i = 0; i < step.size(); ++i) step[i] -= x_[i];
       if (!(norm(step) > options_.tol_step * (norm(x_) + options_.tol_step))) return LeastSquaresStop::step;
-      const Eigen::VectorXd residuals = function_(next);
+      Eigen::VectorXd residuals = function_(next);
       const double next_cost = residuals.size() == residuals_.size() && all_finite(residuals)
                                    ? cost(residuals)
                                    : std::numeric_limits<double>::infinity();
       if (next_cost < cost_) {
-        const double gain = cost_ - next_cost;
-        const Eigen::VectorXd bent = product(hessian_, step);
-        const double expected =
-            -(dot(gradient_.data(), step.data(), step.size()) + 0.5 * dot(step.data(), bent.data(), step.size()));
-        const double ratio = expected > 0 ? gain / expected : 1;
-        damping_ *= std::max(1.0 / 3, 1 - std::pow(2 * ratio - 1, 3));
-        growth_ = 2;
-        const bool done = gain <= options_.tol_cost * cost_;
-        x_ = next;
-        residuals_ = residuals;
-        cost_ = next_cost;
+        const bool done = take_step(next, std::move(step), std::move(residuals), next_cost);
         if (!done) return std::nullopt;
-        if (options_.covariance) linearise();
+        if (options_.covariance && secant_steps_ == 0) linearise();
         return LeastSquaresStop::cost;
       }
+      if (secant_steps_ > 0) return LeastSquaresStop::step;  // an update may have led astray
       damping_ *= growth_;
       growth_ *= 2;
     }
+  }
+
+  // True if it gained next to nothing.
+  bool take_step(const Eigen::VectorXd& next, Eigen::VectorXd step, Eigen::VectorXd residuals, double next_cost) {
+    constexpr double least_ratio = 0.25;  // of gain to expected gain, below which a Jacobian does not hold any more
+    const double gain = cost_ - next_cost;
+    const Eigen::VectorXd bent = product(hessian_, step);
+    const double expected =
+        -(dot(gradient_.data(), step.data(), step.size()) + 0.5 * dot(step.data(), bent.data(), step.size()));
+    const double ratio = expected > 0 ? gain / expected : 1;
+    damping_ *= std::max(1.0 / 3, 1 - std::pow(2 * ratio - 1, 3));
+    growth_ = 2;
+    const bool done = gain <= options_.tol_cost * cost_;
+    last_change_ = residuals;
+    for (Eigen::Index i = 0; i < residuals.size(); ++i) last_change_[i] -= residuals_[i];
+    last_step_ = std::move(step);
+    x_ = next;
+    residuals_ = std::move(residuals);
+    cost_ = next_cost;
+    jacobian_holds_ = ratio >= least_ratio;
+    linearised_ = false;
+    return done;
   }
 
   const VectorFunction& function_;
@@ -200,7 +258,11 @@ class LeastSquaresFit {
   const LeastSquaresOptions& options_;
   Eigen::VectorXd x_, residuals_;
   double cost_ = 0;
-  Eigen::MatrixXd jacobian_at_x_;  // the Jacobian at x_
+  Eigen::MatrixXd jacobian_at_x_;            // the Jacobian at x_, or an update of an earlier one
+  int secant_steps_ = 0;                     // updates since the last Jacobian
+  Eigen::VectorXd last_step_, last_change_;  // of the parameters, and of the residuals
+  bool jacobian_holds_ = true;               // the last step gained what was expected
+  bool linearised_ = false;                  // at x_
   Eigen::VectorXd gradient_;
   Eigen::MatrixXd hessian_;
   double weighted_norm_ = 0;  // of the weighted residuals

@@ -83,7 +83,7 @@ SUREFOOT_INLINE std::vector<double> recording_scales(const BoundSimulator& bound
 SUREFOOT_INLINE Fit calibrate(const BoundSimulator& bound, const Hypothesis& nominal, FitProblem& problem,
                               std::size_t points, std::uint64_t seed, const Parallel& parallel) {
   constexpr double least_sigma = 1e-6;  // of the output's standard deviation, where no noise is stated
-  constexpr int search_iterations = 20, reweightings = 2;
+  constexpr int search_iterations = 30, reweightings = 2;
   problem.weighting.sigma = output_deviations(bound, problem.recordings);
   Eigen::VectorXd floor = surefoot::detail::times(least_sigma, problem.weighting.sigma);
   for (Eigen::Index k = 0; k < floor.size(); ++k) {

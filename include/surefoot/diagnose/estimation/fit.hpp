@@ -24,7 +24,8 @@ struct FitProblem {
   Weighting weighting;
   Integration integration;
   Free free = Free::everything;
-  int max_iterations = 12;
+  int max_iterations = 18;
+  int secant_steps = 3;                                  // as in LeastSquaresOptions: a Jacobian costs many simulations
   double tolerance = 1e-4;                               // relative decrease of the loss at which it ends
   std::function<bool()> stopped = [] { return false; };  // asked before each iteration
 };

@@ -140,6 +140,7 @@ SUREFOOT_INLINE Descent descend(const BoundSimulator& bound, const Hypothesis& s
   options.max_iterations = problem.max_iterations;
   options.tol_cost = problem.tolerance;
   options.tol_step = 1e-6;
+  options.secant_steps = problem.secant_steps;
   options.covariance = false;
   Eigen::VectorXd asked = z, there = first;  // the last point, whose residuals the Jacobian needs again
   const auto residuals = [&](const Eigen::VectorXd& x) -> const Eigen::VectorXd& {

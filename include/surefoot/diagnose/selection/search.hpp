@@ -48,7 +48,7 @@ void grow(Search& search, std::vector<EvaluatedHypothesis>& pool);
 /// The best structures, and the model without effects, fitted and evaluated with the present weights and recordings.
 std::vector<EvaluatedHypothesis> fitted_again(const Search& search, const std::vector<EvaluatedHypothesis>& pool);
 
-/// The same within a pool.
+/// The same within a pool; the very best ones also from places around.
 void refit_best(const Search& search, std::vector<EvaluatedHypothesis>& pool);
 
 /// Takes each effect of the best structure away, and puts others in its place.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -14,6 +16,7 @@
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
+#include "surefoot/diagnose/estimation/restarts.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
@@ -151,8 +154,23 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> fitted_again(const Search& sear
 }
 
 SUREFOOT_INLINE void refit_best(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
-  if (search.problem.stopped()) return;
-  for (const EvaluatedHypothesis& one : fitted_again(search, pool)) keep_best_form(pool, one, search.problem.criteria);
+  constexpr std::uint64_t restart_seed = 1;
+  const SearchProblem& problem = search.problem;
+  if (problem.stopped()) return;
+  for (const EvaluatedHypothesis& one : fitted_again(search, pool)) keep_best_form(pool, one, problem.criteria);
+  FitProblem quick = problem.fit;
+  quick.recordings = problem.screened;
+  quick.max_iterations = problem.effort.restart_iterations;
+  constexpr double none_is_hopeless = std::numeric_limits<double>::infinity();
+  for (const EvaluatedHypothesis& one :
+       best_structures(pool, problem.effort.restarted, none_is_hopeless, problem.criteria)) {
+    if (problem.stopped() || !problem.structured(one.hypothesis, problem.fit.integration)) continue;
+    const Fit fitted{one.hypothesis, one.loss, true};
+    const Fit again =
+        restarted_fit(search.bound, fitted, problem.fit, quick, problem.effort.restarts, restart_seed, search.parallel);
+    if (!(again.loss < fitted.loss)) continue;
+    keep_best_form(pool, evaluate_fit(search.bound, again, problem, search.parallel), problem.criteria);
+  }
 }
 
 SUREFOOT_INLINE void swap_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
@@ -164,8 +182,11 @@ SUREFOOT_INLINE void swap_effects(const Search& search, std::vector<EvaluatedHyp
     const EvaluatedHypothesis rest = search.without(best, e);
     keep_best_form(pool, rest, problem.criteria);
     if (search.effects(best) == 1) continue;  // its rivals were evaluated when it was chosen
+    std::vector<Proposal> proposals = proposals_for(search, rest);
+    const std::string& name = best.hypothesis.effects[e].effect->name;  // the right name may be at a wrong place
+    std::ranges::stable_partition(proposals, [&](const Proposal& one) { return one.effect.effect->name == name; });
     for (const EvaluatedHypothesis& other :
-         next_effects(search, rest, proposals_for(search, rest), problem.effort.compared_shortlist,
+         next_effects(search, rest, std::move(proposals), problem.effort.compared_shortlist,
                       problem.effort.compared_finalists)) {
       keep_best_form(pool, other, problem.criteria);
     }
@@ -195,6 +216,25 @@ SUREFOOT_INLINE Comparison gain_of(const ErrorSquares& before, const ErrorSquare
   return result;
 }
 
+/// Of the structures that cannot be told apart from the most probable one, `best`, and have no more parameters than it,
+/// the closest: what counts as an error of form between structures still says which of them to start with.
+SUREFOOT_INLINE std::size_t closest_of_tie(const Search& search, const std::vector<EvaluatedHypothesis>& pool,
+                                           const std::vector<double>& share, std::size_t best) {
+  const SelectionCriteria& criteria = search.problem.criteria;
+  const auto as_it_is = [&](std::size_t i) {
+    EvaluatedHypothesis one = pool[i];
+    one.errors.least.resize(0);
+    return one;
+  };
+  std::size_t closest = best;
+  for (std::size_t i = 0; i < pool.size(); ++i) {
+    if (share[i] * criteria.tie_odds < share[best] || search.effects(pool[i]) == 0) continue;
+    if (pool[i].parameter_count() > pool[best].parameter_count()) continue;
+    if (log_odds(as_it_is(i), as_it_is(closest), criteria) > 0) closest = i;
+  }
+  return closest;
+}
+
 SUREFOOT_INLINE Selection ranked(const Search& search, const std::vector<EvaluatedHypothesis>& pool) {
   const SelectionCriteria& criteria = search.problem.criteria;
   const std::vector<double> share = probabilities(pool, criteria);
@@ -211,8 +251,9 @@ SUREFOOT_INLINE Selection ranked(const Search& search, const std::vector<Evaluat
   }
   const bool something = 1 - without > criteria.named_odds * without;
   const bool named = something && search.effects(pool[order.front()]) > 0;
-  selection.chosen = named ? pool[order.front()] : selection.nominal;
-  selection.probability = named ? share[order.front()] : without;
+  const std::size_t first = closest_of_tie(search, pool, share, order.front());
+  selection.chosen = named ? pool[first] : selection.nominal;
+  selection.probability = named ? share[first] : without;
   for (const std::size_t i : order) {
     if (same_structure(pool[i].hypothesis, selection.chosen.hypothesis)) continue;
     selection.alternatives.push_back(pool[i]);

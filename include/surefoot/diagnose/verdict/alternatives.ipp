@@ -20,9 +20,8 @@ SUREFOOT_INLINE Evidence evidence_for(const Selection& selection, std::size_t ef
   double confidence = selection.probability;
   for (std::size_t i = 0; i < selection.alternatives.size(); ++i) {
     const auto& others = selection.alternatives[i].hypothesis.effects;
-    const bool has_it = std::ranges::any_of(others, [&](const AttachedEffect& other) {
-      return same_but_for_form(other, mine);
-    });
+    const bool has_it =
+        std::ranges::any_of(others, [&](const AttachedEffect& other) { return same_but_for_form(other, mine); });
     if (has_it) confidence += selection.alternative_probabilities[i];
   }
   return {gain.gain, gain.stderr_, gain.p_value, std::min(1.0, confidence)};
@@ -42,6 +41,8 @@ SUREFOOT_INLINE Alternatives find_alternatives(const Selection& selection, const
   constexpr std::size_t most = 20;  // alternatives that are told: nobody reads more
   const std::size_t known = selection.nominal.hypothesis.effects.size();
   const bool found_any = selection.chosen.hypothesis.effects.size() > known;
+  double most_probable = selection.probability;
+  for (const double one : selection.alternative_probabilities) most_probable = std::max(most_probable, one);
   Alternatives result;
   for (std::size_t i = 0; i < std::min(most, selection.alternatives.size()); ++i) {
     const EvaluatedHypothesis& other = selection.alternatives[i];
@@ -52,8 +53,7 @@ SUREFOOT_INLINE Alternatives find_alternatives(const Selection& selection, const
     for (std::size_t e = known; e < other.hypothesis.effects.size(); ++e) {
       alternative.effects.emplace_back(other.hypothesis.effects[e].effect->name, other.hypothesis.effects[e].place);
     }
-    alternative.indistinguishable =
-        found_any && criteria.tie_odds * alternative.probability > selection.probability;
+    alternative.indistinguishable = found_any && criteria.tie_odds * alternative.probability > most_probable;
     if (alternative.indistinguishable) {
       result.ties.push_back(names_of(other.hypothesis, known));
       result.indistinguishable.push_back(other);

@@ -1,0 +1,61 @@
+// Definitions of surefoot/diagnose/estimation/restarts.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/estimation/restarts.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE std::vector<Hypothesis> moved_around(const BoundSimulator& bound, const Hypothesis& fitted,
+                                                     std::size_t points, std::uint64_t seed) {
+  constexpr double most_factor = 2, most_share = 0.5;  // farther off, other starts of the search are nearer
+  std::vector<Variable> variables = variables_of(bound, fitted, {});
+  std::erase_if(variables, [](const Variable& one) { return one.kind == Variable::Kind::initial; });
+  std::vector<Hypothesis> places;
+  if (variables.empty()) return places;
+  Rng rng(seed, 0x4e5au);
+  for (std::size_t k = 0; k < points; ++k) {
+    Hypothesis moved = fitted;
+    for (const Variable& variable : variables) {
+      double& value = value_of(moved, variable);
+      const double z = to_search(variable, value), draw = rng.uniform(-1, 1);
+      const double most = variable.logarithmic ? std::log(most_factor) : most_share * std::abs(z);
+      value = from_search(variable, z + most * draw);
+    }
+    places.push_back(std::move(moved));
+  }
+  return places;
+}
+
+SUREFOOT_INLINE Fit restarted_fit(const BoundSimulator& bound, const Fit& fitted, const FitProblem& problem,
+                                  const FitProblem& quick, std::size_t points, std::uint64_t seed,
+                                  const Parallel& parallel) {
+  constexpr double clearly_less = 0.98;  // of the loss; less of a difference is one of where iterations ended
+  const std::vector<Hypothesis> places = moved_around(bound, fitted.hypothesis, points, seed);
+  std::vector<Fit> fits(places.size());
+  parallel(places.size(), [&](std::size_t k) {
+    if (!quick.stopped()) fits[k] = fit(bound, places[k], quick, serially());
+  });
+  const FitFunctions here(bound, fitted.hypothesis, quick, serially());
+  double least = clearly_less * mean_loss(here.residuals(here.start()), quick.weighting.robust);
+  const Fit* best = nullptr;
+  for (const Fit& one : fits) {
+    if (!one.ok || !(one.loss < least)) continue;
+    least = one.loss;
+    best = &one;
+  }
+  if (best == nullptr || problem.stopped()) return fitted;
+  Fit elsewhere = fit(bound, best->hypothesis, problem, parallel);
+  return elsewhere.ok && elsewhere.loss < clearly_less * fitted.loss ? elsewhere : fitted;
+}
+
+}  // namespace surefoot::diagnosis
