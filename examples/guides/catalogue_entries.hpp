@@ -67,6 +67,7 @@ inline std::vector<Form> forms() {
        "F = -(level + breakaway exp(-(v / speed)^2)) sign(v); at rest up to level + breakaway",
        {0.02, 0.03, 0.3},
        "as dry friction, and longer rests: it sticks, then slips"},
+      {"stribeck_friction", "tailed", "the same with exp(-|v / speed|^exponent)"},
       {"load_dependent_friction",
        "drive",
        "dry friction of factor |drive|, the force due to the inputs",
@@ -143,6 +144,7 @@ inline std::vector<Form> forms() {
       {"dead_zone", "step", "u = u where |u| > width, else 0 (the edge softened over a fifth of the width)"},
       {"saturation", "", "u = min(max(u, -level), level)", {0.14}, "only the largest commands fall short"},
       {"saturation", "soft", "u = level tanh(u / level)"},
+      {"saturation", "gradual", "u = u / (1 + |u / level|^sharpness)^(1 / sharpness)"},
       {"rate_limit",
        "",
        "u follows its command by at most rate per second",
@@ -157,6 +159,7 @@ inline std::vector<Form> forms() {
       {"sensor_scale", "", "y = y (1 + excess)", {0.1}, "a copy of the reading itself"},
       {"sensor_delay", "", "y(t - delay)", {0.03}, "a copy of the reading's slope"},
       {"sensor_drift", "", "y = y + rate t", {0.01}, "a ramp, whatever the machine does"},
+      {"sensor_drift", "settling", "y = y + change (1 - exp(-t / time))"},
       {"quantization",
        "",
        "y = step round(y / step), soft edges",
@@ -170,6 +173,7 @@ inline std::vector<Form> forms() {
        "p = p (1 + rate t), not below p / 20",
        {0.05},
        "an error that grows during each recording, in proportion to the motion"},
+      {"parameter_drift", "settling", "p = p (1 + change (1 - exp(-t / time))), not below p / 20"},
   };
 }
 

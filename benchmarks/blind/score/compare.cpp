@@ -149,7 +149,8 @@ Outcome compare(const Truth& truth, const Answer& answer) {
   outcome.all_named = all_right(answer.effects, truth.effects);
   outcome.structure_right = is_right_structure(truth, answer.effects);
   const double floor = root_mean_square(answer.test, truth.floor) / root_mean_square(answer.test, truth.rmse);
-  outcome.against_noise = answer.verdict != "unexplained" && outcome.error_ratio / floor > unexplained_error;
+  const bool open = answer.verdict == "unexplained" || answer.verdict == "search-not-finished";
+  outcome.against_noise = !open && outcome.error_ratio / floor > unexplained_error;
   for (std::size_t i = 0; i < answer.alternatives.size(); ++i) {
     const Alternative& other = answer.alternatives[i];
     const bool right = any_right(other.effects, truth.effects);

@@ -129,6 +129,17 @@ TEST_CASE("saturation limits large inputs, softly or not") {
   CHECK(through(effects::saturation_soft(), 0.01, {0.5}) == doctest::Approx(0.01).epsilon(1e-3));
 }
 
+TEST_CASE("a gradual saturation bends as sharply as it is told, up to clipping") {
+  const auto gradual = [](double u, double sharpness) {
+    return through(effects::saturation_gradual(), u, {0.5, sharpness});
+  };
+  CHECK(gradual(0.5, 1) == doctest::Approx(0.25));
+  CHECK(gradual(-0.5, 1) == doctest::Approx(-0.25));
+  CHECK(gradual(5, 8) == doctest::Approx(0.5).epsilon(1e-6));
+  CHECK(gradual(0.25, 8) == doctest::Approx(0.25).epsilon(1e-3));
+  CHECK(gradual(0, 0.5) == 0);
+}
+
 TEST_CASE("a supply sags most where it is loaded most, and never turns round") {
   CHECK(through(effects::supply_sag(), -2, {0.1}) == doctest::Approx(-1.6));
   CHECK(through(effects::supply_sag(), 20, {0.1}) == 0);

@@ -34,6 +34,13 @@ TEST_CASE("a drift grows from the first row on") {
   CHECK(y[4] == doctest::Approx(11));
 }
 
+TEST_CASE("a drift that settles has made 63 % of its way after its time constant") {
+  const auto y = read(effects::sensor_drift_settling(), {2, 0.4}, uneven, {1, 1, 1, 1, 1});
+  CHECK(y[0] == 1);
+  CHECK(y[3] == doctest::Approx(1 + 2 * 0.632121).epsilon(1e-6));
+  CHECK(y[4] < 3);
+}
+
 TEST_CASE("a late sensor reads a ramp late, between rows of any spacing") {
   for (const double delay : {0.0, 0.03, 0.05, 0.2, 0.7}) {
     std::vector<double> ramp;

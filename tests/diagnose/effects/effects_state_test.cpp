@@ -77,5 +77,18 @@ TEST_CASE("a parameter that drifts acts by its mean over time") {
   CHECK(effects::parameter_drift().factor(m, p) > 0);
 }
 
+TEST_CASE("a parameter that drifts and settles has made 63 % of its change after its time constant") {
+  const Effect settling = effects::parameter_drift_settling();
+  EffectContext m;
+  const std::vector<double> p = {0.5, 20};
+  CHECK(settling.factor(m, p) == 1);
+  m.time = 20;
+  CHECK(settling.factor(m, p) == doctest::Approx(1 + 0.5 * 0.632121).epsilon(1e-6));
+  m.time = 1e4;
+  CHECK(settling.factor(m, p) == doctest::Approx(1.5));
+  const std::vector<double> away = {-0.99, 20};
+  CHECK(settling.factor(m, away) == 0.05);
+}
+
 }  // namespace
 }  // namespace surefoot

@@ -103,6 +103,15 @@ TEST_CASE("Stribeck friction holds more at rest than in fast motion") {
   CHECK(fast(1, 50) == doctest::Approx(5 + 0.5 * 1.9 / mass).epsilon(1e-6));
 }
 
+TEST_CASE("Stribeck friction with a tail falls with the power of speed that it is told") {
+  EffectContext m;
+  m.value = -0.04;
+  const std::vector<double> p = {1, 2, 0.02, 0.5}, squared = {1, 2, 0.02, 2};
+  CHECK(effects::stribeck_friction_tailed().dry(m, p) == doctest::Approx(1 + 2 * std::exp(-std::sqrt(2.0))));
+  CHECK(effects::stribeck_friction_tailed().dry(m, squared) ==
+        doctest::Approx(effects::stribeck_friction().dry(m, squared)));
+}
+
 TEST_CASE("friction that depends on the load takes its share of the force") {
   const Effect effect = effects::load_dependent_friction();
   const auto x = states_of(effect, {0.25}, driven(101, 0.01, 0, 0, std::vector(101, 4.0)));

@@ -48,6 +48,7 @@ SUREFOOT_INLINE std::vector<Effect> velocity_effects() {
           effects::coulomb_friction(),
           effects::coulomb_friction_presliding(),
           effects::stribeck_friction(),
+          effects::stribeck_friction_tailed(),
           effects::load_dependent_friction(),
           effects::load_dependent_friction_under_load(),
           effects::load_dependent_friction_in_gears(),
@@ -67,9 +68,9 @@ SUREFOOT_INLINE std::vector<Effect> velocity_effects() {
 }
 
 SUREFOOT_INLINE std::vector<Effect> input_effects() {
-  return {effects::input_gain(),      effects::input_asymmetry(), effects::dead_zone(),  effects::dead_zone_step(),
-          effects::saturation(),      effects::saturation_soft(), effects::rate_limit(), effects::input_delay(),
-          effects::first_order_lag(), effects::supply_sag()};
+  return {effects::input_gain(),  effects::input_asymmetry(), effects::dead_zone(),          effects::dead_zone_step(),
+          effects::saturation(),  effects::saturation_soft(), effects::saturation_gradual(), effects::rate_limit(),
+          effects::input_delay(), effects::first_order_lag(), effects::supply_sag()};
 }
 
 SUREFOOT_INLINE std::vector<Effect> planar_effects() {
@@ -102,10 +103,13 @@ SUREFOOT_INLINE std::vector<Effect> state_effects() {
 }
 
 SUREFOOT_INLINE std::vector<Effect> sensor_effects() {
-  return {effects::sensor_bias(),  effects::sensor_scale(),       effects::sensor_delay(),   effects::sensor_drift(),
-          effects::quantization(), effects::quantization_floor(), effects::backlash_sensor()};
+  return {effects::sensor_bias(),        effects::sensor_scale(),          effects::sensor_delay(),
+          effects::sensor_drift(),       effects::sensor_drift_settling(), effects::quantization(),
+          effects::quantization_floor(), effects::backlash_sensor()};
 }
 
-SUREFOOT_INLINE std::vector<Effect> parameter_effects() { return {effects::parameter_drift()}; }
+SUREFOOT_INLINE std::vector<Effect> parameter_effects() {
+  return {effects::parameter_drift(), effects::parameter_drift_settling()};
+}
 
 }  // namespace surefoot

@@ -1,14 +1,19 @@
-// A parameter that changes while the machine runs, by heating or wear: factor = 1 + rate * t, t from the first row of
-// each recording; never below a twentieth.
+// A parameter that changes while the machine runs, by heating or wear, t from the first row of each recording; never
+// below a twentieth:
+//   steadily:  factor = 1 + rate * t
+//   settling:  factor = 1 + change * (1 - exp(-t / time)), as what heats up through one thermal resistance does
 // Confusable with a drifting sensor, and with that parameter being wrong as a whole when recordings are short.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
+
+inline constexpr double least_drift_factor = 0.05;  // a parameter that drifts does not vanish, nor change its sign
 
 inline Effect parameter_drift() {
   return {.name = "parameter_drift",
@@ -18,7 +23,22 @@ inline Effect parameter_drift() {
               {{.name = "rate", .measure = {.time = -1}, .low = -20, .high = 20, .starts = {0.001}, .strength = true}}),
           .confusable_with = names_of({"sensor_drift", "supply_sag", "leak"}),
           .experiment = "repeat one and the same motion for as long as the machine runs, without a break",
-          .factor = +[](const EffectContext& m, Values p) { return std::max(0.05, 1 + p[0] * m.time); }};
+          .factor = +[](const EffectContext& m, Values p) { return std::max(least_drift_factor, 1 + p[0] * m.time); }};
+}
+
+inline Effect parameter_drift_settling() {
+  return {.name = "parameter_drift",
+          .sentence = "parameter {at} changes by a share of {change}, settling with a time constant of {time}",
+          .place = Place::parameter,
+          .parameters =
+              parameters_of({{.name = "change", .low = -0.95, .high = 20, .starts = {0.05}, .strength = true},
+                             {.name = "time", .measure = {.time = 1}, .low = 0.1, .high = 50, .starts = {0.4, 2}}}),
+          .confusable_with = names_of({"sensor_drift", "supply_sag", "leak"}),
+          .experiment = "repeat one and the same motion for as long as the machine runs, without a break",
+          .form = "settling",
+          .factor = +[](const EffectContext& m, Values p) {
+            return std::max(least_drift_factor, 1 + p[0] * (1 - std::exp(-m.time / p[1])));
+          }};
 }
 
 }  // namespace surefoot::effects

@@ -1,4 +1,5 @@
-// A limit of the input: u clipped to +-level. Form "soft": level * tanh(u/level).
+// A limit of the input: u clipped to +-level. Form "soft": level * tanh(u/level). Form "gradual": a knee of any
+// sharpness, u / (1 + |u/level|^sharpness)^(1/sharpness); 1 bends from the start, 3 is about tanh, 8 nearly clips.
 // H. K. Khalil: "Nonlinear systems", 2002, section 1.2.6.
 // Confusable with a lower gain when the input is always large, and with a supply that sags under load.
 #pragma once
@@ -36,6 +37,17 @@ inline Effect saturation_soft() {
           .experiment = "steps of the input of growing size, up to the largest",
           .form = "soft",
           .signal = +[](const EffectContext& m, Values p, Values) { return p[0] * std::tanh(m.value / p[0]); }};
+}
+
+inline Effect saturation_gradual() {
+  Effect effect = saturation_soft();
+  effect.sentence = "{at} levels off at {level} either way, with a knee of sharpness {sharpness}";
+  effect.parameters.push_back({.name = "sharpness", .low = 0.5, .high = 8, .starts = {1}});
+  effect.form = "gradual";
+  effect.signal = +[](const EffectContext& m, Values p, Values) {
+    return m.value / std::pow(1 + std::pow(std::abs(m.value / p[0]), p[1]), 1 / p[1]);
+  };
+  return effect;
 }
 
 }  // namespace surefoot::effects

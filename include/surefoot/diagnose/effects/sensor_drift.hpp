@@ -1,7 +1,10 @@
-// A sensor whose zero wanders steadily: y + rate * (t - t0), t0 the first row.
+// A sensor whose zero wanders, t from the first row:
+//   steadily:  y + rate * t
+//   settling:  y + change * (1 - exp(-t / time)), as while it warms up
 // Confusable with a constant rate or a leak of what it reads, and with a drifting parameter.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 
 #include "surefoot/diagnose/effects/detail/constants.hpp"
@@ -24,6 +27,23 @@ inline Effect sensor_drift() {
           .sensor = +[](const Series& series, Values p) {
             for (std::size_t row = 0; row < series.readings.size(); ++row) {
               series.readings[row] += p[0] * (series.time[row] - series.time[0]);
+            }
+          }};
+}
+
+inline Effect sensor_drift_settling() {
+  return {.name = "sensor_drift",
+          .sentence = "the sensor {at} drifts by {change}, settling with a time constant of {time}",
+          .place = Place::output,
+          .parameters = parameters_of(
+              {{.name = "change", .measure = {.value = 1}, .low = -2, .high = 2, .starts = {0.03}, .strength = true},
+               {.name = "time", .measure = {.time = 1}, .low = 0.1, .high = 50, .starts = {0.4, 2}}}),
+          .confusable_with = names_of({"constant_rate", "leak", "sensor_bias", "parameter_drift"}),
+          .experiment = "rest for as long as a recording lasts, in a pose known from elsewhere",
+          .form = "settling",
+          .sensor = +[](const Series& series, Values p) {
+            for (std::size_t row = 0; row < series.readings.size(); ++row) {
+              series.readings[row] += p[0] * (1 - std::exp(-(series.time[row] - series.time[0]) / p[1]));
             }
           }};
 }

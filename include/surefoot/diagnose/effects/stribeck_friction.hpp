@@ -1,4 +1,5 @@
-// Dry friction that is larger near rest: level(v) = level + breakaway * exp(-(v/speed)^2).
+// Dry friction that is larger near rest: level(v) = level + breakaway * exp(-|v/speed|^2). Form "tailed": another
+// exponent than 2, between 0.4 (a long tail towards high speeds) and 2.
 // R. Stribeck, 1902; in this form L. C. Bo, D. Pavelescu: "The friction-speed relation and its influence on the
 // critical velocity of stick-slip motion", Wear 82, 1982. Confusable with plain dry friction as long as the motion is
 // fast against `speed`, and with friction that grows with the load, since joints are often slow where the load is
@@ -34,6 +35,17 @@ inline Effect stribeck_friction() {
         const double ratio = m.value / p[2];
         return p[0] + p[1] * std::exp(-ratio * ratio);
       }};
+}
+
+inline Effect stribeck_friction_tailed() {
+  Effect effect = stribeck_friction();
+  effect.sentence += ", falling with the power {exponent} of speed";
+  effect.parameters.push_back({.name = "exponent", .low = 0.4, .high = 2, .starts = {0.8}});
+  effect.form = "tailed";
+  effect.dry = +[](const EffectContext& m, Values p) {
+    return p[0] + p[1] * std::exp(-std::pow(std::abs(m.value) / p[2], p[3]));
+  };
+  return effect;
 }
 
 }  // namespace surefoot::effects
