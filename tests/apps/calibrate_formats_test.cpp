@@ -11,7 +11,7 @@ using namespace calibrate_program;
 
 namespace {
 
-LoadedSequences load(const std::string& csv, const LoadOptions& options = {}) {
+LoadedSequences loaded_from(const std::string& csv, const LoadOptions& options = {}) {
   return sequences_of(diagnose_program::parse_csv(csv, "walk.csv"), options);
 }
 
@@ -26,7 +26,7 @@ void check_walks_refused(const std::string& csv, const std::string& words, const
   CAPTURE(csv);
   CAPTURE(words);
   try {
-    load(csv, options);
+    loaded_from(csv, options);
     FAIL("not refused");
   } catch (const surefoot::Error& error) {
     const std::string what = error.what();
@@ -50,7 +50,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 }  // namespace
 
 TEST_CASE("many sequences in one file: commands times steps per cycle, poses at the end of their cycle") {
-  const LoadedSequences loaded = load(many);
+  const LoadedSequences loaded = loaded_from(many);
   REQUIRE(loaded.sequences.size() == 2);
   CHECK(loaded.sequences[0].name == "3 of walk.csv");
   CHECK(loaded.sequences[0].commands(0, 0) == 0.02);
@@ -63,7 +63,7 @@ TEST_CASE("many sequences in one file: commands times steps per cycle, poses at 
 }
 
 TEST_CASE("a sequence without a final position is left out, with a warning that counts") {
-  const LoadedSequences loaded = load(many);
+  const LoadedSequences loaded = loaded_from(many);
   REQUIRE(loaded.skipped.size() == 1);
   CHECK(skipped_sentence(loaded) == "1 of 3 sequences have no final position and are left out: 5 of walk.csv");
 }
@@ -71,20 +71,20 @@ TEST_CASE("a sequence without a final position is left out, with a warning that 
 TEST_CASE("the option of steps per cycle goes before the first line of the file") {
   LoadOptions options;
   options.steps_per_cycle = 1;
-  CHECK(load(many, options).sequences[0].commands(0, 0) == 0.01);
+  CHECK(loaded_from(many, options).sequences[0].commands(0, 0) == 0.01);
 }
 
 TEST_CASE("with final poses only the others are forgotten") {
   LoadOptions options;
   options.final_only = true;
-  const auto loaded = load("seq,dx_m,dy_m,turn_rad,x_m,y_m\n1,0,0,0,1,1\n1,0,0,0,2,2\n", options);
+  const auto loaded = loaded_from("seq,dx_m,dy_m,turn_rad,x_m,y_m\n1,0,0,0,1,1\n1,0,0,0,2,2\n", options);
   CHECK(!loaded.sequences[0].position_measured(0));
   CHECK(loaded.sequences[0].position_measured(1));
 }
 
 TEST_CASE(
     "one sequence per file: commands lead to the next row, poses are seen from the first, other units are converted") {
-  const LoadedSequences loaded = load(
+  const LoadedSequences loaded = loaded_from(
       "dx_cm,dy_cm,turn_deg,x_m,y_cm,yaw_deg\n10,0,90,1,100,90\n20,5,0,,,\n,,,1,150,180\n"
       "\n");
   REQUIRE(loaded.sequences.size() == 1);
@@ -101,7 +101,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a recording whose first pose is empty starts at the origin") {
-  const LoadedSequences loaded = load("dx_m,dy_m,turn_rad,x_m,y_m\n1,0,0,,\n1,0,0,3,4\n");
+  const LoadedSequences loaded = loaded_from("dx_m,dy_m,turn_rad,x_m,y_m\n1,0,0,,\n1,0,0,3,4\n");
   CHECK(loaded.sequences[0].poses(1, 0) == 4);
   CHECK(!loaded.layout.measured_start);
 }
@@ -110,14 +110,14 @@ TEST_CASE("columns may be named by the user") {
   LoadOptions options;
   options.columns.commands = {"a_m", "b_m", "c_deg"};
   options.columns.pose = {"px_m", "py_m"};
-  const LoadedSequences loaded = load("seq,a_m,b_m,c_deg,px_m,py_m\n1,1,2,180,3,4\n", options);
+  const LoadedSequences loaded = loaded_from("seq,a_m,b_m,c_deg,px_m,py_m\n1,1,2,180,3,4\n", options);
   CHECK(loaded.sequences[0].commands(2, 0) == doctest::Approx(std::numbers::pi));
   CHECK(loaded.sequences[0].poses(0, 0) == 3);
 }
 
 TEST_CASE("speeds of wheels make commands, each held until the next row") {
-  const auto loaded =
-      load("t_s,v_left_m_s,v_right_m_s,x_m,y_m,yaw_rad\n0,0.1,0.3,0,0,0\n0.5,0.2,0.2,,,\n1.5,,,1,1,0\n", wheels());
+  const auto loaded = loaded_from(
+      "t_s,v_left_m_s,v_right_m_s,x_m,y_m,yaw_rad\n0,0.1,0.3,0,0,0\n0.5,0.2,0.2,,,\n1.5,,,1,1,0\n", wheels());
   const surefoot::WalkSequence& sequence = loaded.sequences[0];
   REQUIRE(sequence.cycles() == 2);
   CHECK(sequence.commands(0, 0) == doctest::Approx(0.1));

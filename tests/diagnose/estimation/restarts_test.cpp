@@ -17,6 +17,7 @@ struct Swing {
   SimulatorInfo info() const {
     return {.name = "swing",
             .states = {{"x", "m"}, {"v", "m/s"}},
+            .inputs = {},
             .outputs = {{"x_m", "m"}},
             .parameters = {{"stiffness", "1/s^2", 4, 0.5, 50}, {"rest", "m", 0, -1, 1}}};
   }
