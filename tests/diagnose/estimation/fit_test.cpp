@@ -32,7 +32,7 @@ TEST_CASE("the parameters of data without noise are recovered to 1e-5, though tw
   const BoundSimulator bound = bind_simulator(ServoPendulum{}, recordings);
   const Fit fitted = fit(bound, nominal_hypothesis(bound), problem_of(3, 0.001), serially());
   CHECK(fitted.ok);
-  CHECK(fitted.loss < 1e-8);
+  CHECK(fitted.loss < 1e-6);  // of residuals in units of 0.001
   CHECK(fitted.hypothesis.parameters[0] == doctest::Approx(1.4).epsilon(1e-5));
   CHECK(fitted.hypothesis.parameters[1] == doctest::Approx(3.9).epsilon(1e-5));
   CHECK(fitted.hypothesis.parameters[2] == doctest::Approx(0.014).epsilon(1e-5));
