@@ -1,0 +1,14 @@
+// The diagnosis of a robot, stage by stage: search, proof on held-out blocks, joints against their groups, verdict.
+#pragma once
+
+#include "robot_diagnosis.hpp"
+#include "search_terms.hpp"
+
+namespace diagnose_robot {
+
+RobotDiagnosis diagnose_robot(const Evidence& evidence, const Progress& progress);
+
+/// Standard deviation of a sensor's white noise from fourth differences, in which the motion hardly shows.
+double noise_of(const Eigen::Ref<const Eigen::VectorXd>& readings);
+
+}  // namespace diagnose_robot

@@ -1,0 +1,218 @@
+#include "linearize.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "simulate_robot.hpp"
+#include "surefoot/core/error.hpp"
+#include "torque_residual.hpp"
+
+namespace diagnose_robot {
+namespace {
+
+constexpr int block_count = 5;         // held-out blocks of a single recording: each a fifth, as in five-fold cross-validation
+constexpr double step_share = 0.2;     // of a typical size: differences beyond rounding and single reversals
+constexpr double prior_share = 0.5;    // of the bounds of a property of drives and joints: hardly a prior
+constexpr double stated_prior = 2;     // typical sizes: a gain or mass that is stated is rarely off by more than some 20 %
+
+double rms(const Eigen::Ref<const Eigen::VectorXd>& x) { return std::sqrt(x.squaredNorm() / static_cast<double>(x.size())); }
+
+// Terms whose changes one evaluation can show: the same property at joints of different trees.
+std::vector<std::vector<std::size_t>> batches(const Evidence& evidence, const TermSet& wanted) {
+  std::vector<std::vector<std::size_t>> result;
+  std::vector<std::vector<char>> used;  // by batch and tree
+  for (std::size_t t = 0; t < evidence.terms.size(); ++t) {
+    if (wanted[t] == 0) continue;
+    const Term& term = evidence.terms[t];
+    std::size_t b = 0;
+    const auto clashes = [&](std::size_t batch) {
+      if (evidence.terms[result[batch].front()].property != term.property) return true;
+      return std::ranges::any_of(term.joints, [&](int j) {
+        return used[batch][static_cast<std::size_t>(evidence.robot.joints[static_cast<std::size_t>(j)].tree)] != 0;
+      });
+    };
+    while (b < result.size() && clashes(b)) ++b;
+    if (b == result.size()) {
+      result.emplace_back();
+      used.emplace_back(static_cast<std::size_t>(evidence.robot.trees), 0);
+    }
+    result[b].push_back(t);
+    for (const int j : term.joints) used[b][static_cast<std::size_t>(evidence.robot.joints[static_cast<std::size_t>(j)].tree)] = 1;
+  }
+  return result;
+}
+
+double step_of(const Term& term, double theta) {
+  const double step = step_share * term.typical;
+  return theta + step <= term.high ? step : -step;
+}
+
+bool moves(const Evidence& evidence, const Term& term, std::size_t joint) {
+  const int tree = evidence.robot.joints[joint].tree;
+  return std::ranges::any_of(term.joints, [&](int j) { return evidence.robot.joints[static_cast<std::size_t>(j)].tree == tree; });
+}
+
+// Errors that all terms together would leave: only these are noise, whose correlation says how many rows count. What a
+// term takes away is no noise, however slowly it changes.
+Eigen::VectorXd left_by_all(const Evidence& evidence, const Eigen::MatrixXd& x, const Eigen::VectorXd& r,
+                            const Eigen::Ref<const Eigen::VectorXd>& errors) {
+  constexpr double ridge = 1e-3;  // of the error itself: terms within their typical sizes times some ten
+  const double noise = r.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, r.size()));
+  Eigen::MatrixXd gram = x.transpose() * x;
+  for (Eigen::Index t = 0; t < gram.rows(); ++t) {
+    const double typical = evidence.terms[static_cast<std::size_t>(t)].typical;
+    gram(t, t) += ridge * noise / (typical * typical) + 1e-300;
+  }
+  const Eigen::VectorXd scale = gram.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * gram * scale.asDiagonal();
+  const Eigen::VectorXd change = scale.cwiseProduct(scaled.ldlt().solve(-scale.cwiseProduct(x.transpose() * r)));
+  Eigen::VectorXd left = r + x * change;
+  for (Eigen::Index k = 0; k < left.size(); ++k) {
+    if (!std::isfinite(errors[k])) left[k] = std::nan("");
+  }
+  return left;
+}
+
+void set_priors(const Evidence& evidence, LinearModel& model) {
+  const auto count = static_cast<Eigen::Index>(evidence.terms.size());
+  for (Eigen::VectorXd* vector : {&model.low, &model.high, &model.prior, &model.cost}) vector->resize(count);
+  for (Eigen::Index t = 0; t < count; ++t) {
+    const Term& term = evidence.terms[static_cast<std::size_t>(t)];
+    const PropertyInfo& info = info_of(term.property);
+    const bool stated = info.calibration || term.property == Property::torque_gain || term.property == Property::sensor_bias;
+    model.low[t] = term.low;
+    if (term.group == single_joint && info.low >= 0) {  // with its group's not below 0
+      model.low[t] = 0;
+      for (Eigen::Index other = 0; other < count; ++other) {
+        const Term& tied = evidence.terms[static_cast<std::size_t>(other)];
+        if (tied.property != term.property || tied.group == single_joint) continue;
+        if (std::ranges::find(tied.joints, term.joints.front()) != tied.joints.end()) model.low[t] -= model.theta[other];
+      }
+    }
+    model.high[t] = term.high;
+    model.prior[t] = stated ? stated_prior * term.typical : prior_share * std::max(term.high, -term.low);
+    double independent = 0;
+    for (const int j : term.joints) independent += model.independent[j];
+    // Schwarz's log n for the parameter, and the choice among so many terms (extended BIC of Chen and Chen, 2008).
+    model.cost[t] = std::log(independent) + 2 * std::log(static_cast<double>(count));
+    model.acts_on.push_back(term.joints);
+  }
+}
+
+}  // namespace
+
+void prepare(Evidence& evidence) {
+  const bool single = evidence.recordings.size() == 1;
+  evidence.blocks = single ? block_count : static_cast<int>(evidence.recordings.size());
+  for (std::size_t r = 0; r < evidence.recordings.size(); ++r) {
+    const Eigen::Index rows = evidence.recordings[r].time.size();
+    for (Eigen::Index k = 0; k < rows; ++k) {
+      evidence.block.push_back(single ? static_cast<int>(k * block_count / rows) : static_cast<int>(r));
+    }
+  }
+  const std::size_t joints = evidence.robot.joints.size();
+  evidence.scales.resize(joints);
+  const mjModel* m = evidence.robot.model.model.get();
+  for (std::size_t j = 0; j < joints; ++j) {
+    JointScale& scale = evidence.scales[j];
+    double torque = 0, speed = 0, acceleration = 0, angle = 0;
+    for (const Motion& motion : evidence.motions) {
+      const auto c = static_cast<Eigen::Index>(j);
+      const Eigen::VectorXd given = drive_torque(evidence.robot, motion).col(c);
+      torque = std::max(torque, rms(given));
+      speed = std::max(speed, rms(motion.v.col(c)));
+      acceleration = std::max(acceleration, rms(motion.a.col(c)));
+      angle = std::max(angle, rms((motion.q.col(c).array() - motion.q.col(c).mean()).matrix()));
+    }
+    constexpr double still = 1e-3;  // [rad], [rad/s], ...: a joint that hardly moves
+    scale = {std::max(still, torque), std::max(still, speed), std::max(still, acceleration), std::max(still, angle), 0.1, 1};
+    const ModelJoint& joint = evidence.robot.joints[j].model;
+    const double size = std::hypot(joint.tip[0], joint.tip[1], joint.tip[2]);
+    if (size > 0) scale.link_size = size;
+    if (m->body_mass[joint.body] > 0) scale.link_mass = m->body_mass[joint.body];
+  }
+  evidence.terms = all_terms(evidence.robot, evidence.scales);
+}
+
+Eigen::MatrixXd errors_of(const Evidence& evidence, const RobotPhysics& physics) {
+  Eigen::MatrixXd errors(static_cast<Eigen::Index>(evidence.block.size()), static_cast<Eigen::Index>(evidence.robot.joints.size()));
+  Eigen::Index at = 0;
+  for (std::size_t r = 0; r < evidence.recordings.size(); ++r) {
+    const RobotRecording& recording = evidence.recordings[r];
+    const Eigen::Index rows = recording.time.size();
+    errors.middleRows(at, rows) =
+        evidence.robot.setup.drive == DriveKind::torque
+            ? torque_residual(evidence.robot, evidence.motions[r], physics)
+            : Eigen::MatrixXd(recording.angle - simulate_robot(evidence.robot, recording, start_of(evidence.motions[r]), physics));
+    at += rows;
+  }
+  return errors;
+}
+
+LinearModel linearize(const Evidence& evidence, const Eigen::VectorXd& theta, const Eigen::MatrixXd& errors, const TermSet& wanted) {
+  const std::size_t joints = evidence.robot.joints.size();
+  const auto terms = static_cast<Eigen::Index>(evidence.terms.size());
+  const auto groups = batches(evidence, wanted);
+  const auto changed = surefoot::map(
+      evidence.threads, groups.size(),
+      [&](std::size_t b) {
+        Eigen::VectorXd moved = theta;
+        for (const std::size_t t : groups[b]) moved[static_cast<Eigen::Index>(t)] += step_of(evidence.terms[t], theta[static_cast<Eigen::Index>(t)]);
+        return errors_of(evidence, physics_of(evidence.terms, moved, joints));
+      },
+      evidence.stop);
+  LinearModel model;
+  model.theta = theta;
+  for (const RobotJoint& joint : evidence.robot.joints) model.pool.push_back(joint.group);
+  model.independent.resize(static_cast<Eigen::Index>(joints));
+  model.sums.assign(joints, std::vector<Sums>(static_cast<std::size_t>(evidence.blocks)));
+  for (std::size_t j = 0; j < joints; ++j) {
+    const auto c = static_cast<Eigen::Index>(j);
+    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(errors.rows(), terms);
+    for (std::size_t b = 0; b < groups.size(); ++b) {
+      for (const std::size_t t : groups[b]) {
+        if (!moves(evidence, evidence.terms[t], j)) continue;
+        x.col(static_cast<Eigen::Index>(t)) = (changed[b].col(c) - errors.col(c)) / step_of(evidence.terms[t], theta[static_cast<Eigen::Index>(t)]);
+      }
+    }
+    Eigen::VectorXd r = errors.col(c);
+    for (Eigen::Index k = 0; k < r.size(); ++k) {
+      if (std::isfinite(r[k]) && x.row(k).allFinite()) continue;
+      r[k] = 0;
+      x.row(k).setZero();
+    }
+    model.independent[c] = independent_errors(left_by_all(evidence, x, r, errors.col(c)));
+    for (Eigen::Index begin = 0; begin < r.size();) {
+      const int block = evidence.block[static_cast<std::size_t>(begin)];
+      Eigen::Index end = begin;
+      while (end < r.size() && evidence.block[static_cast<std::size_t>(end)] == block) ++end;
+      Sums& sums = model.sums[j][static_cast<std::size_t>(block)];
+      const auto part = x.middleRows(begin, end - begin);
+      sums.gram = Eigen::MatrixXd::Zero(terms, terms);
+      sums.gram.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
+      sums.gram.triangularView<Eigen::StrictlyUpper>() = sums.gram.transpose();
+      sums.slope = part.transpose() * r.segment(begin, end - begin);
+      sums.square = r.segment(begin, end - begin).squaredNorm();
+      sums.rows = static_cast<double>(end - begin);
+      begin = end;
+    }
+  }
+  set_priors(evidence, model);
+  add_up(model);
+  return model;
+}
+
+Eigen::VectorXd rms_by_joint(const Evidence& evidence, const Eigen::MatrixXd& errors, int block) {
+  Eigen::VectorXd square = Eigen::VectorXd::Zero(errors.cols()), rows = square;
+  for (Eigen::Index j = 0; j < errors.cols(); ++j) {
+    for (Eigen::Index k = 0; k < errors.rows(); ++k) {
+      if ((block >= 0 && evidence.block[static_cast<std::size_t>(k)] != block) || std::isnan(errors(k, j))) continue;
+      square[j] += errors(k, j) * errors(k, j);
+      rows[j] += 1;
+    }
+  }
+  return (square.array() / rows.array().max(1)).sqrt();
+}
+
+}  // namespace diagnose_robot

@@ -1,0 +1,170 @@
+#include "search_terms.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "../wording.hpp"
+
+namespace diagnose_robot {
+namespace {
+
+struct Point {
+  Eigen::VectorXd theta;
+  TermSet set;
+  Eigen::MatrixXd errors;
+};
+
+Eigen::MatrixXd errors_at(const Evidence& evidence, const Eigen::VectorXd& theta) {
+  return errors_of(evidence, physics_of(evidence.terms, theta, evidence.robot.joints.size()));
+}
+
+// What steps must lower: as the criterion of the linear model, without the cost of the terms.
+double misfit(const Evidence& evidence, const LinearModel& model, const Point& point) {
+  const Eigen::VectorXd rms = rms_by_joint(evidence, point.errors);
+  Eigen::VectorXd square = Eigen::VectorXd::Zero(rms.size()), count = square;
+  for (Eigen::Index j = 0; j < rms.size(); ++j) {
+    const int pool = model.pool[static_cast<std::size_t>(j)];
+    square[pool] += model.independent[j] * rms[j] * rms[j];
+    count[pool] += model.independent[j];
+  }
+  double sum = 0;
+  for (Eigen::Index p = 0; p < rms.size(); ++p) {
+    if (count[p] > 0) sum += count[p] * std::log(std::max(1e-24, square[p] / count[p]));
+  }
+  for (Eigen::Index t = 0; t < point.theta.size(); ++t) {
+    const double share = point.theta[t] / model.prior[t];
+    sum += share * share + (point.set[static_cast<std::size_t>(t)] != 0 ? model.cost[t] : 0);
+  }
+  return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
+}
+
+TermSet nonzero(const Eigen::VectorXd& theta) {
+  TermSet set(static_cast<std::size_t>(theta.size()), 0);
+  for (Eigen::Index t = 0; t < theta.size(); ++t) set[static_cast<std::size_t>(t)] = theta[t] != 0 ? 1 : 0;
+  return set;
+}
+
+TermSet either(TermSet a, const TermSet& b) {
+  for (std::size_t t = 0; t < a.size(); ++t) a[t] = a[t] != 0 || b[t] != 0 ? 1 : 0;
+  return a;
+}
+
+// Along the change, as far as errors fall. False if they do not.
+bool move(const Evidence& evidence, const LinearModel& model, const TermSet& set, const SearchCriteria& criteria, Point& point) {
+  const Eigen::VectorXd change = fit_linear(model, set).change;
+  const double before = misfit(evidence, model, point);
+  double share = 1;
+  for (int halving = 0; halving <= criteria.most_halvings; ++halving, share /= 2) {
+    Point next{point.theta, set, {}};
+    for (Eigen::Index t = 0; t < change.size(); ++t) {
+      next.theta[t] = set[static_cast<std::size_t>(t)] != 0 ? point.theta[t] + share * change[t] : 0;
+    }
+    next.errors = errors_at(evidence, next.theta);
+    const double after = misfit(evidence, model, next);
+    if (after < before - (set == point.set ? criteria.settled : 0)) {
+      point = std::move(next);
+      return true;
+    }
+  }
+  return false;
+}
+
+// To the set of terms that the linear model chooses, or to one with fewer changes where that one does not hold so far off.
+bool move_to_better(const Evidence& evidence, const LinearModel& model, const TermSet& allowed, const SearchCriteria& criteria, Point& point) {
+  ChoiceCriteria choice;
+  TermSet before;
+  for (; choice.most_new >= 0; --choice.most_new) {
+    const TermSet set = choose_terms(model, point.set, allowed, choice);
+    if (set == before) continue;
+    if (move(evidence, model, set, criteria, point)) return true;
+    before = set;
+  }
+  return before != point.set && move(evidence, model, point.set, criteria, point);
+}
+
+void trace(const Evidence& evidence, const Point& point) {
+  if (std::getenv("ROBOT_TRACE") == nullptr) return;
+  const Eigen::VectorXd rms = rms_by_joint(evidence, point.errors);
+  std::fprintf(stderr, "rms %.5f:", std::sqrt(rms.squaredNorm() / static_cast<double>(rms.size())));
+  for (std::size_t t = 0; t < point.set.size(); ++t) {
+    if (point.set[t] == 0) continue;
+    std::fprintf(stderr, " %s@%s=%.4g", info_of(evidence.terms[t].property).effect, place_of(evidence.robot, evidence.terms[t]).c_str(),
+                 point.theta[static_cast<Eigen::Index>(t)]);
+  }
+  std::fprintf(stderr, "\n");
+}
+
+// The rigid body, or what the file says, whichever is nearer.
+Point start(const Evidence& evidence) {
+  Point best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const RobotPhysics& physics : {RobotPhysics(evidence.robot.joints.size()), evidence.robot.nominal}) {
+    Point point;
+    point.theta = theta_of(evidence.terms, physics);
+    point.set = nonzero(point.theta);
+    point.errors = errors_at(evidence, point.theta);
+    const double size = rms_by_joint(evidence, point.errors).squaredNorm();
+    if (best.theta.size() > 0 && !(size < least)) continue;
+    best = std::move(point);
+    least = size;
+  }
+  return best;
+}
+
+// Terms that held-out blocks do not want, least wanted first.
+bool drop_one(const Evidence& evidence, const LinearModel& model, double smallest_gain, Point& point, std::vector<std::string>& dropped) {
+  const Eigen::VectorXd gain = held_out_gain(model, point.set);
+  Eigen::Index worst = -1;
+  for (Eigen::Index t = 0; t < gain.size(); ++t) {
+    if (std::isfinite(gain[t]) && gain[t] < smallest_gain && (worst < 0 || gain[t] < gain[worst])) worst = t;
+  }
+  if (worst < 0) return false;
+  const Term& term = evidence.terms[static_cast<std::size_t>(worst)];
+  dropped.push_back(std::string(info_of(term.property).effect) + " at " + place_of(evidence.robot, term) +
+                    " was dropped: it takes " + diagnose_program::percent(gain[worst]) + " off the error of its joints on held-out blocks");
+  point.set[static_cast<std::size_t>(worst)] = 0;
+  return true;
+}
+
+}  // namespace
+
+SearchResult search_terms(const Evidence& evidence, const Progress& progress, const SearchCriteria& criteria) {
+  Point point = start(evidence);
+  const TermSet all(evidence.terms.size(), 1);
+  TermSet allowed(evidence.terms.size(), 0);
+  for (std::size_t t = 0; t < evidence.terms.size(); ++t) allowed[t] = evidence.terms[t].group != single_joint ? 1 : 0;
+  SearchResult result;
+  bool singles = false;
+  for (int round = 0; round < criteria.most_rounds; ++round) {
+    if (evidence.stop.stop_requested()) {
+      result.complete = false;
+      break;
+    }
+    progress(singles ? "single joints" : "groups", static_cast<double>(round) / criteria.most_rounds);
+    trace(evidence, point);
+    const LinearModel model = linearize(evidence, point.theta, point.errors, either(allowed, point.set));
+    if (move_to_better(evidence, model, allowed, criteria, point)) continue;
+    if (singles && drop_one(evidence, model, criteria.smallest_gain, point, result.dropped)) {
+      for (std::size_t t = 0; t < point.set.size(); ++t) {
+        if (point.set[t] == 0 && point.theta[static_cast<Eigen::Index>(t)] != 0) {
+          allowed[t] = 0;
+          point.theta[static_cast<Eigen::Index>(t)] = 0;
+        }
+      }
+      point.errors = errors_at(evidence, point.theta);
+      continue;
+    }
+    if (singles) break;
+    singles = true;
+    allowed = all;
+  }
+  progress("proof", 1);
+  result.theta = point.theta;
+  result.set = point.set;
+  result.errors = point.errors;
+  result.linear = linearize(evidence, point.theta, point.errors, all);
+  return result;
+}
+
+}  // namespace diagnose_robot
