@@ -234,9 +234,8 @@ void conclude(const Evidence& evidence, RobotDiagnosis& d) {
   std::string sentence;
   for (const auto& effect : d.common.effects) sentence += (sentence.empty() ? "" : "; ") + effect.sentence;
   const std::string unit = d.torque_driven ? " of the drives' torque" : " rad";
-  const std::string figures = "the error on held-out " + std::string(evidence.recordings.size() == 1 ? "blocks" : "recordings") + " is " +
-                              rounded(d.held_out) + unit + " instead of " + rounded(d.nominal) + " of the file as it stands and " +
-                              rounded(d.textbook) + " of rigid bodies alone";
+  const std::string figures = "the error on held-out " + std::string(d.common.held_out == d.common.fit && evidence.recordings.size() == 1 ? "blocks" : "recordings") + " is " +
+                              rounded(d.held_out) + unit + " instead of " + rounded(d.common.held_out_before) + " of the file as it stands";
   d.common.sentence = (sentence.empty() ? "nothing is missing that these recordings show" : sentence) + "; " + figures;
 }
 
@@ -266,6 +265,25 @@ surefoot::Verdict verdict_of(std::size_t effects, std::size_t calibrated, double
   if (std::isfinite(noise) && noise > 0 && after > criteria.beyond_noise * noise) return surefoot::Verdict::unexplained;
   if (effects > 0) return surefoot::Verdict::missing_physics;
   return calibrated > 0 ? surefoot::Verdict::parameters_only : surefoot::Verdict::adequate;
+}
+
+void hold_out(const Evidence& test, RobotDiagnosis& d) {
+  const Eigen::MatrixXd nominal = errors_of(test, test.robot.nominal), after = errors_of(test, d.physics);
+  const Eigen::VectorXd by_joint = rms_by_joint(test, after);
+  d.held_out = overall(test, by_joint);
+  d.common.held_out.clear();
+  d.common.per_recording.clear();
+  for (const RobotRecording& recording : test.recordings) d.common.held_out.push_back(recording.name);
+  for (int b = 0; b < test.blocks; ++b) {
+    const std::string name = test.recordings.size() == 1 ? "block " + std::to_string(b + 1) : test.recordings[static_cast<std::size_t>(b)].name;
+    const double one = overall(test, rms_by_joint(test, after, b));
+    d.common.per_recording.push_back({name, overall(test, rms_by_joint(test, nominal, b)), one, one, 0, false});
+  }
+  for (std::size_t j = 0; j < d.joints.size(); ++j) d.joints[j].held_out = by_joint[static_cast<Eigen::Index>(j)];
+  d.common.held_out_before = overall(test, rms_by_joint(test, nominal));
+  d.common.held_out_after = d.held_out;
+  d.common.noise_ratio = d.noise > 0 ? d.held_out / d.noise : std::nan("");
+  conclude(test, d);
 }
 
 RobotDiagnosis diagnose_robot(const Evidence& evidence, const Progress& progress) {

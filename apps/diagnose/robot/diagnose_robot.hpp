@@ -8,6 +8,9 @@ namespace diagnose_robot {
 
 RobotDiagnosis diagnose_robot(const Evidence& evidence, const Progress& progress);
 
+/// Replaces the figures of held-out blocks by those of recordings that were used for nothing.
+void hold_out(const Evidence& test, RobotDiagnosis& diagnosis);
+
 /// Standard deviation of a sensor's white noise from fourth differences, in which the motion hardly shows.
 double noise_of(const Eigen::Ref<const Eigen::VectorXd>& readings);
 

@@ -125,17 +125,19 @@ RobotModel load_robot(const std::filesystem::path& file) {
   robot.text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const bool urdf = is_urdf(robot.text);
   if (urdf) robot.text = without_elements(robot.text, {"visual", "collision"});
-  std::string complaint;
+  std::string complaint, second;
   robot.model = compile_model(robot.text, file.parent_path(), urdf, complaint);
-  if (!robot.model) {
-    const std::string bare = without_meshes(robot.text);
-    std::string second;
-    if (bare != robot.text) robot.model = compile_model(bare, file.parent_path(), urdf, second);
-    if (robot.model) {
-      robot.text = bare;
-      robot.remarks.push_back("meshes of " + robot.file + " could not be loaded and were left out: " + complaint);
-    }
-  }
+  // What is missing or cannot be, and does not matter here: pictures of links, and inertias of links that have none.
+  const auto try_text = [&](const std::string& text, const std::string& remark) {
+    if (robot.model || text == robot.text) return;
+    robot.model = compile_model(text, file.parent_path(), urdf, second);
+    if (!robot.model) return;
+    robot.text = text;
+    robot.remarks.push_back(robot.file + ": " + complaint + "; " + remark);
+  };
+  try_text(without_meshes(robot.text), "meshes were left out");
+  try_text(with_possible_inertias(robot.text), "inertias that cannot be were made possible");
+  try_text(with_possible_inertias(without_meshes(robot.text)), "meshes were left out and inertias that cannot be made possible");
   if (!robot.model) {
     throw DiagnoseError(robot.file + ": MuJoCo cannot load it: " + complaint +
                         "; mend the file, or give each link an inertial element if it is a mesh that is missing");

@@ -46,6 +46,18 @@ void load_recordings(const diagnose_program::CommandLine& line, Evidence& eviden
   prepare(evidence);
 }
 
+// Recordings of --test, which took no part in anything, take the place of held-out blocks.
+void evaluate_test(const diagnose_program::CommandLine& line, const Evidence& evidence, RobotDiagnosis& d) {
+  if (line.test.empty()) return;
+  Evidence test(evidence.robot);
+  diagnose_program::CommandLine files = line;
+  files.recordings.assign(line.test.begin(), line.test.end());
+  std::vector<std::string> remarks;
+  load_recordings(files, test, remarks);
+  test.scales = evidence.scales;
+  hold_out(test, d);
+}
+
 }  // namespace
 
 bool is_robot_model(const std::filesystem::path& model) {
@@ -71,6 +83,7 @@ int run_robot(const diagnose_program::CommandLine& line) {
   diagnose_program::prepare_folder(line.out);
   diagnose_program::Progress progress(line.quiet);
   RobotDiagnosis d = diagnose_robot(evidence, [&](const std::string& stage, double share) { progress.show(stage, share, ""); });
+  evaluate_test(line, evidence, d);
   d.step = simulation_step(robot, evidence.recordings.front());
   const AugmentedModel augmented = augmented_model(robot, d.physics, d.step, line.model.parent_path());
   d.augmented = augmented.table;

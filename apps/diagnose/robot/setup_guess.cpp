@@ -155,7 +155,11 @@ void guess_drive(const diagnose_program::Csv& csv, SetupGuess& guess) {
   guess.setup.drive = goals ? DriveKind::position : DriveKind::torque;
   guess.remarks.push_back(goals ? "position drives, since every joint has a column of its goal"
                                 : "torque drives, since not every joint has a column of its goal");
-  if (!goals) return;
+  if (!goals) {
+    guess.setup.calibrate_gains = false;
+    guess.remarks.push_back("torques are taken as they are; write calibrate = [\"gains\"] if their scale is uncertain, with \"bodies\" if masses are");
+    return;
+  }
   double kp = 0, kd = 0;
   for (const auto& [key, text] : csv.meta) {
     const double number = diagnose_program::number_or_nan(text);

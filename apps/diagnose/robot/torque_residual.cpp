@@ -62,27 +62,31 @@ Eigen::MatrixXd drive_torque(const Robot& robot, const Motion& motion) {
   return torque;
 }
 
+// The torque that the drive would read: bodies and friction over its gain, so that no gain makes errors small by itself.
+// Friction by load goes with the torque of the rigid bodies, not with the measured one, of which friction is a part.
 Eigen::MatrixXd torque_residual(const Robot& robot, const Motion& motion, const RobotPhysics& physics) {
-  Eigen::MatrixXd residual = -rigid_body_torque(robot, motion, physics);
-  const Eigen::MatrixXd drive = drive_torque(robot, motion);
+  Eigen::MatrixXd needed = rigid_body_torque(robot, motion, physics);
   const Eigen::VectorXd rest = resting_speed(motion);
+  const Eigen::MatrixXd load = needed.cwiseAbs();
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const auto c = static_cast<Eigen::Index>(j);
     const JointPhysics& p = physics[j];
     const int before = robot.joints[j].before;
-    for (Eigen::Index k = 0; k < residual.rows(); ++k) {
-      const double v = motion.v(k, c), slow = v / stribeck_speed, given = drive(k, c) * (1 + p[Property::torque_gain]);
-      const double dry = p[Property::coulomb] + p[Property::breakaway] * std::exp(-slow * slow) + p[Property::load_friction] * std::abs(given);
-      residual(k, c) += given + p[Property::constant_torque] - dry * sign_of(v) - p[Property::viscous] * v -
-                        p[Property::drag] * v * std::abs(v) - p[Property::armature] * motion.a(k, c);
+    for (Eigen::Index k = 0; k < needed.rows(); ++k) {
+      const double v = motion.v(k, c), slow = v / stribeck_speed;
+      const double dry = p[Property::coulomb] + p[Property::breakaway] * std::exp(-slow * slow) + p[Property::load_friction] * load(k, c);
+      needed(k, c) += dry * sign_of(v) + p[Property::viscous] * v + p[Property::drag] * v * std::abs(v) +
+                      p[Property::armature] * motion.a(k, c) - p[Property::constant_torque];
       if (before < 0) continue;
       const double sum = v + motion.v(k, before);
       const double pair = p[Property::pair_coulomb] * sign_of(sum) + p[Property::pair_viscous] * sum +
                           p[Property::pair_armature] * (motion.a(k, c) + motion.a(k, before));
-      residual(k, c) -= pair;
-      residual(k, before) -= pair;
+      needed(k, c) += pair;
+      needed(k, before) += pair;
     }
   }
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) needed.col(static_cast<Eigen::Index>(j)) /= std::max(0.05, 1 + physics[j][Property::torque_gain]);
+  Eigen::MatrixXd residual = drive_torque(robot, motion) - needed;
   for (Eigen::Index c = 0; c < residual.cols(); ++c) {
     for (Eigen::Index k = 0; k < residual.rows(); ++k) {
       if (std::abs(motion.v(k, c)) < rest[c]) residual(k, c) = std::nan("");

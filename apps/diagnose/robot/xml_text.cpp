@@ -88,6 +88,17 @@ std::string without_meshes(const std::string& text) {
   return without_elements(without(no_assets, "geom", uses_mesh), {"visual", "collision"});
 }
 
+std::string with_possible_inertias(const std::string& text) {
+  const bool urdf = is_urdf(text);
+  const std::string settings = R"(<compiler balanceinertia="true" boundmass="1e-6" boundinertia="1e-9"/>)";
+  std::string result = text;
+  for_each_tag(text, urdf ? "robot" : "mujoco", [&](std::size_t, std::size_t end) {
+    if (text[end - 2] != '/') result.insert(end, urdf ? "<mujoco>" + settings + "</mujoco>" : settings);
+    return false;
+  });
+  return result;
+}
+
 std::string without_joints(const std::string& text, const std::vector<std::string>& names) {
   const auto unwanted = [&](const std::string& tag) {
     const std::string name = attribute(tag, "name");

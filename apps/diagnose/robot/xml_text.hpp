@@ -14,6 +14,9 @@ std::string without_elements(const std::string& text, const std::vector<std::str
 /// Without assets of meshes, and geoms that use them.
 std::string without_meshes(const std::string& text);
 
+/// The text with settings of MuJoCo's compiler that make every inertia possible, however small; of MJCF and URDF.
+std::string with_possible_inertias(const std::string& text);
+
 /// Without free joints and those named, and without what may refer to them.
 std::string without_joints(const std::string& text, const std::vector<std::string>& names);
 
