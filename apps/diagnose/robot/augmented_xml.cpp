@@ -41,7 +41,7 @@ void set_joint(mjModel* m, const RobotJoint& joint, const JointPhysics& physics)
 // A torque limit, a position drive or a motor; explicit in everything, so that default classes change nothing.
 std::string actuator(const Robot& robot, std::size_t j, const JointPhysics& p) {
   const RobotJoint& joint = robot.joints[j];
-  const double gain = 1 + p[Property::torque_gain];
+  const double gain = (1 + p[Property::torque_gain]) / (1 + p[Property::reading_scale]);
   const double kp = gain * joint.setup.kp * (1 + p[Property::kp_error]), kd = gain * joint.setup.kd * (1 + p[Property::kd_error]);
   const double limit = joint.setup.limit * (1 - p[Property::torque_limit]);
   std::string text = "    <general name=\"" + joint.setup.name + "_drive\" joint=\"" + joint.setup.name +
@@ -74,6 +74,7 @@ std::string place_in_mjcf(Property p) {
     case Property::armature: return "joint armature";
     case Property::kp_error: return "actuator gainprm, biasprm";
     case Property::kd_error: return "actuator biasprm";
+    case Property::reading_scale: return "actuator gainprm";
     case Property::torque_gain: return "actuator gainprm, biasprm";
     case Property::torque_limit: return "actuator forcerange";
     case Property::constant_torque: return "actuator biasprm";

@@ -20,12 +20,14 @@ bool is_torque_driven(const Evidence& evidence) { return evidence.robot.setup.dr
 
 // Errors of all joints in one number: root mean square angle, or share of the drives' torque.
 double overall(const Evidence& evidence, const Eigen::VectorXd& rms) {
-  double sum = 0;
+  double sum = 0, joints = 0;
   for (Eigen::Index j = 0; j < rms.size(); ++j) {
-    const double unit = is_torque_driven(evidence) ? evidence.scales[static_cast<std::size_t>(j)].torque : 1;
+    if (evidence.silent[static_cast<std::size_t>(j)] != 0) continue;
+    const double unit = is_torque_driven(evidence) ? evidence.scales[static_cast<std::size_t>(j)].reading : 1;
     sum += rms[j] * rms[j] / (unit * unit);
+    joints += 1;
   }
-  return std::sqrt(sum / static_cast<double>(rms.size()));
+  return std::sqrt(sum / std::max(1.0, joints));
 }
 
 RobotPhysics physics_at(const Evidence& evidence, const Eigen::VectorXd& theta) {
@@ -224,6 +226,22 @@ void draw_worst(const Evidence& evidence, RobotDiagnosis& d) {
   }
 }
 
+// Recorded torques of the other sign are a fault of the log.
+void name_sign_faults(const Evidence& evidence, RobotDiagnosis& d) {
+  for (std::size_t j = 0; j < d.physics.size(); ++j) {
+    if (!(d.physics[j][Property::reading_scale] < -1)) continue;
+    const JointSetup& joint = evidence.robot.joints[j].setup;
+    surefoot::LogFault fault;
+    fault.kind = "sign_flipped";
+    fault.channel = joint.torque.name;
+    fault.size = 1 + d.physics[j][Property::reading_scale];
+    fault.unit = "1";
+    fault.sentence = joint.torque.name + " has the other sign than the motion of " + joint.name;
+    fault.cure = "write torque = { column = \"" + joint.torque.name + "\", factor = -1 } in the setup";
+    d.common.log_faults.push_back(fault);
+  }
+}
+
 void conclude(const Evidence& evidence, RobotDiagnosis& d) {
   std::size_t calibrated = 0;
   for (const auto& effect : d.common.effects) {
@@ -265,6 +283,21 @@ surefoot::Verdict verdict_of(std::size_t effects, std::size_t calibrated, double
   if (std::isfinite(noise) && noise > 0 && after > criteria.beyond_noise * noise) return surefoot::Verdict::unexplained;
   if (effects > 0) return surefoot::Verdict::missing_physics;
   return calibrated > 0 ? surefoot::Verdict::parameters_only : surefoot::Verdict::adequate;
+}
+
+RobotDiagnosis refuse_log(const Evidence& evidence, const std::vector<surefoot::LogFault>& faults) {
+  RobotDiagnosis d;
+  d.torque_driven = is_torque_driven(evidence);
+  d.error_unit = d.torque_driven ? "1" : "rad";
+  d.physics = evidence.robot.nominal;
+  const Eigen::VectorXd nominal = rms_by_joint(evidence, errors_of(evidence, evidence.robot.nominal));
+  d.textbook = d.nominal = d.after = d.held_out = overall(evidence, nominal);
+  d.noise = d.replayed = std::nan("");
+  d.common.model = evidence.robot.model.file;
+  d.common.verdict = surefoot::Verdict::unexplained;
+  d.common.held_out_before = d.common.held_out_after = d.nominal;
+  for (const surefoot::LogFault& fault : faults) d.common.sentence += (d.common.sentence.empty() ? "" : "; ") + fault.sentence + "; " + fault.cure + ", or run again with --repair";
+  return d;
 }
 
 void hold_out(const Evidence& test, RobotDiagnosis& d) {
@@ -310,7 +343,7 @@ RobotDiagnosis diagnose_robot(const Evidence& evidence, const Progress& progress
     const auto c = static_cast<Eigen::Index>(j);
     const std::string unit = d.torque_driven ? (joint.model.slides ? "N" : "N m") : joint.model.slides ? "m" : "rad";
     d.joints.push_back({joint.setup.name, evidence.robot.setup.groups[static_cast<std::size_t>(joint.group)].name, unit, by_textbook[c],
-                        by_nominal[c], by_after[c], held_out.by_joint[c], noise[c], evidence.scales[j].torque});
+                        by_nominal[c], by_after[c], held_out.by_joint[c], noise[c], evidence.scales[j].reading});
     d.common.channels.push_back({joint.setup.angle.name, unit, by_textbook[c], by_nominal[c], by_after[c], noise[c], 0});
   }
   surefoot::Diagnosis& common = d.common;
@@ -337,11 +370,15 @@ RobotDiagnosis diagnose_robot(const Evidence& evidence, const Progress& progress
     common.gain_low = mean - z95 * error;
     common.gain_high = mean + z95 * error;
   }
+  for (std::size_t j = 0; j < joints; ++j) {
+    if (evidence.silent[j] != 0) common.remarks.push_back({"", "the torque of " + d.joints[j].joint + " hardly ever changes: taken as not recorded, nothing is said of it"});
+  }
   for (const std::string& dropped : found.dropped) common.remarks.push_back({"", dropped});
   name_effects(evidence, found, d);
   name_alternatives(evidence, found, d);
   compare_with_groups(evidence, found, d);
   share_errors(evidence, found, d);
+  name_sign_faults(evidence, d);
   draw_worst(evidence, d);
   conclude(evidence, d);
   return d;

@@ -18,7 +18,8 @@ const std::array<PropertyInfo, property_count>& property_table() {
       {kp_error, "drive_gain", "kp_error", "1", "proportional gain other than stated", -9, 20, true, false, true},
       // Only less than stated: more of it is friction that grows with speed, and no recording tells them apart.
       {kd_error, "drive_damping_gain", "kd_error", "1", "derivative gain below the stated one", -10, 0, true, false, true},
-      {torque_gain, "input_gain", "gain_error", "1", "torque other than the drive is told", -9, 20, true, true, false},
+      {torque_gain, "input_gain", "gain_error", "1", "torque other than the drive is told", -9, 20, true, false, false},
+      {reading_scale, "sensor_scale", "scale_error", "1", "recorded torque on another scale, or of the other sign", -20, 100, false, true, true},
       {torque_limit, "saturation", "missing_share", "1", "torque limit below the stated one", 0, 9.9, true, false, false},
       {lag, "first_order_lag", "time_constant", "s", "torque that lags", 0, 30, true, false, false},
       {delay, "input_delay", "delay", "s", "goal that arrives late", 0, 40, true, false, false},
@@ -57,6 +58,7 @@ double typical_size(Property property, const JointScale& scale) {
     case Property::kp_error:
     case Property::kd_error:
     case Property::torque_gain:
+    case Property::reading_scale:
     case Property::torque_limit:
     case Property::load_friction:
     case Property::link_mass:

@@ -17,7 +17,8 @@ enum class Property : unsigned char {
   armature,         // inertia of the rotor, seen at the joint [kg m^2]
   kp_error,         // relative, of a position drive [1]
   kd_error,         // relative, of a position drive [1]
-  torque_gain,      // relative, of all torque that the drive gives [1]
+  torque_gain,      // relative, of all torque that a position drive gives [1]
+  reading_scale,    // relative, of the recorded torque of a torque drive: 0.25 reads a quarter more than there is [1]
   torque_limit,     // share of the stated limit that is missing [1]
   lag,              // time constant of the torque [s]
   delay,            // of the goal [s]
@@ -66,6 +67,7 @@ inline const PropertyInfo& info_of(Property p) { return property_table()[static_
 /// Of rotor, drive and link of one joint, from which typical sizes of properties follow.
 struct JointScale {
   double torque = 1, speed = 1, acceleration = 1, angle = 1;  // root mean squares over the recordings
+  double reading = 1;                                         // root mean square of the recorded torque, on its own scale
   double link_size = 0.1;                                     // [m]
   double link_mass = 1;                                       // [kg]
 };

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "simulate_robot.hpp"
 #include "surefoot/core/error.hpp"
@@ -100,6 +101,22 @@ void set_priors(const Evidence& evidence, LinearModel& model) {
   }
 }
 
+// Torques that are the same in most rows are no readings.
+void find_silent(Evidence& evidence) {
+  constexpr double still = 0.5;  // of the rows: a drive that moves never gives one torque for so long
+  evidence.silent.assign(evidence.robot.joints.size(), 0);
+  if (evidence.robot.setup.drive != DriveKind::torque) return;
+  for (std::size_t j = 0; j < evidence.silent.size(); ++j) {
+    std::map<double, double> count;
+    double rows = 0, most = 0;
+    for (const RobotRecording& recording : evidence.recordings) {
+      for (const double torque : recording.torque.col(static_cast<Eigen::Index>(j))) most = std::max(most, count[torque] += 1);
+      rows += static_cast<double>(recording.time.size());
+    }
+    evidence.silent[j] = most > still * rows ? 1 : 0;
+  }
+}
+
 }  // namespace
 
 void prepare(Evidence& evidence) {
@@ -112,21 +129,24 @@ void prepare(Evidence& evidence) {
     }
   }
   const std::size_t joints = evidence.robot.joints.size();
+  find_silent(evidence);
   evidence.scales.resize(joints);
   const mjModel* m = evidence.robot.model.model.get();
   for (std::size_t j = 0; j < joints; ++j) {
     JointScale& scale = evidence.scales[j];
-    double torque = 0, speed = 0, acceleration = 0, angle = 0;
+    double torque = 0, reading = 0, speed = 0, acceleration = 0, angle = 0;
     for (const Motion& motion : evidence.motions) {
       const auto c = static_cast<Eigen::Index>(j);
       const Eigen::VectorXd given = drive_torque(evidence.robot, motion).col(c);
-      torque = std::max(torque, rms(given));
+      reading = std::max(reading, rms(given));
+      torque = std::max({torque, rms(given), rms(rigid_body_torque(evidence.robot, motion, RobotPhysics(joints)).col(c))});
       speed = std::max(speed, rms(motion.v.col(c)));
       acceleration = std::max(acceleration, rms(motion.a.col(c)));
       angle = std::max(angle, rms((motion.q.col(c).array() - motion.q.col(c).mean()).matrix()));
     }
     constexpr double still = 1e-3;  // [rad], [rad/s], ...: a joint that hardly moves
-    scale = {std::max(still, torque), std::max(still, speed), std::max(still, acceleration), std::max(still, angle), 0.1, 1};
+    scale = {std::max(still, torque), std::max(still, speed), std::max(still, acceleration), std::max(still, angle),
+             std::max(still, reading), 0.1, 1};
     const ModelJoint& joint = evidence.robot.joints[j].model;
     const double size = std::hypot(joint.tip[0], joint.tip[1], joint.tip[2]);
     if (size > 0) scale.link_size = size;
@@ -146,6 +166,9 @@ Eigen::MatrixXd errors_of(const Evidence& evidence, const RobotPhysics& physics)
             ? torque_residual(evidence.robot, evidence.motions[r], physics)
             : Eigen::MatrixXd(recording.angle - simulate_robot(evidence.robot, recording, start_of(evidence.motions[r]), physics));
     at += rows;
+  }
+  for (std::size_t j = 0; j < evidence.silent.size(); ++j) {
+    if (evidence.silent[j] != 0) errors.col(static_cast<Eigen::Index>(j)).setConstant(std::nan(""));
   }
   return errors;
 }

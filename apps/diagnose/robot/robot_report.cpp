@@ -44,6 +44,13 @@ std::string head_part(const RobotDiagnosis& d) {
                           : "Root mean square errors of the joint angles over simulations of whole recordings [rad].</p>\n");
 }
 
+std::string faults_part(const RobotDiagnosis& d) {
+  if (d.common.log_faults.empty()) return "";
+  std::string html = "<h2>Faults of the log</h2>\n<ul>\n";
+  for (const auto& fault : d.common.log_faults) html += element("li", diagnose_program::fault_text(fault)) + "\n";
+  return html + "</ul>\n";
+}
+
 std::string effects_part(const RobotDiagnosis& d) {
   if (d.common.effects.empty()) return "";
   std::string html = "<h2>What is missing</h2>\n<table>\n" + row({"effect", "at", "size (95 %)", "error of its joints", "confidence"}, "th");
@@ -158,7 +165,7 @@ std::string robot_report(const RobotDiagnosis& d) {
   return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
          "content=\"width=device-width,initial-scale=1\"><title>Diagnosis of " +
          escaped(d.common.model) + "</title><style>" + diagnose_program::report_style + "</style></head><body><main>\n" + head_part(d) +
-         effects_part(d) + joints_part(d) + differences_part(d) + charts_part(d) + augmented_part(d) + remarks_part(d) + "<footer>" +
+         faults_part(d) + effects_part(d) + joints_part(d) + differences_part(d) + charts_part(d) + augmented_part(d) + remarks_part(d) + "<footer>" +
          diagnose_program::duration_text(d.common.seconds) + ", seed " + std::to_string(d.common.seed) + "</footer>\n</main></body></html>\n";
 }
 

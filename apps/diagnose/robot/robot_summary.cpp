@@ -13,6 +13,7 @@ std::string robot_summary(const RobotDiagnosis& d, const std::string& report) {
   std::ostringstream text;
   const std::string unit = d.torque_driven ? " of the torque" : " rad";
   text << d.common.model << ": " << diagnose_program::headline(d.common.verdict) << (d.common.complete ? "" : " (so far)") << '\n';
+  for (const auto& fault : d.common.log_faults) text << "  log     " << fault.sentence << (fault.repaired ? " (repaired for this diagnosis)" : "; " + fault.cure) << '\n';
   for (const auto& effect : d.common.effects) {
     text << "  effect  " << effect.name << " at " << effect.attached_to;
     for (const auto& fit : effect.parameters) text << ", " << fit.name << " " << diagnose_program::with_interval(fit);

@@ -11,6 +11,7 @@
 #include "diagnose_robot.hpp"
 #include "robot_files.hpp"
 #include "setup_guess.hpp"
+#include "swapped_joints.hpp"
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/error.hpp"
 #include "xml_text.hpp"
@@ -60,6 +61,36 @@ void evaluate_test(const diagnose_program::CommandLine& line, const Evidence& ev
 
 }  // namespace
 
+namespace {
+
+// Swapped columns, repaired in place if asked for.
+std::vector<surefoot::LogFault> swapped_columns(bool repair, Evidence& evidence) {
+  std::vector<surefoot::LogFault> faults;
+  for (const auto& [a, b] : swapped_pairs(unexplained_commands(evidence))) {
+    const JointSetup &one = evidence.robot.joints[static_cast<std::size_t>(a)].setup, &other = evidence.robot.joints[static_cast<std::size_t>(b)].setup;
+    surefoot::LogFault fault;
+    fault.kind = "columns_swapped";
+    fault.channel = one.angle.name;
+    fault.sentence = one.angle.name + " and " + other.angle.name + " are swapped: each moves as the other is told";
+    fault.cure = "swap them in the setup";
+    fault.repaired = repair;
+    faults.push_back(fault);
+    if (!repair) continue;
+    for (RobotRecording& recording : evidence.recordings) {
+      for (Eigen::MatrixXd* readings : {&recording.angle, &recording.speed}) {
+        if (readings->size() > 0) readings->col(a).swap(readings->col(b));
+      }
+    }
+  }
+  if (repair && !faults.empty()) {
+    for (std::size_t r = 0; r < evidence.recordings.size(); ++r) evidence.motions[r] = smooth(evidence.recordings[r]);
+    prepare(evidence);
+  }
+  return faults;
+}
+
+}  // namespace
+
 bool is_robot_model(const std::filesystem::path& model) {
   const std::string ending = model.extension().string();
   return ending == ".xml" || ending == ".urdf" || ending == ".mjcf";
@@ -82,7 +113,11 @@ int run_robot(const diagnose_program::CommandLine& line) {
   load_recordings(line, evidence, remarks);
   diagnose_program::prepare_folder(line.out);
   diagnose_program::Progress progress(line.quiet);
-  RobotDiagnosis d = diagnose_robot(evidence, [&](const std::string& stage, double share) { progress.show(stage, share, ""); });
+  const std::vector<surefoot::LogFault> faults = swapped_columns(line.repair, evidence);
+  const bool usable = faults.empty() || line.repair;
+  RobotDiagnosis d = usable ? diagnose_robot(evidence, [&](const std::string& stage, double share) { progress.show(stage, share, ""); })
+                            : refuse_log(evidence, faults);
+  d.common.log_faults.insert(d.common.log_faults.begin(), faults.begin(), faults.end());
   evaluate_test(line, evidence, d);
   d.step = simulation_step(robot, evidence.recordings.front());
   const AugmentedModel augmented = augmented_model(robot, d.physics, d.step, line.model.parent_path());

@@ -24,7 +24,7 @@ bool is_considered(const Robot& robot, const PropertyInfo& info, int joint) {
   const RobotJoint& at = robot.joints[static_cast<std::size_t>(joint)];
   if (!(position ? info.position_drive : info.torque_drive)) return false;
   if (is_body(info.property)) return robot.setup.calibrate_bodies;
-  if ((info.calibration || info.property == Property::torque_gain) && !robot.setup.calibrate_gains) return false;
+  if (!is_body(info.property) && (info.calibration || info.property == Property::torque_gain) && !robot.setup.calibrate_gains) return false;
   if (info.property == Property::torque_limit) return at.setup.limit > 0;
   if (info.property == Property::kd_error) return at.setup.kd > 0;
   return !is_pair(info.property) || at.before >= 0;

@@ -11,7 +11,10 @@ constexpr double resting_share = 0.03;  // of the root mean square speed: what s
 
 double rms(const Eigen::Ref<const Eigen::VectorXd>& x) { return std::sqrt(x.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, x.size()))); }
 
-// Torque that the rigid bodies need.
+double sign_of(double v) { return v > 0 ? 1.0 : v < 0 ? -1.0 : 0.0; }
+
+}  // namespace
+
 Eigen::MatrixXd rigid_body_torque(const Robot& robot, const Motion& motion, const RobotPhysics& physics) {
   const ModelPointer model = model_with_bodies(robot, physics);
   const mjModel* m = model.get();
@@ -40,10 +43,6 @@ Eigen::MatrixXd rigid_body_torque(const Robot& robot, const Motion& motion, cons
   return torque;
 }
 
-double sign_of(double v) { return v > 0 ? 1.0 : v < 0 ? -1.0 : 0.0; }
-
-}  // namespace
-
 Eigen::VectorXd resting_speed(const Motion& motion) {
   Eigen::VectorXd speed(motion.v.cols());
   for (Eigen::Index j = 0; j < speed.size(); ++j) speed[j] = resting_share * rms(motion.v.col(j));
@@ -62,7 +61,7 @@ Eigen::MatrixXd drive_torque(const Robot& robot, const Motion& motion) {
   return torque;
 }
 
-// The torque that the drive would read: bodies and friction over its gain, so that no gain makes errors small by itself.
+// Recorded less expected reading: no scale makes this small by itself.
 // Friction by load goes with the torque of the rigid bodies, not with the measured one, of which friction is a part.
 Eigen::MatrixXd torque_residual(const Robot& robot, const Motion& motion, const RobotPhysics& physics) {
   Eigen::MatrixXd needed = rigid_body_torque(robot, motion, physics);
@@ -85,7 +84,7 @@ Eigen::MatrixXd torque_residual(const Robot& robot, const Motion& motion, const 
       needed(k, before) += pair;
     }
   }
-  for (std::size_t j = 0; j < robot.joints.size(); ++j) needed.col(static_cast<Eigen::Index>(j)) /= std::max(0.05, 1 + physics[j][Property::torque_gain]);
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) needed.col(static_cast<Eigen::Index>(j)) *= 1 + physics[j][Property::reading_scale];
   Eigen::MatrixXd residual = drive_torque(robot, motion) - needed;
   for (Eigen::Index c = 0; c < residual.cols(); ++c) {
     for (Eigen::Index k = 0; k < residual.rows(); ++k) {
