@@ -16,7 +16,7 @@ struct AugmentedModel {
   std::vector<AugmentedEntry> table;
 };
 
-/// `step`: of the simulation [s], which becomes the model's. `folder`: of the model file. Throws surefoot::DiagnoseError if MuJoCo cannot write the model.
+/// `step`: of the simulation [s]; the model's is a part of it. `folder`: of the model file. Throws surefoot::DiagnoseError if MuJoCo cannot write the model.
 AugmentedModel augmented_model(const Robot& robot, const RobotPhysics& physics, double step, const std::filesystem::path& folder);
 
 /// Angles from MuJoCo's own step over the recording: row x joint. Contacts are switched off.

@@ -5,6 +5,7 @@
 
 #include "../wording.hpp"
 #include "simulate_robot.hpp"
+#include "surefoot/core/rng.hpp"
 #include "torque_residual.hpp"
 
 namespace diagnose_robot {
@@ -60,17 +61,40 @@ HeldOut held_out_errors(const Evidence& evidence, const SearchResult& found, con
   return result;
 }
 
-double noise_of_joint(const Evidence& evidence, Eigen::Index joint) {
-  double square = 0;
+// Of the angles, or of the torques: their own noise, and what that of the angles makes of speeds and accelerations.
+Eigen::VectorXd noise_by_joint(const Evidence& evidence, const RobotPhysics& physics, std::uint64_t seed) {
+  const auto joints = static_cast<Eigen::Index>(evidence.robot.joints.size());
+  Eigen::VectorXd square = Eigen::VectorXd::Zero(joints);
+  surefoot::Rng rng(seed);
   for (std::size_t r = 0; r < evidence.recordings.size(); ++r) {
-    const RobotRecording& recording = evidence.recordings[r];
-    const double noise = is_torque_driven(evidence)
-                             ? std::sqrt((recording.torque.col(joint) - evidence.motions[r].torque.col(joint)).squaredNorm() /
-                                         static_cast<double>(recording.time.size()))
-                             : noise_of(recording.angle.col(joint));
-    square += noise * noise / static_cast<double>(evidence.recordings.size());
+    RobotRecording noisy = evidence.recordings[r];
+    Eigen::VectorXd angle(joints), torque = Eigen::VectorXd::Zero(joints);
+    for (Eigen::Index j = 0; j < joints; ++j) {
+      angle[j] = noise_of(noisy.angle.col(j));
+      if (is_torque_driven(evidence)) torque[j] = noise_of(noisy.torque.col(j));
+    }
+    Eigen::VectorXd one = angle.cwiseAbs2();
+    if (is_torque_driven(evidence)) {
+      for (Eigen::Index j = 0; j < joints; ++j) {
+        for (Eigen::Index k = 0; k < noisy.time.size(); ++k) {
+          noisy.angle(k, j) += angle[j] * rng.normal();
+          noisy.torque(k, j) += torque[j] * rng.normal();
+        }
+      }
+      const Eigen::MatrixXd change = torque_residual(evidence.robot, smooth(noisy), physics) - torque_residual(evidence.robot, evidence.motions[r], physics);
+      for (Eigen::Index j = 0; j < joints; ++j) {
+        double sum = 0, rows = 0;
+        for (const double x : change.col(j)) {
+          if (!std::isfinite(x)) continue;
+          sum += x * x;
+          rows += 1;
+        }
+        one[j] = sum / std::max(1.0, rows);
+      }
+    }
+    square += one / static_cast<double>(evidence.recordings.size());
   }
-  return std::sqrt(square);
+  return square.cwiseSqrt();
 }
 
 std::string sentence_of(const Evidence& evidence, const Term& term, double value, double error, bool known) {
@@ -83,14 +107,24 @@ std::string sentence_of(const Evidence& evidence, const Term& term, double value
   return std::string(info.of_group) + " of " + size + " at " + place + (known ? ", as the file has it" : "");
 }
 
-// Whether the file has this already, at the size that was found.
-bool is_in_file(const Evidence& evidence, const Term& term, double value, double error) {
-  constexpr double same = 0.05;  // of the value: a size that nobody would change
+// Whether the size that the file has for this would do as well: the error of the joints rises by less than is negligible.
+bool is_in_file(const Evidence& evidence, const SearchResult& found, Eigen::Index t) {
+  constexpr double negligible = 0.02;  // of the error, as for terms that held-out blocks do not want
+  const Term& term = evidence.terms[static_cast<std::size_t>(t)];
   double nominal = 0;
   for (const int j : term.joints) {
     nominal += evidence.robot.nominal[static_cast<std::size_t>(j)][term.property] / static_cast<double>(term.joints.size());
   }
-  return nominal != 0 && term.group != single_joint && std::abs(value - nominal) < std::max(z95 * error, same * std::abs(nominal));
+  if (nominal == 0 || term.group == single_joint) return false;
+  LinearModel as_in_file = found.linear;
+  as_in_file.low[t] = as_in_file.high[t] = nominal;
+  const Eigen::VectorXd with = fit_linear(found.linear, found.set).square, without = fit_linear(as_in_file, found.set).square;
+  double before = 0, after = 0;
+  for (const int j : term.joints) {
+    before += with[j];
+    after += without[j];
+  }
+  return std::sqrt(after) < (1 + negligible) * std::sqrt(before);
 }
 
 void name_effects(const Evidence& evidence, const SearchResult& found, RobotDiagnosis& d) {
@@ -101,7 +135,7 @@ void name_effects(const Evidence& evidence, const SearchResult& found, RobotDiag
     const auto at = static_cast<Eigen::Index>(t);
     const Term& term = evidence.terms[t];
     const PropertyInfo& info = info_of(term.property);
-    const bool known = is_in_file(evidence, term, found.theta[at], error[at]);
+    const bool known = is_in_file(evidence, found, at);
     FittedValue value{info.parameter, unit_of(evidence.robot, term), found.theta[at], found.theta[at] - z95 * error[at], found.theta[at] + z95 * error[at]};
     if (info.calibration) {
       value.name = std::string(info.parameter) + " at " + place_of(evidence.robot, term);
@@ -331,8 +365,7 @@ RobotDiagnosis diagnose_robot(const Evidence& evidence, const Progress& progress
   const Eigen::VectorXd by_textbook = rms_by_joint(evidence, textbook), by_nominal = rms_by_joint(evidence, nominal),
                         by_after = rms_by_joint(evidence, found.errors);
   const HeldOut held_out = held_out_errors(evidence, found, nominal);
-  Eigen::VectorXd noise(static_cast<Eigen::Index>(joints));
-  for (Eigen::Index j = 0; j < noise.size(); ++j) noise[j] = noise_of_joint(evidence, j);
+  const Eigen::VectorXd noise = noise_by_joint(evidence, d.physics, 1);
   d.textbook = overall(evidence, by_textbook);
   d.nominal = overall(evidence, by_nominal);
   d.after = overall(evidence, by_after);

@@ -155,6 +155,15 @@ void prepare(Evidence& evidence) {
   evidence.terms = all_terms(evidence.robot, evidence.scales);
 }
 
+void leave_out_start(const Robot& robot, const RobotRecording& recording, Eigen::Ref<Eigen::MatrixXd> errors) {
+  constexpr double settling = 0.5, share = 0.1;  // [s], of the length at most: speeds and what was told before are not known
+  if (robot.setup.drive == DriveKind::torque) return;
+  const double length = recording.time[recording.time.size() - 1] - recording.time[0];
+  for (Eigen::Index k = 0; k < errors.rows() && recording.time[k] - recording.time[0] < std::min(settling, share * length); ++k) {
+    errors.row(k).setConstant(std::nan(""));
+  }
+}
+
 Eigen::MatrixXd errors_of(const Evidence& evidence, const RobotPhysics& physics) {
   Eigen::MatrixXd errors(static_cast<Eigen::Index>(evidence.block.size()), static_cast<Eigen::Index>(evidence.robot.joints.size()));
   Eigen::Index at = 0;
@@ -165,6 +174,7 @@ Eigen::MatrixXd errors_of(const Evidence& evidence, const RobotPhysics& physics)
         evidence.robot.setup.drive == DriveKind::torque
             ? torque_residual(evidence.robot, evidence.motions[r], physics)
             : Eigen::MatrixXd(recording.angle - simulate_robot(evidence.robot, recording, start_of(evidence.motions[r]), physics));
+    leave_out_start(evidence.robot, recording, errors.middleRows(at, rows));
     at += rows;
   }
   for (std::size_t j = 0; j < evidence.silent.size(); ++j) {
@@ -173,10 +183,12 @@ Eigen::MatrixXd errors_of(const Evidence& evidence, const RobotPhysics& physics)
   return errors;
 }
 
-LinearModel linearize(const Evidence& evidence, const Eigen::VectorXd& theta, const Eigen::MatrixXd& errors, const TermSet& wanted) {
+namespace {
+
+void take_derivatives(const Evidence& evidence, const Eigen::VectorXd& theta, const Eigen::MatrixXd& errors, const TermSet& terms,
+                      Derivatives& derivatives) {
   const std::size_t joints = evidence.robot.joints.size();
-  const auto terms = static_cast<Eigen::Index>(evidence.terms.size());
-  const auto groups = batches(evidence, wanted);
+  const auto groups = batches(evidence, terms);
   const auto changed = surefoot::map(
       evidence.threads, groups.size(),
       [&](std::size_t b) {
@@ -185,6 +197,53 @@ LinearModel linearize(const Evidence& evidence, const Eigen::VectorXd& theta, co
         return errors_of(evidence, physics_of(evidence.terms, moved, joints));
       },
       evidence.stop);
+  for (std::size_t b = 0; b < groups.size(); ++b) {
+    for (const std::size_t t : groups[b]) {
+      Eigen::MatrixXd& of = derivatives.of[t];
+      of = Eigen::MatrixXd::Zero(errors.rows(), errors.cols());
+      const double step = step_of(evidence.terms[t], theta[static_cast<Eigen::Index>(t)]);
+      for (std::size_t j = 0; j < joints; ++j) {
+        const auto c = static_cast<Eigen::Index>(j);
+        if (moves(evidence, evidence.terms[t], j)) of.col(c) = (changed[b].col(c) - errors.col(c)) / step;
+      }
+      derivatives.fresh[t] = 1;
+    }
+  }
+}
+
+// Sums of one joint by block; rows that are not known count nothing.
+void add_blocks(const Evidence& evidence, Eigen::MatrixXd& x, Eigen::VectorXd& r, std::vector<Sums>& sums) {
+  for (Eigen::Index k = 0; k < r.size(); ++k) {
+    if (std::isfinite(r[k]) && x.row(k).allFinite()) continue;
+    r[k] = 0;
+    x.row(k).setZero();
+  }
+  for (Eigen::Index begin = 0; begin < r.size();) {
+    const int block = evidence.block[static_cast<std::size_t>(begin)];
+    Eigen::Index end = begin;
+    while (end < r.size() && evidence.block[static_cast<std::size_t>(end)] == block) ++end;
+    Sums& sum = sums[static_cast<std::size_t>(block)];
+    const auto part = x.middleRows(begin, end - begin);
+    sum.gram = Eigen::MatrixXd::Zero(x.cols(), x.cols());
+    sum.gram.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
+    sum.gram.triangularView<Eigen::StrictlyUpper>() = sum.gram.transpose();
+    sum.slope = part.transpose() * r.segment(begin, end - begin);
+    sum.square = r.segment(begin, end - begin).squaredNorm();
+    sum.rows = static_cast<double>(end - begin);
+    begin = end;
+  }
+}
+
+}  // namespace
+
+LinearModel linearize(const Evidence& evidence, const Eigen::VectorXd& theta, const Eigen::MatrixXd& errors, const TermSet& wanted,
+                      const TermSet& renewed, Derivatives& derivatives) {
+  const std::size_t joints = evidence.robot.joints.size(), terms = evidence.terms.size();
+  derivatives.of.resize(terms);
+  derivatives.fresh.assign(terms, 0);
+  TermSet now(terms, 0);
+  for (std::size_t t = 0; t < terms; ++t) now[t] = renewed[t] != 0 || (wanted[t] != 0 && derivatives.of[t].size() == 0) ? 1 : 0;
+  take_derivatives(evidence, theta, errors, now, derivatives);
   LinearModel model;
   model.theta = theta;
   for (const RobotJoint& joint : evidence.robot.joints) model.pool.push_back(joint.group);
@@ -192,34 +251,13 @@ LinearModel linearize(const Evidence& evidence, const Eigen::VectorXd& theta, co
   model.sums.assign(joints, std::vector<Sums>(static_cast<std::size_t>(evidence.blocks)));
   for (std::size_t j = 0; j < joints; ++j) {
     const auto c = static_cast<Eigen::Index>(j);
-    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(errors.rows(), terms);
-    for (std::size_t b = 0; b < groups.size(); ++b) {
-      for (const std::size_t t : groups[b]) {
-        if (!moves(evidence, evidence.terms[t], j)) continue;
-        x.col(static_cast<Eigen::Index>(t)) = (changed[b].col(c) - errors.col(c)) / step_of(evidence.terms[t], theta[static_cast<Eigen::Index>(t)]);
-      }
+    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(errors.rows(), static_cast<Eigen::Index>(terms));
+    for (std::size_t t = 0; t < terms; ++t) {
+      if (wanted[t] != 0) x.col(static_cast<Eigen::Index>(t)) = derivatives.of[t].col(c);
     }
     Eigen::VectorXd r = errors.col(c);
-    for (Eigen::Index k = 0; k < r.size(); ++k) {
-      if (std::isfinite(r[k]) && x.row(k).allFinite()) continue;
-      r[k] = 0;
-      x.row(k).setZero();
-    }
+    add_blocks(evidence, x, r, model.sums[j]);
     model.independent[c] = independent_errors(left_by_all(evidence, x, r, errors.col(c)));
-    for (Eigen::Index begin = 0; begin < r.size();) {
-      const int block = evidence.block[static_cast<std::size_t>(begin)];
-      Eigen::Index end = begin;
-      while (end < r.size() && evidence.block[static_cast<std::size_t>(end)] == block) ++end;
-      Sums& sums = model.sums[j][static_cast<std::size_t>(block)];
-      const auto part = x.middleRows(begin, end - begin);
-      sums.gram = Eigen::MatrixXd::Zero(terms, terms);
-      sums.gram.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
-      sums.gram.triangularView<Eigen::StrictlyUpper>() = sums.gram.transpose();
-      sums.slope = part.transpose() * r.segment(begin, end - begin);
-      sums.square = r.segment(begin, end - begin).squaredNorm();
-      sums.rows = static_cast<double>(end - begin);
-      begin = end;
-    }
   }
   set_priors(evidence, model);
   add_up(model);

@@ -36,8 +36,19 @@ void prepare(Evidence& evidence);
 /// that is left for torque drives. NaN: not known. Not finite in all of a column where a simulation ran away.
 Eigen::MatrixXd errors_of(const Evidence& evidence, const RobotPhysics& physics);
 
-/// `wanted`: terms whose derivatives are asked for; the others' are 0.
-LinearModel linearize(const Evidence& evidence, const Eigen::VectorXd& theta, const Eigen::MatrixXd& errors, const TermSet& wanted);
+/// Sets errors of a simulation to NaN while it still depends on how it began.
+void leave_out_start(const Robot& robot, const RobotRecording& recording, Eigen::Ref<Eigen::MatrixXd> errors);
+
+/// Derivatives of the errors by term, kept while parameters move: those of terms that are not in the model change little.
+struct Derivatives {
+  std::vector<Eigen::MatrixXd> of;  // by term: row x joint; empty: not known
+  TermSet fresh;                    // taken where the parameters are now
+};
+
+/// Sums at `theta`, where `errors` are those of all rows. Derivatives of `renewed` terms are taken anew, those of other
+/// `wanted` terms where they are not known yet; the rest are 0.
+LinearModel linearize(const Evidence& evidence, const Eigen::VectorXd& theta, const Eigen::MatrixXd& errors, const TermSet& wanted,
+                      const TermSet& renewed, Derivatives& derivatives);
 
 /// Root mean square by joint, of the rows of a block (-1: all).
 Eigen::VectorXd rms_by_joint(const Evidence& evidence, const Eigen::MatrixXd& errors, int block = -1);

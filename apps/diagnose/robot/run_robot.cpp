@@ -29,6 +29,7 @@ double replay_error(const Evidence& evidence, const AugmentedModel& augmented, c
     const RobotRecording& recording = evidence.recordings[r];
     errors.middleRows(at, recording.time.size()) =
         recording.angle - replay(evidence.robot, augmented, physics, recording, start_of(evidence.motions[r]));
+    leave_out_start(evidence.robot, recording, errors.middleRows(at, recording.time.size()));
     at += recording.time.size();
   }
   const Eigen::VectorXd rms = rms_by_joint(evidence, errors);

@@ -83,6 +83,13 @@ bool move_to_better(const Evidence& evidence, const LinearModel& model, const Te
   return before != point.set && move(evidence, model, point.set, criteria, point);
 }
 
+bool is_fresh(const Derivatives& derivatives, const TermSet& terms) {
+  for (std::size_t t = 0; t < terms.size(); ++t) {
+    if (terms[t] != 0 && derivatives.fresh[t] == 0) return false;
+  }
+  return true;
+}
+
 void trace(const Evidence& evidence, const Point& point) {
   if (std::getenv("ROBOT_TRACE") == nullptr) return;
   const Eigen::VectorXd rms = rms_by_joint(evidence, point.errors);
@@ -135,7 +142,8 @@ SearchResult search_terms(const Evidence& evidence, const Progress& progress, co
   TermSet allowed(evidence.terms.size(), 0);
   for (std::size_t t = 0; t < evidence.terms.size(); ++t) allowed[t] = evidence.terms[t].group != single_joint ? 1 : 0;
   SearchResult result;
-  bool singles = false;
+  bool singles = false, renew = false;
+  Derivatives derivatives;
   for (int round = 0; round < criteria.most_rounds; ++round) {
     if (evidence.stop.stop_requested()) {
       result.complete = false;
@@ -143,8 +151,14 @@ SearchResult search_terms(const Evidence& evidence, const Progress& progress, co
     }
     progress(singles ? "single joints" : "groups", static_cast<double>(round) / criteria.most_rounds);
     trace(evidence, point);
-    const LinearModel model = linearize(evidence, point.theta, point.errors, either(allowed, point.set));
+    const LinearModel model = linearize(evidence, point.theta, point.errors, either(allowed, point.set), renew ? either(allowed, point.set) : point.set, derivatives);
+    const bool stale = !renew && !is_fresh(derivatives, allowed);
+    renew = false;
     if (move_to_better(evidence, model, allowed, criteria, point)) continue;
+    if (stale) {  // derivatives of terms outside are those of an earlier point: once more with those of this one
+      renew = true;
+      continue;
+    }
     if (singles && drop_one(evidence, model, criteria.smallest_gain, point, result.dropped)) {
       for (std::size_t t = 0; t < point.set.size(); ++t) {
         if (point.set[t] == 0 && point.theta[static_cast<Eigen::Index>(t)] != 0) {
@@ -163,7 +177,7 @@ SearchResult search_terms(const Evidence& evidence, const Progress& progress, co
   result.theta = point.theta;
   result.set = point.set;
   result.errors = point.errors;
-  result.linear = linearize(evidence, point.theta, point.errors, all);
+  result.linear = linearize(evidence, point.theta, point.errors, all, all, derivatives);
   return result;
 }
 

@@ -10,7 +10,7 @@
 namespace diagnose_robot {
 
 struct SearchCriteria {
-  int most_rounds = 40;        // each one linearization
+  int most_rounds = 60;        // each one linearization, most of few terms
   int most_halvings = 5;       // of a step that raises the errors
   double smallest_gain = 0.02;  // of the error on held-out blocks of its joints that a term must take away: as for one joint
   double settled = 0.05;       // decrease of the criterion below which parameters no longer move

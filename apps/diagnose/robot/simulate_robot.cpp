@@ -9,7 +9,8 @@
 namespace diagnose_robot {
 namespace {
 
-constexpr double longest_step = 0.001;  // [s]: half of it is the delay that a step adds, far below that of any drive
+constexpr double longest_step = 0.002;  // [s]: of second order that is far below what any encoder sees of a drive
+constexpr double stiff = 1;             // damping over a step, beyond which it is taken fully implicit, lest it rings
 constexpr double runaway = 1e3;         // [rad]
 
 // Mean of the goal, held between rows, from `from` to `from + length`; smooth in `from`, so that delays can be fitted.
@@ -38,7 +39,7 @@ struct Simulation {
   ModelPointer model;
   DataPointer data;
   Eigen::MatrixXd mass;
-  Eigen::VectorXd q, v, next, momentum, friction, seen, lagging;
+  Eigen::VectorXd q, v, before, middle, next, momentum, friction, drive_damping, seen, lagging;  // middle: speed in mid-step
   surefoot::diagnosis::CoupledDryFriction work;
 
   Simulation(const Robot& robot_, const RobotRecording& recording_, const StartState& start, const RobotPhysics& physics_)
@@ -48,7 +49,7 @@ struct Simulation {
     mass.setZero(n, n);
     q = start.angle;
     for (Eigen::Index i = 0; i < n; ++i) q[i] -= joint(i)[Property::sensor_bias];
-    v = next = start.speed;
+    v = before = middle = next = drive_damping = start.speed;
     seen = q;
     momentum.resize(n);
     friction.resize(n);
@@ -63,7 +64,7 @@ struct Simulation {
     mjData* d = data.get();
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
       d->qpos[robot.joints[j].model.position] = q[static_cast<Eigen::Index>(j)];
-      d->qvel[robot.joints[j].model.dof] = v[static_cast<Eigen::Index>(j)];
+      d->qvel[robot.joints[j].model.dof] = middle[static_cast<Eigen::Index>(j)];
     }
     mj_kinematics(m, d);
     mj_comPos(m, d);
@@ -86,12 +87,13 @@ struct Simulation {
     const JointSetup& stated = robot.joints[static_cast<std::size_t>(i)].setup;
     const JointPhysics& p = joint(i);
     const double goal = p[Property::delay] > 0 ? mean_goal(recording, i, row, t - p[Property::delay], h) : recording.goal(row, i);
+    // Positions are those of mid-step.
     seen[i] = std::clamp(seen[i], q[i] - p[Property::backlash], q[i] + p[Property::backlash]);
     const double gain = 1 + p[Property::torque_gain];
     DriveTorque torque{gain * stated.kp * (1 + p[Property::kp_error]) * (goal - seen[i] - p[Property::sensor_bias]),
                        gain * stated.kd * (1 + p[Property::kd_error])};
     const double limit = stated.limit * (1 - p[Property::torque_limit]);
-    const double now = torque.constant - torque.damping * v[i];
+    const double now = torque.constant - torque.damping * middle[i];
     if (limit > 0 && std::abs(now) > limit) torque = {std::copysign(limit, now), 0};
     if (p[Property::lag] > 0) {
       const double share = 1 - std::exp(-h / p[Property::lag]);
@@ -103,33 +105,36 @@ struct Simulation {
   }
 
   void step(Eigen::Index row, double t, double h) {
+    middle = 1.5 * v - 0.5 * before;
+    before = v;
+    q += h / 2 * v;
     rigid_bodies();
     const mjModel* m = model.get();
-    const Eigen::Index n = q.size();
     momentum.noalias() = mass * v;
-    Eigen::VectorXd& damping = next;  // until the step is solved
-    for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
       const JointPhysics& p = joint(i);
       const ModelJoint& model_joint = robot.joints[static_cast<std::size_t>(i)].model;
       const DriveTorque torque = drive(i, row, t, h);
       const double spring = m->jnt_stiffness[model_joint.id] * (q[i] - m->qpos_spring[model_joint.position]);
-      const double force = torque.constant + p[Property::constant_torque] - p[Property::drag] * v[i] * std::abs(v[i]) -
+      const double force = torque.constant + p[Property::constant_torque] - p[Property::drag] * middle[i] * std::abs(middle[i]) -
                            data->qfrc_bias[model_joint.dof] - spring;
-      momentum[i] += p[Property::armature] * v[i] + h * force;
-      mass(i, i) += p[Property::armature] + h * (p[Property::viscous] + torque.damping);
-      const double slow = v[i] / stribeck_speed;
+      mass(i, i) += p[Property::armature];
+      const double damping = p[Property::viscous] + torque.damping;
+      const double implicit = h * damping < stiff * mass(i, i) ? 0.5 : 1;
+      momentum[i] += p[Property::armature] * v[i] + h * (force - (1 - implicit) * damping * v[i]);
+      mass(i, i) += h * implicit * damping;
+      const double slow = middle[i] / stribeck_speed;
       friction[i] = h * (p[Property::coulomb] + p[Property::breakaway] * std::exp(-slow * slow) +
-                         p[Property::load_friction] * std::abs(torque.constant - torque.damping * v[i]));
+                         p[Property::load_friction] * std::abs(torque.constant - torque.damping * middle[i]));
       if (p[Property::lag] > 0) lagging[i] = torque.constant;
-      damping[i] = torque.damping;
+      drive_damping[i] = torque.damping;
     }
-    const Eigen::VectorXd lag_damping = damping;
     surefoot::diagnosis::solve_coupled_dry_friction(mass, momentum, friction, work, next);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      if (joint(i)[Property::lag] > 0) lagging[i] -= lag_damping[i] * next[i];
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      if (joint(i)[Property::lag] > 0) lagging[i] -= drive_damping[i] * next[i];
     }
     v.swap(next);
-    q += h * v;
+    q += h / 2 * v;
   }
 
   void read(Eigen::MatrixXd& readings, Eigen::Index row) const {

@@ -1,8 +1,7 @@
 // Simulation of a whole robot over a recording, its joints driven to their goals.
 //
-// Semi-implicit steps: velocities that damp (of joints and drives) are implicit, as MuJoCo's `implicit` has them, dry friction
-// of all joints sticks and slips together (coupled_dry_friction.hpp). Positions follow the new velocities. The error of a
-// step is of first order: half a step of delay.
+// Steps of second order: half a step of position, a step of velocity with the forces of mid-step, the other half. Damping
+// (of joints and drives) is implicit, dry friction of all joints sticks and slips together (coupled_dry_friction.hpp).
 #pragma once
 
 #include <Eigen/Core>

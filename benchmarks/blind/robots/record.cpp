@@ -79,7 +79,7 @@ std::string record(const RobotCase& robot, plants::Random& random) {
       reading[j] = d->qpos[at[j]] + robot.joints[j].hidden.bias + random.normal(noise);
     }
     for (const auto& [a, b] : robot.swapped) std::swap(reading[a], reading[b]);
-    std::vector<double> mean(n, 0.0);
+    std::vector<double> told_torque(n, 0.0);
     for (int step = 0; step < steps_per_row; ++step) {
       for (std::size_t j = 0; j < n; ++j) {
         const Joint& joint = robot.joints[j];
@@ -91,7 +91,7 @@ std::string record(const RobotCase& robot, plants::Random& random) {
         seen[j] = std::clamp(seen[j], q - hidden.backlash, q + hidden.backlash);
         const double limit = joint.limit * (1 - hidden.missing_limit);
         torque[j] = joint.kp * (told[j].front() - seen[j] - hidden.bias) - joint.kd * v;
-        mean[j] += torque[j] / steps_per_row;
+        if (step == 0) told_torque[j] = torque[j];
         const double given = std::clamp((1 - hidden.weakness) * torque[j], -limit, limit);
         d->qfrc_applied[at[j]] = given;
         m->dof_frictionloss[at[j]] = hidden.coulomb + hidden.load_friction * std::abs(given);
@@ -100,7 +100,7 @@ std::string record(const RobotCase& robot, plants::Random& random) {
     }
     if (row < 0) continue;
     text += plants::text(t, "%.4f");
-    for (std::size_t j = 0; j < n; ++j) text += "," + plants::text(robot.torque_driven ? mean[j] : goal[j], "%.7g");
+    for (std::size_t j = 0; j < n; ++j) text += "," + plants::text(robot.torque_driven ? told_torque[j] : goal[j], "%.7g");
     for (std::size_t j = 0; j < n; ++j) text += "," + plants::text(reading[j], "%.7g");
     text += "\n";
   }
