@@ -43,7 +43,9 @@ LinearModel made_up(const Eigen::VectorXd& sizes, std::uint64_t seed) {
   model.low = Eigen::VectorXd::Zero(terms);
   model.high = Eigen::VectorXd::Constant(terms, 10);
   model.prior = Eigen::VectorXd::Constant(terms, 5);
+  model.smallest = Eigen::VectorXd::Zero(terms);
   model.cost = Eigen::VectorXd::Constant(terms, std::log(400.0) + 2 * std::log(static_cast<double>(terms)));
+  model.pinned.assign(static_cast<std::size_t>(terms), 0);
   model.acts_on.assign(static_cast<std::size_t>(terms), {0});
   add_up(model);
   return model;
@@ -79,7 +81,7 @@ TEST_CASE("the terms that made the errors are chosen, with their sizes, and no o
   const Eigen::VectorXd found = fit_linear(model, set).change, error = standard_errors(model, set);
   CHECK(std::abs(found[1] - 0.8) < 4 * error[1]);
   CHECK(error[1] == doctest::Approx(0.05).epsilon(0.2));
-  CHECK(held_out_gain(model, set)[1] > 0.1);
+  CHECK(held_out_gain(model, set).share[1] > 0.1);
   CHECK(evidence_of_terms(model, set)[4] > 20);
 }
 

@@ -72,7 +72,7 @@ TEST_CASE("a setup that is written is read as it was") {
 TEST_CASE("columns, groups and units are guessed from names and readings") {
   const robot_test::ScratchFolder folder;
   robot_test::write_text(folder.file("legs.xml"), R"(<mujoco><worldbody><body><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
-    <joint name="FL_hip_joint" range="-60 60"/></body><body><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+    <joint name="FL_hip_joint" limited="true" range="-60 60"/></body><body><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
     <joint name="FR_hip_joint"/></body><body><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/><joint name="head"/></body>
     </worldbody></mujoco>)");
   const auto csv = diagnose_program::parse_csv(

@@ -19,7 +19,6 @@ namespace {
 
 // Dry friction of MuJoCo is a soft constraint; this hard it creeps less than any encoder sees.
 constexpr double friction_impedance = 0.995;
-constexpr double steps_of_ours = 8;   // of MuJoCo, whose implicit steps are of first order, for one of ours
 constexpr double friction_steps = 2;  // time constant in steps, the shortest that MuJoCo allows
 
 std::string number(double value) {
@@ -132,7 +131,7 @@ AugmentedModel augmented_model(const Robot& robot, const RobotPhysics& physics, 
     m->dof_damping[dof] = last->dof_damping[dof];
     m->dof_armature[dof] = last->dof_armature[dof];
   }
-  m->opt.timestep = step / steps_of_ours;
+  m->opt.timestep = step;
   m->opt.integrator = mjINT_IMPLICIT;
   for (std::size_t j = 0; j < robot.joints.size(); ++j) set_joint(m, robot.joints[j], physics[j]);
   AugmentedModel augmented;

@@ -11,12 +11,15 @@
 
 namespace diagnose_robot {
 
+/// Steps of MuJoCo, which are of first order, for one of ours.
+inline constexpr double steps_of_ours = 8;
+
 struct AugmentedModel {
   std::string xml, header;
   std::vector<AugmentedEntry> table;
 };
 
-/// `step`: of the simulation [s]; the model's is a part of it. `folder`: of the model file. Throws surefoot::DiagnoseError if MuJoCo cannot write the model.
+/// `step`: of the model [s]. `folder`: of the model file. Throws surefoot::DiagnoseError if MuJoCo cannot write the model.
 AugmentedModel augmented_model(const Robot& robot, const RobotPhysics& physics, double step, const std::filesystem::path& folder);
 
 /// Angles from MuJoCo's own step over the recording: row x joint. Contacts are switched off.

@@ -19,9 +19,14 @@ TermSet choose_terms(const LinearModel& model, TermSet set, const TermSet& allow
 /// -2 log of the odds for having the term, the others fitted again; by term, NaN where it is not in the set.
 Eigen::VectorXd evidence_of_terms(const LinearModel& model, const TermSet& set);
 
-/// Share of the root mean square error of the joints that a term acts on by which it lowers it on blocks that were not
-/// used to fit; by term, NaN where it is not in the set.
-Eigen::VectorXd held_out_gain(const LinearModel& model, const TermSet& set);
+/// What terms take off the errors of the joints that they act on, on blocks that were not used to fit; by term, NaN where
+/// it is not in the set.
+struct HeldOutGain {
+  Eigen::VectorXd share;  // of the root mean square error
+  Eigen::VectorXd taken;  // root mean square of what goes, in the unit of the errors
+};
+
+HeldOutGain held_out_gain(const LinearModel& model, const TermSet& set);
 
 struct TermAlternative {
   Eigen::Index instead = 0, other = 0;  // terms

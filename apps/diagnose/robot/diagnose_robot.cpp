@@ -119,22 +119,25 @@ bool is_in_file(const Evidence& evidence, const SearchResult& found, Eigen::Inde
   LinearModel as_in_file = found.linear;
   as_in_file.low[t] = as_in_file.high[t] = nominal;
   const Eigen::VectorXd with = fit_linear(found.linear, found.set).square, without = fit_linear(as_in_file, found.set).square;
-  double before = 0, after = 0;
+  double before = 0, after = 0, numerical = 0;
   for (const int j : term.joints) {
     before += with[j];
     after += without[j];
+    if (evidence.numerical.size() > 0) numerical += evidence.numerical[j] * evidence.numerical[j] * found.linear.whole[static_cast<std::size_t>(j)].rows;
   }
-  return std::sqrt(after) < (1 + negligible) * std::sqrt(before);
+  constexpr double times_numerical = 2;
+  return std::sqrt(after) < (1 + negligible) * std::sqrt(before) || after - before < times_numerical * times_numerical * numerical;
 }
 
 void name_effects(const Evidence& evidence, const SearchResult& found, RobotDiagnosis& d) {
   const Eigen::VectorXd error = standard_errors(found.linear, found.set), odds = evidence_of_terms(found.linear, found.set);
-  const Eigen::VectorXd gain = held_out_gain(found.linear, found.set);
+  const Eigen::VectorXd gain = held_out_gain(found.linear, found.set).share;
   for (std::size_t t = 0; t < found.set.size(); ++t) {
     if (found.set[t] == 0) continue;
     const auto at = static_cast<Eigen::Index>(t);
     const Term& term = evidence.terms[t];
     const PropertyInfo& info = info_of(term.property);
+    if (found.theta[at] == 0) continue;  // what the file has and the robot has not; the table of the corrected model tells
     const bool known = is_in_file(evidence, found, at);
     FittedValue value{info.parameter, unit_of(evidence.robot, term), found.theta[at], found.theta[at] - z95 * error[at], found.theta[at] + z95 * error[at]};
     if (info.calibration) {
@@ -365,7 +368,8 @@ RobotDiagnosis diagnose_robot(const Evidence& evidence, const Progress& progress
   const Eigen::VectorXd by_textbook = rms_by_joint(evidence, textbook), by_nominal = rms_by_joint(evidence, nominal),
                         by_after = rms_by_joint(evidence, found.errors);
   const HeldOut held_out = held_out_errors(evidence, found, nominal);
-  const Eigen::VectorXd noise = noise_by_joint(evidence, d.physics, 1);
+  Eigen::VectorXd noise = noise_by_joint(evidence, d.physics, 1);
+  if (evidence.numerical.size() > 0) noise = (noise.cwiseAbs2() + evidence.numerical.cwiseAbs2()).cwiseSqrt();  // no simulation is nearer
   d.textbook = overall(evidence, by_textbook);
   d.nominal = overall(evidence, by_nominal);
   d.after = overall(evidence, by_after);

@@ -21,6 +21,7 @@ struct Evidence {
   std::vector<int> block;  // by row of all recordings: contiguous parts that are held out one at a time
   int blocks = 0;
   std::vector<char> silent;  // by joint: its torque is not recorded, only its motion
+  Eigen::VectorXd numerical;  // by joint: errors of simulation, see numerical_error(); empty: none
   std::vector<JointScale> scales;
   std::vector<Term> terms;
   surefoot::Threads threads{1};

@@ -9,6 +9,7 @@
 #include "../progress.hpp"
 #include "../results.hpp"
 #include "diagnose_robot.hpp"
+#include "numerical_error.hpp"
 #include "robot_files.hpp"
 #include "setup_guess.hpp"
 #include "swapped_joints.hpp"
@@ -46,6 +47,7 @@ void load_recordings(const diagnose_program::CommandLine& line, Evidence& eviden
     evidence.motions.push_back(smooth(evidence.recordings.back()));
   }
   prepare(evidence);
+  evidence.numerical = numerical_error(evidence, line.model.parent_path());
 }
 
 // Recordings of --test, which took no part in anything, take the place of held-out blocks.
@@ -121,7 +123,7 @@ int run_robot(const diagnose_program::CommandLine& line) {
   d.common.log_faults.insert(d.common.log_faults.begin(), faults.begin(), faults.end());
   evaluate_test(line, evidence, d);
   d.step = simulation_step(robot, evidence.recordings.front());
-  const AugmentedModel augmented = augmented_model(robot, d.physics, d.step, line.model.parent_path());
+  const AugmentedModel augmented = augmented_model(robot, d.physics, d.step / steps_of_ours, line.model.parent_path());
   d.augmented = augmented.table;
   d.replayed = d.torque_driven ? std::nan("") : replay_error(evidence, augmented, d.physics);
   progress.close();

@@ -109,7 +109,7 @@ Point start(const Evidence& evidence) {
   for (const RobotPhysics& physics : {RobotPhysics(evidence.robot.joints.size()), evidence.robot.nominal}) {
     Point point;
     point.theta = theta_of(evidence.terms, physics);
-    point.set = nonzero(point.theta);
+    point.set = nonzero(theta_of(evidence.terms, evidence.robot.nominal));
     point.errors = errors_at(evidence, point.theta);
     const double size = rms_by_joint(evidence, point.errors).squaredNorm();
     if (best.theta.size() > 0 && !(size < least)) continue;
@@ -119,17 +119,30 @@ Point start(const Evidence& evidence) {
   return best;
 }
 
-// Terms that held-out blocks do not want, least wanted first.
-bool drop_one(const Evidence& evidence, const LinearModel& model, double smallest_gain, Point& point, std::vector<std::string>& dropped) {
-  const Eigen::VectorXd gain = held_out_gain(model, point.set);
+// Takes the term away that held-out blocks want least, if they do not want it, or if it takes away no more than simulations
+// of one model differ by.
+bool drop_one(const Evidence& evidence, const LinearModel& model, const SearchCriteria& criteria, Point& point, std::vector<std::string>& dropped) {
+  const HeldOutGain gain = held_out_gain(model, point.set);
   Eigen::Index worst = -1;
-  for (Eigen::Index t = 0; t < gain.size(); ++t) {
-    if (std::isfinite(gain[t]) && gain[t] < smallest_gain && (worst < 0 || gain[t] < gain[worst])) worst = t;
+  double least = 1;
+  for (Eigen::Index t = 0; t < gain.share.size(); ++t) {
+    if (point.set[static_cast<std::size_t>(t)] == 0 || model.pinned[static_cast<std::size_t>(t)] != 0) continue;
+    const Term& term = evidence.terms[static_cast<std::size_t>(t)];
+    double numerical = 0;
+    for (const int j : term.joints) {
+      if (evidence.numerical.size() > 0) numerical += evidence.numerical[j] * evidence.numerical[j] / static_cast<double>(term.joints.size());
+    }
+    const double needed = criteria.times_numerical * std::sqrt(numerical);
+    const double worth = std::min(gain.share[t] / criteria.smallest_gain, needed > 0 ? gain.taken[t] / needed : 1);
+    if (worth >= least) continue;
+    least = worth;
+    worst = t;
   }
   if (worst < 0) return false;
   const Term& term = evidence.terms[static_cast<std::size_t>(worst)];
-  dropped.push_back(std::string(info_of(term.property).effect) + " at " + place_of(evidence.robot, term) +
-                    " was dropped: it takes " + diagnose_program::percent(gain[worst]) + " off the error of its joints on held-out blocks");
+  dropped.push_back(std::string(info_of(term.property).effect) + " at " + place_of(evidence.robot, term) + " was dropped: it takes " +
+                    diagnose_program::percent(gain.share[worst]) + " off the error of its joints on held-out blocks, or less than simulations of one "
+                    "model differ by");
   point.set[static_cast<std::size_t>(worst)] = 0;
   return true;
 }
@@ -159,7 +172,7 @@ SearchResult search_terms(const Evidence& evidence, const Progress& progress, co
       renew = true;
       continue;
     }
-    if (singles && drop_one(evidence, model, criteria.smallest_gain, point, result.dropped)) {
+    if (singles && drop_one(evidence, model, criteria, point, result.dropped)) {
       for (std::size_t t = 0; t < point.set.size(); ++t) {
         if (point.set[t] == 0 && point.theta[static_cast<Eigen::Index>(t)] != 0) {
           allowed[t] = 0;
