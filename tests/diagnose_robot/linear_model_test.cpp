@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "apps/diagnose/robot/choose_terms.hpp"
+#include "apps/diagnose/robot/diagnose_robot.hpp"
 #include "apps/diagnose/robot/robot_diagnosis.hpp"
 #include "apps/diagnose/robot/swapped_joints.hpp"
-#include "apps/diagnose/robot/diagnose_robot.hpp"
 #include "surefoot/core/rng.hpp"
 
 using namespace diagnose_robot;
@@ -88,7 +88,8 @@ TEST_CASE("the terms that made the errors are chosen, with their sizes, and no o
 TEST_CASE("noise alone gives no term") {
   int chosen = 0;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    for (const char in : choose_terms(made_up(Eigen::VectorXd::Zero(10), seed), TermSet(10, 0), TermSet(10, 1))) chosen += in;
+    for (const char in : choose_terms(made_up(Eigen::VectorXd::Zero(10), seed), TermSet(10, 0), TermSet(10, 1)))
+      chosen += in;
   }
   CHECK(chosen == 0);
 }

@@ -18,8 +18,9 @@ namespace {
 std::string program() { return SUREFOOT_BIN_DIR "/surefoot-diagnose"; }
 
 Outcome diagnose(const ScratchFolder& folder, const std::string& more = "") {
-  return approach_program::run_command(program() + " --model " + folder.file("robot.xml") + " --setup " + folder.file("robot.toml") + " --out " +
-                                       folder.file("out") + " --quiet " + more + " " + folder.file("rec_1.csv") + " " + folder.file("rec_2.csv"));
+  return approach_program::run_command(program() + " --model " + folder.file("robot.xml") + " --setup " +
+                                       folder.file("robot.toml") + " --out " + folder.file("out") + " --quiet " + more +
+                                       " " + folder.file("rec_1.csv") + " " + folder.file("rec_2.csv"));
 }
 
 json result_of(const ScratchFolder& folder) {
@@ -42,8 +43,10 @@ TEST_CASE("dry friction in one joint of an arm is found with its size, and nothi
   CHECK(result["effects"][0]["name"] == "coulomb_friction");
   CHECK(result["effects"][0]["attached_to"] == "upper");
   CHECK(double(result["effects"][0]["parameters"][0]["value"]) == doctest::Approx(0.6).epsilon(0.05));
-  CHECK(double(result["robot"]["rmse_replayed"]) == doctest::Approx(double(result["robot"]["rmse_after"])).epsilon(0.02));
-  for (const char* file : {"report.html", "augmented.xml", "augmented.hpp"}) CHECK(std::filesystem::file_size(folder.file(std::string("out/") + file)) > 100);
+  CHECK(double(result["robot"]["rmse_replayed"]) ==
+        doctest::Approx(double(result["robot"]["rmse_after"])).epsilon(0.02));
+  for (const char* file : {"report.html", "augmented.xml", "augmented.hpp"})
+    CHECK(std::filesystem::file_size(folder.file(std::string("out/") + file)) > 100);
 }
 
 TEST_CASE("an arm that is as its model says gets no effect") {
@@ -82,7 +85,8 @@ TEST_CASE("swapped columns are named, and repaired if asked for") {
 TEST_CASE("a setup is printed that the diagnosis can use") {
   const ScratchFolder folder;
   robot_test::write_files(folder, robot_test::small_arm(), 15);
-  const Outcome setup = approach_program::run_command(program() + " setup " + folder.file("robot.xml") + " " + folder.file("rec_1.csv") + " > " + folder.file("first.toml"));
+  const Outcome setup = approach_program::run_command(program() + " setup " + folder.file("robot.xml") + " " +
+                                                      folder.file("rec_1.csv") + " > " + folder.file("first.toml"));
   CHECK(setup.code == 0);
   std::ifstream file(folder.file("first.toml"));
   const std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -90,14 +94,18 @@ TEST_CASE("a setup is printed that the diagnosis can use") {
   CHECK(text.find("SET kp") != std::string::npos);
 }
 
-TEST_CASE("legs of a real quadruped: held-out error at most 0.0100 rad" * doctest::skip(std::getenv("SUREFOOT_RECORDINGS") == nullptr)) {
+TEST_CASE("legs of a real quadruped: held-out error at most 0.0100 rad" *
+          doctest::skip(std::getenv("SUREFOOT_RECORDINGS") == nullptr)) {
   const ScratchFolder folder;
   const std::string recordings = std::string(std::getenv("SUREFOOT_RECORDINGS")) + "/go2_legs/";
-  approach_program::run_command(program() + " setup " + recordings + "go2.xml " + recordings + "first.csv > " + folder.file("robot.toml"));
-  const Outcome outcome = approach_program::run_command(program() + " --model " + recordings + "go2.xml --setup " + folder.file("robot.toml") + " --quiet --out " +
+  approach_program::run_command(program() + " setup " + recordings + "go2.xml " + recordings + "first.csv > " +
+                                folder.file("robot.toml"));
+  const Outcome outcome = approach_program::run_command(program() + " --model " + recordings + "go2.xml --setup " +
+                                                        folder.file("robot.toml") + " --quiet --out " +
                                                         folder.file("out") + " " + recordings + "first.csv");
   REQUIRE(outcome.code == 0);
   const json result = result_of(folder);
   CHECK(double(result["robot"]["rmse_heldout"]) < 0.0100);
-  CHECK(double(result["robot"]["rmse_replayed"]) == doctest::Approx(double(result["robot"]["rmse_after"])).epsilon(0.02));
+  CHECK(double(result["robot"]["rmse_replayed"]) ==
+        doctest::Approx(double(result["robot"]["rmse_after"])).epsilon(0.02));
 }

@@ -34,7 +34,8 @@ bool contains(const std::string& text, const std::string& words) {
 
 TEST_CASE("a model that MuJoCo cannot load is refused in one sentence") {
   const ScratchFolder folder;
-  for (const std::string text : {"<mujoco><worldbody><body></mujoco>", "nothing", "<mujoco><worldbody><body><joint/></body></worldbody>"}) {
+  for (const std::string text :
+       {"<mujoco><worldbody><body></mujoco>", "nothing", "<mujoco><worldbody><body><joint/></body></worldbody>"}) {
     write_text(folder.file("robot.xml"), text);
     CHECK(contains(refusal([&] { load_robot(folder.file("robot.xml")); }), "robot.xml"));
   }
@@ -65,7 +66,8 @@ TEST_CASE("a floating base, joints without columns, degrees and contacts are sai
   setup = all;
   setup.joints[0].name = "uper";
   CHECK(contains(refusal([&] { bind_robot(load_robot(folder.file("robot.xml")), setup); }), "did you mean 'upper'"));
-  const std::string base = "<worldbody>\n<body name=\"base\"><freejoint/><inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/>";
+  const std::string base =
+      "<worldbody>\n<body name=\"base\"><freejoint/><inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/>";
   std::string floating = xml;
   floating.replace(floating.find("<worldbody>"), 11, base);
   floating.replace(floating.find("</worldbody>"), 12, "</body></worldbody>");
@@ -86,10 +88,12 @@ TEST_CASE("a floating base, joints without columns, degrees and contacts are sai
 
   std::string floor = xml;
   floor.replace(floor.find("<worldbody>"), 11, "<worldbody><geom type=\"plane\" size=\"1 1 1\" pos=\"0 0 -0.3\"/>");
-  floor.replace(floor.find("<site name=\"lower_end\""), 5, "<geom type=\"sphere\" size=\"0.1\" pos=\"0 0 -0.25\"/>\n<site");
+  floor.replace(floor.find("<site name=\"lower_end\""), 5,
+                "<geom type=\"sphere\" size=\"0.1\" pos=\"0 0 -0.25\"/>\n<site");
   write_text(folder.file("floor.xml"), floor);
   recording.angle /= 57.3;
-  CHECK(contains(refusal([&] { check_recording(bind_robot(load_robot(folder.file("floor.xml")), all), recording); }), "contacts"));
+  CHECK(contains(refusal([&] { check_recording(bind_robot(load_robot(folder.file("floor.xml")), all), recording); }),
+                 "contacts"));
 }
 
 TEST_CASE("the corrected model loads in MuJoCo and moves as the simulation that it came from") {
@@ -110,7 +114,8 @@ TEST_CASE("the corrected model loads in MuJoCo and moves as the simulation that 
   physics[1][Property::constant_torque] = 0.2;
   const StartState start = start_of(evidence.motions[0]);
   const Eigen::MatrixXd ours = simulate_robot(robot, evidence.recordings[0], start, physics);
-  const AugmentedModel augmented = augmented_model(robot, physics, simulation_step(robot, evidence.recordings[0]) / steps_of_ours, folder.path());
+  const AugmentedModel augmented =
+      augmented_model(robot, physics, simulation_step(robot, evidence.recordings[0]) / steps_of_ours, folder.path());
   const Eigen::MatrixXd theirs = replay(robot, augmented, physics, evidence.recordings[0], start);
   const double error = (evidence.recordings[0].angle - ours).norm();
   CHECK((ours - theirs).norm() < 0.05 * error);

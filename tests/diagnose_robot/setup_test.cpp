@@ -36,7 +36,9 @@ std::string refusal(const std::string& text) {
   return "";
 }
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) { return text.replace(text.find(what), what.size(), by); }
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  return text.replace(text.find(what), what.size(), by);
+}
 
 }  // namespace
 
@@ -71,12 +73,14 @@ TEST_CASE("a setup that is written is read as it was") {
 
 TEST_CASE("columns, groups and units are guessed from names and readings") {
   const robot_test::ScratchFolder folder;
-  robot_test::write_text(folder.file("legs.xml"), R"(<mujoco><worldbody><body><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+  robot_test::write_text(folder.file("legs.xml"),
+                         R"(<mujoco><worldbody><body><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
     <joint name="FL_hip_joint" limited="true" range="-60 60"/></body><body><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
     <joint name="FR_hip_joint"/></body><body><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/><joint name="head"/></body>
     </worldbody></mujoco>)");
   const auto csv = diagnose_program::parse_csv(
-      "# kp: 12\ntime,FL_hip_target,FR_hip_target,FL_hip,FR_hip,battery_V\n0,30,0.1,29,0.1,7\n0.01,-55,0.2,-54,0.1,7\n", "log.csv");
+      "# kp: 12\ntime,FL_hip_target,FR_hip_target,FL_hip,FR_hip,battery_V\n0,30,0.1,29,0.1,7\n0.01,-55,0.2,-54,0.1,7\n",
+      "log.csv");
   const SetupGuess guess = guess_setup(load_robot(folder.file("legs.xml")), csv);
   CHECK(guess.setup.time == "time");
   REQUIRE(guess.setup.joints.size() == 2);
@@ -93,7 +97,8 @@ TEST_CASE("columns, groups and units are guessed from names and readings") {
 
 TEST_CASE("elements are taken out of an XML text with what is in them, but not in comments") {
   CHECK(without_elements("<a><b x=\"1\"><c/></b><!-- <b/> --><b/></a>", {"b"}) == "<a><!-- <b/> --></a>");
-  CHECK(without_meshes("<m><mesh file=\"x.stl\"/><geom type=\"mesh\" mesh=\"x\"/><geom size=\"1\"/></m>") == "<m><geom size=\"1\"/></m>");
+  CHECK(without_meshes("<m><mesh file=\"x.stl\"/><geom type=\"mesh\" mesh=\"x\"/><geom size=\"1\"/></m>") ==
+        "<m><geom size=\"1\"/></m>");
   CHECK(attribute("<joint class='hip' name=\"a\"/>", "class") == "hip");
   CHECK(without_side("LEFT_knee_joint") == "knee");
   CHECK(without_side("joint_1") == "joint_1");

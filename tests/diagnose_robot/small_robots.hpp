@@ -35,19 +35,23 @@ inline blind_robots::RobotCase small_arm() {
 }
 
 /// Model, setup and recordings in the folder.
-inline void write_files(const ScratchFolder& folder, const blind_robots::RobotCase& arm, std::uint64_t seed, int recordings = 2) {
+inline void write_files(const ScratchFolder& folder, const blind_robots::RobotCase& arm, std::uint64_t seed,
+                        int recordings = 2) {
   plants::Random random(seed);
   write_text(folder.file("robot.xml"), blind_robots::robot_xml(arm, false));
   write_text(folder.file("robot.toml"), blind_robots::robot_setup(arm));
-  for (int r = 1; r <= recordings; ++r) write_text(folder.file("rec_" + std::to_string(r) + ".csv"), blind_robots::record(arm, random));
+  for (int r = 1; r <= recordings; ++r)
+    write_text(folder.file("rec_" + std::to_string(r) + ".csv"), blind_robots::record(arm, random));
 }
 
 inline diagnose_robot::Robot load(const ScratchFolder& folder) {
-  return diagnose_robot::bind_robot(diagnose_robot::load_robot(folder.file("robot.xml")), diagnose_robot::read_setup(folder.file("robot.toml")));
+  return diagnose_robot::bind_robot(diagnose_robot::load_robot(folder.file("robot.xml")),
+                                    diagnose_robot::read_setup(folder.file("robot.toml")));
 }
 
 inline void add_recording(diagnose_robot::Evidence& evidence, const std::string& file) {
-  evidence.recordings.push_back(diagnose_robot::read_recording(diagnose_program::read_csv(file), evidence.robot.setup, 100000));
+  evidence.recordings.push_back(
+      diagnose_robot::read_recording(diagnose_program::read_csv(file), evidence.robot.setup, 100000));
   evidence.motions.push_back(diagnose_robot::smooth(evidence.recordings.back()));
 }
 

@@ -7,7 +7,8 @@ namespace {
 
 [[noreturn]] void refuse() {
   throw surefoot::DiagnoseError(
-      "this program was built without MuJoCo and reads no robots; install libmujoco-dev or configure with -D MUJOCO_DIR=FOLDER "
+      "this program was built without MuJoCo and reads no robots; install libmujoco-dev or configure with -D "
+      "MUJOCO_DIR=FOLDER "
       "and build it again");
 }
 

@@ -8,12 +8,14 @@ namespace {
 
 std::string row(const Robot& robot, std::size_t j, const JointPhysics& p) {
   std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(), "%.9g, %.9g, %.9g, %.9g, %.9g, %.9g, %.9g}},\n", p[Property::coulomb], p[Property::breakaway],
-                p[Property::load_friction], p[Property::drag], p[Property::delay], p[Property::lag], p[Property::backlash]);
+  std::snprintf(text.data(), text.size(), "%.9g, %.9g, %.9g, %.9g, %.9g, %.9g, %.9g}},\n", p[Property::coulomb],
+                p[Property::breakaway], p[Property::load_friction], p[Property::drag], p[Property::delay],
+                p[Property::lag], p[Property::backlash]);
   return "    {{\"" + robot.joints[j].setup.name + "\", " + text.data();
 }
 
-constexpr const char* head = R"(// What surefoot-diagnose found at this robot and MJCF cannot say; use it with augmented.xml:
+constexpr const char* head =
+    R"(// What surefoot-diagnose found at this robot and MJCF cannot say; use it with augmented.xml:
 //   surefoot_robot::Extras extras(model);
 //   every step: extras.before_step(model, data, goals); mj_step(model, data);
 // `goals`: of the drives, in the order of `joints` below; writes data->ctrl.
@@ -98,7 +100,8 @@ class Extras {
 
 std::string augmented_header(const Robot& robot, const RobotPhysics& physics) {
   std::string text = head;
-  text += "inline constexpr int position_drive = " + std::string(robot.setup.drive == DriveKind::position ? "1" : "0") + ";\n\n";
+  text += "inline constexpr int position_drive = " + std::string(robot.setup.drive == DriveKind::position ? "1" : "0") +
+          ";\n\n";
   text += "inline constexpr std::array<Row, " + std::to_string(robot.joints.size()) + "> joints{{\n";
   for (std::size_t j = 0; j < robot.joints.size(); ++j) text += row(robot, j, physics[j]);
   return text + "}};\n" + tail;

@@ -1,5 +1,7 @@
 #include "augmented_xml.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +9,6 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <unistd.h>
 
 #include "augmented_header.hpp"
 #include "surefoot/core/binary.hpp"
@@ -42,15 +43,18 @@ void set_joint(mjModel* m, const RobotJoint& joint, const JointPhysics& physics)
 std::string actuator(const Robot& robot, std::size_t j, const JointPhysics& p) {
   const RobotJoint& joint = robot.joints[j];
   const double gain = (1 + p[Property::torque_gain]) / (1 + p[Property::reading_scale]);
-  const double kp = gain * joint.setup.kp * (1 + p[Property::kp_error]), kd = gain * joint.setup.kd * (1 + p[Property::kd_error]);
+  const double kp = gain * joint.setup.kp * (1 + p[Property::kp_error]),
+               kd = gain * joint.setup.kd * (1 + p[Property::kd_error]);
   const double limit = joint.setup.limit * (1 - p[Property::torque_limit]);
   std::string text = "    <general name=\"" + joint.setup.name + "_drive\" joint=\"" + joint.setup.name +
                      "\" gear=\"1 0 0 0 0 0\" ctrllimited=\"false\" dyntype=\"none\" gaintype=\"fixed\"";
   if (robot.setup.drive == DriveKind::position) {
-    text += " biastype=\"affine\" gainprm=\"" + number(kp) + " 0 0\" biasprm=\"" + number(p[Property::constant_torque] - kp * p[Property::sensor_bias]) + " " +
-            number(-kp) + " " + number(-kd) + "\"";
+    text += " biastype=\"affine\" gainprm=\"" + number(kp) + " 0 0\" biasprm=\"" +
+            number(p[Property::constant_torque] - kp * p[Property::sensor_bias]) + " " + number(-kp) + " " +
+            number(-kd) + "\"";
   } else {
-    text += " biastype=\"affine\" gainprm=\"" + number(gain) + " 0 0\" biasprm=\"" + number(p[Property::constant_torque]) + " 0 0\"";
+    text += " biastype=\"affine\" gainprm=\"" + number(gain) + " 0 0\" biasprm=\"" +
+            number(p[Property::constant_torque]) + " 0 0\"";
   }
   if (limit > 0) text += " forcelimited=\"true\" forcerange=\"" + number(-limit) + " " + number(limit) + "\"";
   return text + "/>\n";
@@ -62,29 +66,44 @@ std::string with_actuators(std::string xml, const Robot& robot, const RobotPhysi
   section += "  </actuator>\n";
   xml = without_elements(xml, {"actuator", "keyframe", "sensor"});  // sensors may name actuators that are gone
   const std::size_t end = xml.rfind("</mujoco>");
-  if (end == std::string::npos) throw surefoot::DiagnoseError("MuJoCo wrote no model; choose another folder with --out");
+  if (end == std::string::npos)
+    throw surefoot::DiagnoseError("MuJoCo wrote no model; choose another folder with --out");
   return xml.insert(end, "  " + section);
 }
 
 // What of it MuJoCo's format has a place for.
 std::string place_in_mjcf(Property p) {
   switch (p) {
-    case Property::coulomb: return "joint frictionloss";
-    case Property::viscous: return "joint damping";
-    case Property::armature: return "joint armature";
-    case Property::kp_error: return "actuator gainprm, biasprm";
-    case Property::kd_error: return "actuator biasprm";
-    case Property::reading_scale: return "actuator gainprm";
-    case Property::torque_gain: return "actuator gainprm, biasprm";
-    case Property::torque_limit: return "actuator forcerange";
-    case Property::constant_torque: return "actuator biasprm";
-    case Property::sensor_bias: return "actuator biasprm; subtract it from readings";
-    case Property::link_mass: return "body inertial mass, inertia";
+    case Property::coulomb:
+      return "joint frictionloss";
+    case Property::viscous:
+      return "joint damping";
+    case Property::armature:
+      return "joint armature";
+    case Property::kp_error:
+      return "actuator gainprm, biasprm";
+    case Property::kd_error:
+      return "actuator biasprm";
+    case Property::reading_scale:
+      return "actuator gainprm";
+    case Property::torque_gain:
+      return "actuator gainprm, biasprm";
+    case Property::torque_limit:
+      return "actuator forcerange";
+    case Property::constant_torque:
+      return "actuator biasprm";
+    case Property::sensor_bias:
+      return "actuator biasprm; subtract it from readings";
+    case Property::link_mass:
+      return "body inertial mass, inertia";
     case Property::link_com_x:
     case Property::link_com_y:
-    case Property::link_com_z: return "body inertial pos";
-    case Property::payload: return "body inertial mass, pos, inertia";
-    default: return "augmented.hpp";
+    case Property::link_com_z:
+      return "body inertial pos";
+    case Property::payload:
+      return "body inertial mass, pos, inertia";
+    default:
+      return "augmented.hpp";
   }
 }
 
@@ -97,14 +116,16 @@ std::vector<AugmentedEntry> table_of(const Robot& robot, const RobotPhysics& phy
       Term term;
       term.property = info.property;
       term.joints = {static_cast<int>(j)};
-      table.push_back({robot.joints[j].setup.name, info.effect, info.parameter, unit_of(robot, term), value, in_file, place_in_mjcf(info.property)});
+      table.push_back({robot.joints[j].setup.name, info.effect, info.parameter, unit_of(robot, term), value, in_file,
+                       place_in_mjcf(info.property)});
     }
   }
   return table;
 }
 
 std::string saved(const mjModel* model) {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / ("surefoot_" + std::to_string(getpid()) + ".xml");
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("surefoot_" + std::to_string(getpid()) + ".xml");
   std::array<char, 1000> error{};
   const int written = mj_saveLastXML(file.string().c_str(), model, error.data(), static_cast<int>(error.size()));
   std::string text;
@@ -114,15 +135,18 @@ std::string saved(const mjModel* model) {
   }
   std::error_code none;
   std::filesystem::remove(file, none);
-  if (text.empty()) throw surefoot::DiagnoseError(std::string("MuJoCo cannot write the corrected model: ") + error.data());
+  if (text.empty())
+    throw surefoot::DiagnoseError(std::string("MuJoCo cannot write the corrected model: ") + error.data());
   return text;
 }
 
 }  // namespace
 
-AugmentedModel augmented_model(const Robot& robot, const RobotPhysics& physics, double step, const std::filesystem::path& folder) {
+AugmentedModel augmented_model(const Robot& robot, const RobotPhysics& physics, double step,
+                               const std::filesystem::path& folder) {
   std::string complaint;
-  const ModelPointer last = compile_model(robot.model.text, folder, is_urdf(robot.model.text), complaint);  // what is saved next
+  const ModelPointer last =
+      compile_model(robot.model.text, folder, is_urdf(robot.model.text), complaint);  // what is saved next
   if (!last) throw surefoot::DiagnoseError(robot.model.file + ": MuJoCo cannot load it again: " + complaint);
   const ModelPointer changed = model_with_bodies(robot, physics);
   mjModel* m = changed.get();

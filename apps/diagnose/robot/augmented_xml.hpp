@@ -19,8 +19,10 @@ struct AugmentedModel {
   std::vector<AugmentedEntry> table;
 };
 
-/// `step`: of the model [s]. `folder`: of the model file. Throws surefoot::DiagnoseError if MuJoCo cannot write the model.
-AugmentedModel augmented_model(const Robot& robot, const RobotPhysics& physics, double step, const std::filesystem::path& folder);
+/// `step`: of the model [s]. `folder`: of the model file. Throws surefoot::DiagnoseError if MuJoCo cannot write the
+/// model.
+AugmentedModel augmented_model(const Robot& robot, const RobotPhysics& physics, double step,
+                               const std::filesystem::path& folder);
 
 /// Angles from MuJoCo's own step over the recording: row x joint. Contacts are switched off.
 Eigen::MatrixXd replay(const Robot& robot, const AugmentedModel& augmented, const RobotPhysics& physics,

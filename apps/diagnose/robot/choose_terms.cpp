@@ -119,7 +119,8 @@ std::vector<TermAlternative> alternatives_of(const LinearModel& model, const Ter
       if (set[other] != 0 || allowed[other] == 0) continue;
       const LinearFit fit = fit_linear(model, changed(without, static_cast<Eigen::Index>(other), true));
       const double criterion = fit.criterion - now;
-      if (criterion < indistinguishable && !is_negligible(model, fit, static_cast<Eigen::Index>(other))) result.push_back({static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(other), criterion});
+      if (criterion < indistinguishable && !is_negligible(model, fit, static_cast<Eigen::Index>(other)))
+        result.push_back({static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(other), criterion});
     }
   }
   return result;

@@ -14,13 +14,14 @@ struct ChoiceCriteria {
 };
 
 /// Adds and takes away terms of `allowed` until neither makes the set more probable.
-TermSet choose_terms(const LinearModel& model, TermSet set, const TermSet& allowed, const ChoiceCriteria& criteria = {});
+TermSet choose_terms(const LinearModel& model, TermSet set, const TermSet& allowed,
+                     const ChoiceCriteria& criteria = {});
 
 /// -2 log of the odds for having the term, the others fitted again; by term, NaN where it is not in the set.
 Eigen::VectorXd evidence_of_terms(const LinearModel& model, const TermSet& set);
 
-/// What terms take off the errors of the joints that they act on, on blocks that were not used to fit; by term, NaN where
-/// it is not in the set.
+/// What terms take off the errors of the joints that they act on, on blocks that were not used to fit; by term, NaN
+/// where it is not in the set.
 struct HeldOutGain {
   Eigen::VectorXd share;  // of the root mean square error
   Eigen::VectorXd taken;  // root mean square of what goes, in the unit of the errors

@@ -29,10 +29,10 @@ enum class Property : unsigned char {
   link_com_x,       // shift of its centre of mass in the frame of the link [m]
   link_com_y,
   link_com_z,
-  payload,          // point mass at the tip of the link [kg]
-  pair_coulomb,     // on the sum of the speeds of this joint and the one before it [N m]
-  pair_viscous,     // the same [N m s/rad]
-  pair_armature,    // the same [kg m^2]
+  payload,        // point mass at the tip of the link [kg]
+  pair_coulomb,   // on the sum of the speeds of this joint and the one before it [N m]
+  pair_viscous,   // the same [N m s/rad]
+  pair_armature,  // the same [kg m^2]
   count
 };
 
@@ -52,13 +52,13 @@ using RobotPhysics = std::vector<JointPhysics>;  // by joint
 /// How a property is named, bounded and searched.
 struct PropertyInfo {
   Property property;
-  const char* effect;     // as in the catalogue of effects, where it is there
+  const char* effect;  // as in the catalogue of effects, where it is there
   const char* parameter;
   const char* unit;
-  const char* of_group;   // sentence: "dry friction"
-  double low, high;       // bounds, in units of `typical`
+  const char* of_group;               // sentence: "dry friction"
+  double low, high;                   // bounds, in units of `typical`
   bool position_drive, torque_drive;  // where it is considered
-  bool calibration;       // a number that the setup states, rather than physics that it leaves out
+  bool calibration;                   // a number that the setup states, rather than physics that it leaves out
 };
 
 const std::array<PropertyInfo, property_count>& property_table();
@@ -67,9 +67,9 @@ inline const PropertyInfo& info_of(Property p) { return property_table()[static_
 /// Of rotor, drive and link of one joint, from which typical sizes of properties follow.
 struct JointScale {
   double torque = 1, speed = 1, acceleration = 1, angle = 1;  // root mean squares over the recordings
-  double reading = 1;                                         // root mean square of the recorded torque, on its own scale
-  double link_size = 0.1;                                     // [m]
-  double link_mass = 1;                                       // [kg]
+  double reading = 1;      // root mean square of the recorded torque, on its own scale
+  double link_size = 0.1;  // [m]
+  double link_mass = 1;    // [kg]
 };
 
 /// A size that the property might well have at this joint: bounds and steps of finite differences are measured in it.

@@ -19,11 +19,11 @@ struct LinearModel {
   std::vector<std::vector<Sums>> sums;  // joint, block
   std::vector<Sums> whole;              // by joint, over all blocks; see add_up()
   Eigen::VectorXd independent;          // by joint: how many of its errors count as independent
-  std::vector<int> pool;                // by joint: joints of one pool have errors of one size, since their motors are equal
-  Eigen::VectorXd theta, low, high;     // by term
-  Eigen::VectorXd prior;                // standard deviation of the term before anything is seen
-  Eigen::VectorXd smallest;             // size of the term below which nobody would correct a model
-  Eigen::VectorXd cost;                 // of having the term, in -2 log of its odds
+  std::vector<int> pool;  // by joint: joints of one pool have errors of one size, since their motors are equal
+  Eigen::VectorXd theta, low, high;       // by term
+  Eigen::VectorXd prior;                  // standard deviation of the term before anything is seen
+  Eigen::VectorXd smallest;               // size of the term below which nobody would correct a model
+  Eigen::VectorXd cost;                   // of having the term, in -2 log of its odds
   std::vector<char> pinned;               // by term: part of the model that was given; only its size may change
   std::vector<std::vector<int>> acts_on;  // by term: joints
 };

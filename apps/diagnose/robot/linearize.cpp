@@ -12,15 +12,17 @@
 namespace diagnose_robot {
 namespace {
 
-constexpr int block_count = 5;         // held-out blocks of a single recording: each a fifth, as in five-fold cross-validation
-constexpr double step_share = 0.2;     // of a typical size: differences beyond rounding and single reversals
-constexpr double prior_share = 0.5;    // of the bounds of a property of drives and joints: hardly a prior
-// Of a typical size: 1 % of the torque of a drive, of a gain or a mass. No drive repeats better, and two simulations of one
-// model differ by such amounts.
+constexpr int block_count = 5;  // held-out blocks of a single recording: each a fifth, as in five-fold cross-validation
+constexpr double step_share = 0.2;   // of a typical size: differences beyond rounding and single reversals
+constexpr double prior_share = 0.5;  // of the bounds of a property of drives and joints: hardly a prior
+// Of a typical size: 1 % of the torque of a drive, of a gain or a mass. No drive repeats better, and two simulations of
+// one model differ by such amounts.
 constexpr double smallest_share = 0.1;
-constexpr double stated_prior = 2;     // typical sizes: a gain or mass that is stated is rarely off by more than some 20 %
+constexpr double stated_prior = 2;  // typical sizes: a gain or mass that is stated is rarely off by more than some 20 %
 
-double rms(const Eigen::Ref<const Eigen::VectorXd>& x) { return std::sqrt(x.squaredNorm() / static_cast<double>(x.size())); }
+double rms(const Eigen::Ref<const Eigen::VectorXd>& x) {
+  return std::sqrt(x.squaredNorm() / static_cast<double>(x.size()));
+}
 
 // Terms whose changes one evaluation can show: the same property at joints of different trees.
 std::vector<std::vector<std::size_t>> batches(const Evidence& evidence, const TermSet& wanted) {
@@ -42,7 +44,8 @@ std::vector<std::vector<std::size_t>> batches(const Evidence& evidence, const Te
       used.emplace_back(static_cast<std::size_t>(evidence.robot.trees), 0);
     }
     result[b].push_back(t);
-    for (const int j : term.joints) used[b][static_cast<std::size_t>(evidence.robot.joints[static_cast<std::size_t>(j)].tree)] = 1;
+    for (const int j : term.joints)
+      used[b][static_cast<std::size_t>(evidence.robot.joints[static_cast<std::size_t>(j)].tree)] = 1;
   }
   return result;
 }
@@ -54,7 +57,8 @@ double step_of(const Term& term, double theta) {
 
 bool moves(const Evidence& evidence, const Term& term, std::size_t joint) {
   const int tree = evidence.robot.joints[joint].tree;
-  return std::ranges::any_of(term.joints, [&](int j) { return evidence.robot.joints[static_cast<std::size_t>(j)].tree == tree; });
+  return std::ranges::any_of(term.joints,
+                             [&](int j) { return evidence.robot.joints[static_cast<std::size_t>(j)].tree == tree; });
 }
 
 // Errors that all terms together would leave: only these are noise, whose correlation says how many rows count. What a
@@ -80,24 +84,28 @@ Eigen::VectorXd left_by_all(const Evidence& evidence, const Eigen::MatrixXd& x, 
 
 void set_priors(const Evidence& evidence, LinearModel& model) {
   const auto count = static_cast<Eigen::Index>(evidence.terms.size());
-  for (Eigen::VectorXd* vector : {&model.low, &model.high, &model.prior, &model.smallest, &model.cost}) vector->resize(count);
+  for (Eigen::VectorXd* vector : {&model.low, &model.high, &model.prior, &model.smallest, &model.cost})
+    vector->resize(count);
   for (Eigen::Index t = 0; t < count; ++t) {
     const Term& term = evidence.terms[static_cast<std::size_t>(t)];
     const PropertyInfo& info = info_of(term.property);
-    const bool stated = info.calibration || term.property == Property::torque_gain || term.property == Property::sensor_bias;
+    const bool stated =
+        info.calibration || term.property == Property::torque_gain || term.property == Property::sensor_bias;
     model.low[t] = term.low;
     if (term.group == single_joint && info.low >= 0) {  // with its group's not below 0
       model.low[t] = 0;
       for (Eigen::Index other = 0; other < count; ++other) {
         const Term& tied = evidence.terms[static_cast<std::size_t>(other)];
         if (tied.property != term.property || tied.group == single_joint) continue;
-        if (std::ranges::find(tied.joints, term.joints.front()) != tied.joints.end()) model.low[t] -= model.theta[other];
+        if (std::ranges::find(tied.joints, term.joints.front()) != tied.joints.end())
+          model.low[t] -= model.theta[other];
       }
     }
     model.high[t] = term.high;
     model.prior[t] = stated ? stated_prior * term.typical : prior_share * std::max(term.high, -term.low);
     double in_file = 0;
-    for (const int j : term.joints) in_file += std::abs(evidence.robot.nominal[static_cast<std::size_t>(j)][term.property]);
+    for (const int j : term.joints)
+      in_file += std::abs(evidence.robot.nominal[static_cast<std::size_t>(j)][term.property]);
     const bool pinned = in_file > 0 && term.group != single_joint;
     model.pinned.push_back(pinned ? 1 : 0);
     model.smallest[t] = in_file > 0 ? 0 : smallest_share * term.typical;
@@ -118,7 +126,8 @@ void find_silent(Evidence& evidence) {
     std::map<double, double> count;
     double rows = 0, most = 0;
     for (const RobotRecording& recording : evidence.recordings) {
-      for (const double torque : recording.torque.col(static_cast<Eigen::Index>(j))) most = std::max(most, count[torque] += 1);
+      for (const double torque : recording.torque.col(static_cast<Eigen::Index>(j)))
+        most = std::max(most, count[torque] += 1);
       rows += static_cast<double>(recording.time.size());
     }
     evidence.silent[j] = most > still * rows ? 1 : 0;
@@ -147,14 +156,20 @@ void prepare(Evidence& evidence) {
       const auto c = static_cast<Eigen::Index>(j);
       const Eigen::VectorXd given = drive_torque(evidence.robot, motion).col(c);
       reading = std::max(reading, rms(given));
-      torque = std::max({torque, rms(given), rms(rigid_body_torque(evidence.robot, motion, RobotPhysics(joints)).col(c))});
+      torque =
+          std::max({torque, rms(given), rms(rigid_body_torque(evidence.robot, motion, RobotPhysics(joints)).col(c))});
       speed = std::max(speed, rms(motion.v.col(c)));
       acceleration = std::max(acceleration, rms(motion.a.col(c)));
       angle = std::max(angle, rms((motion.q.col(c).array() - motion.q.col(c).mean()).matrix()));
     }
     constexpr double still = 1e-3;  // [rad], [rad/s], ...: a joint that hardly moves
-    scale = {std::max(still, torque), std::max(still, speed), std::max(still, acceleration), std::max(still, angle),
-             std::max(still, reading), 0.1, 1};
+    scale = {std::max(still, torque),
+             std::max(still, speed),
+             std::max(still, acceleration),
+             std::max(still, angle),
+             std::max(still, reading),
+             0.1,
+             1};
     const ModelJoint& joint = evidence.robot.joints[j].model;
     const double size = std::hypot(joint.tip[0], joint.tip[1], joint.tip[2]);
     if (size > 0) scale.link_size = size;
@@ -164,16 +179,19 @@ void prepare(Evidence& evidence) {
 }
 
 void leave_out_start(const Robot& robot, const RobotRecording& recording, Eigen::Ref<Eigen::MatrixXd> errors) {
-  constexpr double settling = 0.5, share = 0.1;  // [s], of the length at most: speeds and what was told before are not known
+  constexpr double settling = 0.5,
+                   share = 0.1;  // [s], of the length at most: speeds and what was told before are not known
   if (robot.setup.drive == DriveKind::torque) return;
   const double length = recording.time[recording.time.size() - 1] - recording.time[0];
-  for (Eigen::Index k = 0; k < errors.rows() && recording.time[k] - recording.time[0] < std::min(settling, share * length); ++k) {
+  for (Eigen::Index k = 0;
+       k < errors.rows() && recording.time[k] - recording.time[0] < std::min(settling, share * length); ++k) {
     errors.row(k).setConstant(std::nan(""));
   }
 }
 
 Eigen::MatrixXd errors_of(const Evidence& evidence, const RobotPhysics& physics) {
-  Eigen::MatrixXd errors(static_cast<Eigen::Index>(evidence.block.size()), static_cast<Eigen::Index>(evidence.robot.joints.size()));
+  Eigen::MatrixXd errors(static_cast<Eigen::Index>(evidence.block.size()),
+                         static_cast<Eigen::Index>(evidence.robot.joints.size()));
   Eigen::Index at = 0;
   for (std::size_t r = 0; r < evidence.recordings.size(); ++r) {
     const RobotRecording& recording = evidence.recordings[r];
@@ -181,7 +199,8 @@ Eigen::MatrixXd errors_of(const Evidence& evidence, const RobotPhysics& physics)
     errors.middleRows(at, rows) =
         evidence.robot.setup.drive == DriveKind::torque
             ? torque_residual(evidence.robot, evidence.motions[r], physics)
-            : Eigen::MatrixXd(recording.angle - simulate_robot(evidence.robot, recording, start_of(evidence.motions[r]), physics));
+            : Eigen::MatrixXd(recording.angle -
+                              simulate_robot(evidence.robot, recording, start_of(evidence.motions[r]), physics));
     leave_out_start(evidence.robot, recording, errors.middleRows(at, rows));
     at += rows;
   }
@@ -193,15 +212,16 @@ Eigen::MatrixXd errors_of(const Evidence& evidence, const RobotPhysics& physics)
 
 namespace {
 
-void take_derivatives(const Evidence& evidence, const Eigen::VectorXd& theta, const Eigen::MatrixXd& errors, const TermSet& terms,
-                      Derivatives& derivatives) {
+void take_derivatives(const Evidence& evidence, const Eigen::VectorXd& theta, const Eigen::MatrixXd& errors,
+                      const TermSet& terms, Derivatives& derivatives) {
   const std::size_t joints = evidence.robot.joints.size();
   const auto groups = batches(evidence, terms);
   const auto changed = surefoot::map(
       evidence.threads, groups.size(),
       [&](std::size_t b) {
         Eigen::VectorXd moved = theta;
-        for (const std::size_t t : groups[b]) moved[static_cast<Eigen::Index>(t)] += step_of(evidence.terms[t], theta[static_cast<Eigen::Index>(t)]);
+        for (const std::size_t t : groups[b])
+          moved[static_cast<Eigen::Index>(t)] += step_of(evidence.terms[t], theta[static_cast<Eigen::Index>(t)]);
         return errors_of(evidence, physics_of(evidence.terms, moved, joints));
       },
       evidence.stop);
@@ -244,13 +264,14 @@ void add_blocks(const Evidence& evidence, Eigen::MatrixXd& x, Eigen::VectorXd& r
 
 }  // namespace
 
-LinearModel linearize(const Evidence& evidence, const Eigen::VectorXd& theta, const Eigen::MatrixXd& errors, const TermSet& wanted,
-                      const TermSet& renewed, Derivatives& derivatives) {
+LinearModel linearize(const Evidence& evidence, const Eigen::VectorXd& theta, const Eigen::MatrixXd& errors,
+                      const TermSet& wanted, const TermSet& renewed, Derivatives& derivatives) {
   const std::size_t joints = evidence.robot.joints.size(), terms = evidence.terms.size();
   derivatives.of.resize(terms);
   derivatives.fresh.assign(terms, 0);
   TermSet now(terms, 0);
-  for (std::size_t t = 0; t < terms; ++t) now[t] = renewed[t] != 0 || (wanted[t] != 0 && derivatives.of[t].size() == 0) ? 1 : 0;
+  for (std::size_t t = 0; t < terms; ++t)
+    now[t] = renewed[t] != 0 || (wanted[t] != 0 && derivatives.of[t].size() == 0) ? 1 : 0;
   take_derivatives(evidence, theta, errors, now, derivatives);
   LinearModel model;
   model.theta = theta;

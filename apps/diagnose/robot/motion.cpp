@@ -41,7 +41,8 @@ Motion smooth(const RobotRecording& recording, const MotionCriteria& criteria) {
   for (Eigen::MatrixXd* matrix : {&motion.q, &motion.v, &motion.a}) matrix->resize(rows, joints);
   if (recording.goal.size() > 0) motion.goal.resize(rows, joints);
   if (recording.torque.size() > 0) motion.torque.resize(rows, joints);
-  const double reach = std::max(criteria.half_window, static_cast<double>(criteria.fewest_rows) * recording.row_period());
+  const double reach =
+      std::max(criteria.half_window, static_cast<double>(criteria.fewest_rows) * recording.row_period());
   for (Eigen::Index k = 0; k < rows; ++k) smooth_row(recording, k, reach, criteria.fewest_rows, motion);
   return motion;
 }

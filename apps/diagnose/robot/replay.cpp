@@ -1,8 +1,7 @@
-#include "augmented_xml.hpp"
-
 #include <algorithm>
 #include <cmath>
 
+#include "augmented_xml.hpp"
 #include "surefoot/core/error.hpp"
 #include "xml_text.hpp"
 
@@ -37,7 +36,8 @@ struct Replay {
       d->ctrl[a] = goal(a, t - p[Property::delay]) + q - seen[j];
       const mjtNum* bias = m->actuator_biasprm + a * mjNBIAS;
       double torque = m->actuator_gainprm[a * mjNGAIN] * d->ctrl[a] + bias[0] + bias[1] * q + bias[2] * v;
-      if (m->actuator_forcelimited[a] != 0) torque = std::clamp(torque, m->actuator_forcerange[2 * a], m->actuator_forcerange[2 * a + 1]);
+      if (m->actuator_forcelimited[a] != 0)
+        torque = std::clamp(torque, m->actuator_forcerange[2 * a], m->actuator_forcerange[2 * a + 1]);
       double given = torque;
       if (p[Property::lag] > 0) {
         if (!begun) lagging[j] = torque;
@@ -45,7 +45,8 @@ struct Replay {
         given = lagging[j];
       }
       const double slow = v / stribeck_speed;
-      m->dof_frictionloss[dof[j]] = p[Property::coulomb] + p[Property::breakaway] * std::exp(-slow * slow) + p[Property::load_friction] * std::abs(given);
+      m->dof_frictionloss[dof[j]] = p[Property::coulomb] + p[Property::breakaway] * std::exp(-slow * slow) +
+                                    p[Property::load_friction] * std::abs(given);
       d->qfrc_applied[dof[j]] = -p[Property::drag] * v * std::abs(v) + given - torque;
     }
     begun = true;

@@ -13,9 +13,9 @@ namespace {
 using diagnose_program::in_quotes;
 using surefoot::DiagnoseError;
 
-constexpr double contact_share = 0.05;   // of the rows that may touch something: a landing or a knock
+constexpr double contact_share = 0.05;      // of the rows that may touch something: a landing or a knock
 constexpr Eigen::Index contact_rows = 200;  // rows looked at
-constexpr double degrees_factor = 4;     // so far beyond the range of a joint no angle in radians is
+constexpr double degrees_factor = 4;        // so far beyond the range of a joint no angle in radians is
 
 void place_joints(const RobotSetup& setup, Robot& robot) {
   std::vector<std::string> names;
@@ -61,7 +61,8 @@ void find_trees(Robot& robot) {
   std::vector<int> root(robot.joints.size()), tree(robot.joints.size(), -1);
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     int at = static_cast<int>(j);
-    while (robot.joints[static_cast<std::size_t>(at)].before >= 0) at = robot.joints[static_cast<std::size_t>(at)].before;
+    while (robot.joints[static_cast<std::size_t>(at)].before >= 0)
+      at = robot.joints[static_cast<std::size_t>(at)].before;
     root[j] = at;
     int& number = tree[static_cast<std::size_t>(at)];
     if (number < 0) number = robot.trees++;
@@ -100,7 +101,8 @@ void change_body(mjModel* m, const ModelJoint& joint, const JointPhysics& physic
 }  // namespace
 
 bool changes_bodies(const JointPhysics& joint) {
-  for (const Property p : {Property::link_mass, Property::link_com_x, Property::link_com_y, Property::link_com_z, Property::payload}) {
+  for (const Property p :
+       {Property::link_mass, Property::link_com_x, Property::link_com_y, Property::link_com_z, Property::payload}) {
     if (joint[p] != 0) return true;
   }
   return false;
@@ -126,15 +128,17 @@ Robot bind_robot(RobotModel model, const RobotSetup& setup) {
   robot.joint_of_dof.assign(static_cast<std::size_t>(m->nv), -1);
   place_joints(setup, robot);
   if (robot.model.floating_base && !setup.base_held) {
-    throw DiagnoseError(robot.model.file + ": the base floats; if it was held in the recordings write base = \"held\" in " +
-                        setup.file + ", and if it was not, record with the robot hanging or clamped");
+    throw DiagnoseError(robot.model.file +
+                        ": the base floats; if it was held in the recordings write base = \"held\" in " + setup.file +
+                        ", and if it was not, record with the robot hanging or clamped");
   }
   if (setup.gravity) std::copy_n(setup.gravity->data(), 3, m->opt.gravity);
   find_trees(robot);
   for (std::size_t g = 0; g < setup.groups.size(); ++g) {
     robot.groups.emplace_back();
     for (const std::string& name : setup.groups[g].joints) {
-      const auto found = std::ranges::find_if(robot.joints, [&](const RobotJoint& joint) { return joint.setup.name == name; });
+      const auto found =
+          std::ranges::find_if(robot.joints, [&](const RobotJoint& joint) { return joint.setup.name == name; });
       found->group = static_cast<int>(g);
       robot.groups.back().push_back(static_cast<int>(found - robot.joints.begin()));
     }
@@ -155,9 +159,10 @@ std::vector<std::string> check_recording(const Robot& robot, const RobotRecordin
     const double reach = recording.angle.col(static_cast<Eigen::Index>(j)).cwiseAbs().maxCoeff();
     const double range = std::max(std::abs(joint.model.low), std::abs(joint.model.high));
     if (joint.model.slides || range == 0 || reach < degrees_factor * range || reach < degrees_factor) continue;
-    throw DiagnoseError(recording.name + ": " + in_quotes(joint.setup.angle.name) + " reaches " + diagnose_program::rounded(reach) +
-                        ", but " + in_quotes(joint.setup.name) + " moves to " + diagnose_program::rounded(range) +
-                        " rad; if these are degrees, write angle = { column = \"" + joint.setup.angle.name + "\", unit = \"deg\" }");
+    throw DiagnoseError(recording.name + ": " + in_quotes(joint.setup.angle.name) + " reaches " +
+                        diagnose_program::rounded(reach) + ", but " + in_quotes(joint.setup.name) + " moves to " +
+                        diagnose_program::rounded(range) + " rad; if these are degrees, write angle = { column = \"" +
+                        joint.setup.angle.name + "\", unit = \"deg\" }");
   }
   const DataPointer data(mj_makeData(m));
   const Eigen::Index rows = recording.time.size(), stride = std::max<Eigen::Index>(1, rows / contact_rows);
@@ -180,11 +185,14 @@ std::vector<std::string> check_recording(const Robot& robot, const RobotRecordin
       break;
     }
   }
-  if (robot.setup.ignore_contacts || static_cast<double>(touching) <= contact_share * static_cast<double>(looked)) return {};
-  throw DiagnoseError(recording.name + ": in " + diagnose_program::percent(static_cast<double>(touching) / static_cast<double>(looked)) +
-                      " of the rows " + in_quotes(pair) +
-                      " touches the world; contacts are not diagnosed: record in the air, or write contacts = \"ignore\" in " +
-                      robot.setup.file);
+  if (robot.setup.ignore_contacts || static_cast<double>(touching) <= contact_share * static_cast<double>(looked))
+    return {};
+  throw DiagnoseError(
+      recording.name + ": in " +
+      diagnose_program::percent(static_cast<double>(touching) / static_cast<double>(looked)) + " of the rows " +
+      in_quotes(pair) +
+      " touches the world; contacts are not diagnosed: record in the air, or write contacts = \"ignore\" in " +
+      robot.setup.file);
 }
 
 }  // namespace diagnose_robot

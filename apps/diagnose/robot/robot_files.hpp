@@ -1,4 +1,5 @@
-// The files that the diagnosis of a robot leaves: diagnosis.json, report.html, augmented.xml, augmented.hpp; and the summary.
+// The files that the diagnosis of a robot leaves: diagnosis.json, report.html, augmented.xml, augmented.hpp; and the
+// summary.
 #pragma once
 
 #include <string>

@@ -21,12 +21,19 @@ Json joints_json(const RobotDiagnosis& d) {
       if (value != 0) physics[info.effect][info.parameter] = value;
     }
     for (std::size_t c = 0; c < d.effect_columns.size(); ++c) {
-      shares[d.effect_columns[c]] = finite_or_null(d.shares(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(c)));
+      shares[d.effect_columns[c]] =
+          finite_or_null(d.shares(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(c)));
     }
-    list.push_back({{"joint", joint.joint}, {"group", joint.group}, {"unit", joint.unit},
-                    {"rmse_textbook", finite_or_null(joint.textbook)}, {"rmse_nominal", finite_or_null(joint.nominal)},
-                    {"rmse_after", finite_or_null(joint.after)}, {"rmse_heldout", finite_or_null(joint.held_out)},
-                    {"noise", finite_or_null(joint.noise)}, {"physics", physics}, {"share_of_error", shares}});
+    list.push_back({{"joint", joint.joint},
+                    {"group", joint.group},
+                    {"unit", joint.unit},
+                    {"rmse_textbook", finite_or_null(joint.textbook)},
+                    {"rmse_nominal", finite_or_null(joint.nominal)},
+                    {"rmse_after", finite_or_null(joint.after)},
+                    {"rmse_heldout", finite_or_null(joint.held_out)},
+                    {"noise", finite_or_null(joint.noise)},
+                    {"physics", physics},
+                    {"share_of_error", shares}});
   }
   return list;
 }
@@ -34,9 +41,15 @@ Json joints_json(const RobotDiagnosis& d) {
 Json differences_json(const RobotDiagnosis& d) {
   Json list = Json::array();
   for (const JointDifference& one : d.differences) {
-    list.push_back({{"joint", one.joint}, {"group", one.group}, {"effect", one.effect}, {"parameter", one.parameter}, {"unit", one.unit},
-                    {"difference", finite_or_null(one.difference)}, {"stderr", finite_or_null(one.standard_error)},
-                    {"of_group", finite_or_null(one.of_group)}, {"differs", one.differs}});
+    list.push_back({{"joint", one.joint},
+                    {"group", one.group},
+                    {"effect", one.effect},
+                    {"parameter", one.parameter},
+                    {"unit", one.unit},
+                    {"difference", finite_or_null(one.difference)},
+                    {"stderr", finite_or_null(one.standard_error)},
+                    {"of_group", finite_or_null(one.of_group)},
+                    {"differs", one.differs}});
   }
   return list;
 }
@@ -44,8 +57,13 @@ Json differences_json(const RobotDiagnosis& d) {
 Json augmented_json(const RobotDiagnosis& d) {
   Json list = Json::array();
   for (const AugmentedEntry& entry : d.augmented) {
-    list.push_back({{"joint", entry.joint}, {"effect", entry.effect}, {"parameter", entry.parameter}, {"unit", entry.unit},
-                    {"value", entry.value}, {"in_file", entry.in_file}, {"where", entry.where}});
+    list.push_back({{"joint", entry.joint},
+                    {"effect", entry.effect},
+                    {"parameter", entry.parameter},
+                    {"unit", entry.unit},
+                    {"value", entry.value},
+                    {"in_file", entry.in_file},
+                    {"where", entry.where}});
   }
   return list;
 }

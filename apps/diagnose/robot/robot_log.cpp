@@ -27,7 +27,8 @@ void hold_last(Eigen::MatrixXd& commands, const std::string& file) {
   for (Eigen::Index j = 0; j < commands.cols(); ++j) {
     for (Eigen::Index k = 0; k < commands.rows(); ++k) {
       if (std::isfinite(commands(k, j))) continue;
-      if (k == 0) throw DiagnoseError(file + ": a goal or torque is empty in the first row; begin where all commands are known");
+      if (k == 0)
+        throw DiagnoseError(file + ": a goal or torque is empty in the first row; begin where all commands are known");
       commands(k, j) = commands(k - 1, j);
     }
   }
@@ -40,8 +41,9 @@ void bridge_gaps(Eigen::MatrixXd& readings, const Eigen::VectorXd& t, const std:
     for (Eigen::Index k = 0; k < readings.rows(); ++k) {
       if (!std::isfinite(readings(k, j))) continue;
       for (Eigen::Index i = last + 1; i < k; ++i) {
-        readings(i, j) = last < 0 ? readings(k, j)
-                                  : readings(last, j) + (readings(k, j) - readings(last, j)) * (t[i] - t[last]) / (t[k] - t[last]);
+        readings(i, j) =
+            last < 0 ? readings(k, j)
+                     : readings(last, j) + (readings(k, j) - readings(last, j)) * (t[i] - t[last]) / (t[k] - t[last]);
       }
       last = k;
     }
@@ -58,7 +60,8 @@ RobotRecording read_recording(const diagnose_program::Csv& csv, const RobotSetup
   const auto rows = static_cast<Eigen::Index>(std::min(csv.rows(), max_rows));
   const auto joints = static_cast<Eigen::Index>(setup.joints.size());
   if (rows < fewest_rows) {
-    throw DiagnoseError(csv.file + ": " + std::to_string(rows) + " rows are too few; record at least " + std::to_string(fewest_rows));
+    throw DiagnoseError(csv.file + ": " + std::to_string(rows) + " rows are too few; record at least " +
+                        std::to_string(fewest_rows));
   }
   const std::vector<double>& time = diagnose_program::numbers(csv, setup.time, "the time of the setup");
   recording.time.resize(rows);

@@ -13,9 +13,9 @@ namespace diagnose_robot {
 
 struct RobotRecording {
   std::string name;
-  Eigen::VectorXd time;                   // [s], increasing
-  Eigen::MatrixXd angle;                  // row x joint; NaN: not measured
-  Eigen::MatrixXd goal, torque, speed;    // row x joint; empty where the setup has none
+  Eigen::VectorXd time;                 // [s], increasing
+  Eigen::MatrixXd angle;                // row x joint; NaN: not measured
+  Eigen::MatrixXd goal, torque, speed;  // row x joint; empty where the setup has none
   double row_period() const { return (time[time.size() - 1] - time[0]) / static_cast<double>(time.size() - 1); }
 };
 

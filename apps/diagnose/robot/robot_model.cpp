@@ -96,7 +96,8 @@ std::vector<ModelJoint> joints_of(const mjModel* m, const std::string& text) {
 
 }  // namespace
 
-ModelPointer compile_model(const std::string& text, const std::filesystem::path& folder, bool urdf, std::string& complaint) {
+ModelPointer compile_model(const std::string& text, const std::filesystem::path& folder, bool urdf,
+                           std::string& complaint) {
   mju_user_error = throw_error;
   mju_user_warning = ignore_warning;
   // From a file beside the model, so that what it includes is found; its text from memory.
@@ -137,7 +138,8 @@ RobotModel load_robot(const std::filesystem::path& file) {
   };
   try_text(without_meshes(robot.text), "meshes were left out");
   try_text(with_possible_inertias(robot.text), "inertias that cannot be were made possible");
-  try_text(with_possible_inertias(without_meshes(robot.text)), "meshes were left out and inertias that cannot be made possible");
+  try_text(with_possible_inertias(without_meshes(robot.text)),
+           "meshes were left out and inertias that cannot be made possible");
   if (!robot.model) {
     throw DiagnoseError(robot.file + ": MuJoCo cannot load it: " + complaint +
                         "; mend the file, or give each link an inertial element if it is a mesh that is missing");

@@ -12,9 +12,9 @@
 #include "numerical_error.hpp"
 #include "robot_files.hpp"
 #include "setup_guess.hpp"
-#include "swapped_joints.hpp"
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/error.hpp"
+#include "swapped_joints.hpp"
 #include "xml_text.hpp"
 
 namespace diagnose_robot {
@@ -24,7 +24,8 @@ constexpr int exit_done = 0, exit_interrupted = 130;
 
 // Errors of augmented.xml in MuJoCo itself, over all recordings.
 double replay_error(const Evidence& evidence, const AugmentedModel& augmented, const RobotPhysics& physics) {
-  Eigen::MatrixXd errors(static_cast<Eigen::Index>(evidence.block.size()), static_cast<Eigen::Index>(evidence.robot.joints.size()));
+  Eigen::MatrixXd errors(static_cast<Eigen::Index>(evidence.block.size()),
+                         static_cast<Eigen::Index>(evidence.robot.joints.size()));
   Eigen::Index at = 0;
   for (std::size_t r = 0; r < evidence.recordings.size(); ++r) {
     const RobotRecording& recording = evidence.recordings[r];
@@ -43,7 +44,8 @@ void load_recordings(const diagnose_program::CommandLine& line, Evidence& eviden
     if (rows == 0) break;
     evidence.recordings.push_back(read_recording(diagnose_program::read_csv(file), evidence.robot.setup, rows));
     rows -= std::min(rows, static_cast<std::size_t>(evidence.recordings.back().time.size()));
-    for (const std::string& remark : check_recording(evidence.robot, evidence.recordings.back())) remarks.push_back(remark);
+    for (const std::string& remark : check_recording(evidence.robot, evidence.recordings.back()))
+      remarks.push_back(remark);
     evidence.motions.push_back(smooth(evidence.recordings.back()));
   }
   prepare(evidence);
@@ -70,7 +72,8 @@ namespace {
 std::vector<surefoot::LogFault> swapped_columns(bool repair, Evidence& evidence) {
   std::vector<surefoot::LogFault> faults;
   for (const auto& [a, b] : swapped_pairs(unexplained_commands(evidence))) {
-    const JointSetup &one = evidence.robot.joints[static_cast<std::size_t>(a)].setup, &other = evidence.robot.joints[static_cast<std::size_t>(b)].setup;
+    const JointSetup &one = evidence.robot.joints[static_cast<std::size_t>(a)].setup,
+                     &other = evidence.robot.joints[static_cast<std::size_t>(b)].setup;
     surefoot::LogFault fault;
     fault.kind = "columns_swapped";
     fault.channel = one.angle.name;
@@ -102,8 +105,9 @@ bool is_robot_model(const std::filesystem::path& model) {
 int run_robot(const diagnose_program::CommandLine& line) {
   const auto begin = std::chrono::steady_clock::now();
   if (line.setup.empty()) {
-    throw surefoot::DiagnoseError("a robot model needs --setup robot.toml; `surefoot-diagnose setup " + line.model.string() + " " +
-                                  line.recordings.front().string() + " > robot.toml` writes a first one");
+    throw surefoot::DiagnoseError("a robot model needs --setup robot.toml; `surefoot-diagnose setup " +
+                                  line.model.string() + " " + line.recordings.front().string() +
+                                  " > robot.toml` writes a first one");
   }
   const RobotSetup setup = read_setup(line.setup);
   RobotModel model = load_robot(line.model);
@@ -118,8 +122,10 @@ int run_robot(const diagnose_program::CommandLine& line) {
   diagnose_program::Progress progress(line.quiet);
   const std::vector<surefoot::LogFault> faults = swapped_columns(line.repair, evidence);
   const bool usable = faults.empty() || line.repair;
-  RobotDiagnosis d = usable ? diagnose_robot(evidence, [&](const std::string& stage, double share) { progress.show(stage, share, ""); })
-                            : refuse_log(evidence, faults);
+  RobotDiagnosis d =
+      usable
+          ? diagnose_robot(evidence, [&](const std::string& stage, double share) { progress.show(stage, share, ""); })
+          : refuse_log(evidence, faults);
   d.common.log_faults.insert(d.common.log_faults.begin(), faults.begin(), faults.end());
   evaluate_test(line, evidence, d);
   d.step = simulation_step(robot, evidence.recordings.front());
@@ -139,7 +145,9 @@ int run_robot(const diagnose_program::CommandLine& line) {
 }
 
 int run_setup(int argc, const char* const* argv) {
-  if (argc != 4) throw surefoot::DiagnoseError("setup needs a model and a log: surefoot-diagnose setup robot.xml log.csv > robot.toml");
+  if (argc != 4)
+    throw surefoot::DiagnoseError(
+        "setup needs a model and a log: surefoot-diagnose setup robot.xml log.csv > robot.toml");
   const RobotModel model = load_robot(argv[2]);
   const SetupGuess guess = guess_setup(model, diagnose_program::read_csv(argv[3]));
   std::cout << setup_text(guess.setup, guess.remarks);

@@ -51,7 +51,8 @@ TermSet either(TermSet a, const TermSet& b) {
 }
 
 // Along the change, as far as errors fall. False if they do not.
-bool move(const Evidence& evidence, const LinearModel& model, const TermSet& set, const SearchCriteria& criteria, Point& point) {
+bool move(const Evidence& evidence, const LinearModel& model, const TermSet& set, const SearchCriteria& criteria,
+          Point& point) {
   const Eigen::VectorXd change = fit_linear(model, set).change;
   const double before = misfit(evidence, model, point);
   double share = 1;
@@ -70,8 +71,10 @@ bool move(const Evidence& evidence, const LinearModel& model, const TermSet& set
   return false;
 }
 
-// To the set of terms that the linear model chooses, or to one with fewer changes where that one does not hold so far off.
-bool move_to_better(const Evidence& evidence, const LinearModel& model, const TermSet& allowed, const SearchCriteria& criteria, Point& point) {
+// To the set of terms that the linear model chooses, or to one with fewer changes where that one does not hold so far
+// off.
+bool move_to_better(const Evidence& evidence, const LinearModel& model, const TermSet& allowed,
+                    const SearchCriteria& criteria, Point& point) {
   ChoiceCriteria choice;
   TermSet before;
   for (; choice.most_new >= 0; --choice.most_new) {
@@ -96,8 +99,8 @@ void trace(const Evidence& evidence, const Point& point) {
   std::fprintf(stderr, "rms %.5f:", std::sqrt(rms.squaredNorm() / static_cast<double>(rms.size())));
   for (std::size_t t = 0; t < point.set.size(); ++t) {
     if (point.set[t] == 0) continue;
-    std::fprintf(stderr, " %s@%s=%.4g", info_of(evidence.terms[t].property).effect, place_of(evidence.robot, evidence.terms[t]).c_str(),
-                 point.theta[static_cast<Eigen::Index>(t)]);
+    std::fprintf(stderr, " %s@%s=%.4g", info_of(evidence.terms[t].property).effect,
+                 place_of(evidence.robot, evidence.terms[t]).c_str(), point.theta[static_cast<Eigen::Index>(t)]);
   }
   std::fprintf(stderr, "\n");
 }
@@ -119,9 +122,10 @@ Point start(const Evidence& evidence) {
   return best;
 }
 
-// Takes the term away that held-out blocks want least, if they do not want it, or if it takes away no more than simulations
-// of one model differ by.
-bool drop_one(const Evidence& evidence, const LinearModel& model, const SearchCriteria& criteria, Point& point, std::vector<std::string>& dropped) {
+// Takes the term away that held-out blocks want least, if they do not want it, or if it takes away no more than
+// simulations of one model differ by.
+bool drop_one(const Evidence& evidence, const LinearModel& model, const SearchCriteria& criteria, Point& point,
+              std::vector<std::string>& dropped) {
   const HeldOutGain gain = held_out_gain(model, point.set);
   Eigen::Index worst = -1;
   double least = 1;
@@ -130,7 +134,8 @@ bool drop_one(const Evidence& evidence, const LinearModel& model, const SearchCr
     const Term& term = evidence.terms[static_cast<std::size_t>(t)];
     double numerical = 0;
     for (const int j : term.joints) {
-      if (evidence.numerical.size() > 0) numerical += evidence.numerical[j] * evidence.numerical[j] / static_cast<double>(term.joints.size());
+      if (evidence.numerical.size() > 0)
+        numerical += evidence.numerical[j] * evidence.numerical[j] / static_cast<double>(term.joints.size());
     }
     const double needed = criteria.times_numerical * std::sqrt(numerical);
     const double worth = std::min(gain.share[t] / criteria.smallest_gain, needed > 0 ? gain.taken[t] / needed : 1);
@@ -140,8 +145,9 @@ bool drop_one(const Evidence& evidence, const LinearModel& model, const SearchCr
   }
   if (worst < 0) return false;
   const Term& term = evidence.terms[static_cast<std::size_t>(worst)];
-  dropped.push_back(std::string(info_of(term.property).effect) + " at " + place_of(evidence.robot, term) + " was dropped: it takes " +
-                    diagnose_program::percent(gain.share[worst]) + " off the error of its joints on held-out blocks, or less than simulations of one "
+  dropped.push_back(std::string(info_of(term.property).effect) + " at " + place_of(evidence.robot, term) +
+                    " was dropped: it takes " + diagnose_program::percent(gain.share[worst]) +
+                    " off the error of its joints on held-out blocks, or less than simulations of one "
                     "model differ by");
   point.set[static_cast<std::size_t>(worst)] = 0;
   return true;
@@ -164,7 +170,8 @@ SearchResult search_terms(const Evidence& evidence, const Progress& progress, co
     }
     progress(singles ? "single joints" : "groups", static_cast<double>(round) / criteria.most_rounds);
     trace(evidence, point);
-    const LinearModel model = linearize(evidence, point.theta, point.errors, either(allowed, point.set), renew ? either(allowed, point.set) : point.set, derivatives);
+    const LinearModel model = linearize(evidence, point.theta, point.errors, either(allowed, point.set),
+                                        renew ? either(allowed, point.set) : point.set, derivatives);
     const bool stale = !renew && !is_fresh(derivatives, allowed);
     renew = false;
     if (move_to_better(evidence, model, allowed, criteria, point)) continue;

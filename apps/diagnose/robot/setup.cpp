@@ -52,10 +52,12 @@ std::string choice(const TomlTable& table, const std::string& key, const std::st
 
 double factor_of_unit(const TomlTable& table, const toml::value& value, const std::string& unit) {
   if (unit == "deg" || unit == "deg/s") return std::numbers::pi / 180;
-  if (unit == "rad" || unit == "rad/s" || unit == "N m" || unit == "Nm" || unit == "N" || unit == "m" || unit == "m/s") return 1;
+  if (unit == "rad" || unit == "rad/s" || unit == "N m" || unit == "Nm" || unit == "N" || unit == "m" || unit == "m/s")
+    return 1;
   if (unit == "rpm") return std::numbers::pi / 30;
   if (unit == "mm" || unit == "mm/s" || unit == "mN m") return 1e-3;
-  fail(place(table, value), "the unit " + in_quotes(unit) + " is not known; rad, deg, rad/s, deg/s, rpm, N m, m, mm, N are");
+  fail(place(table, value),
+       "the unit " + in_quotes(unit) + " is not known; rad, deg, rad/s, deg/s, rpm, N m, m, mm, N are");
 }
 
 // "column", or { column = "...", unit = "deg", factor = 0.1 }
@@ -78,7 +80,8 @@ ColumnOf read_column(const TomlTable& table, const std::string& key) {
   }
   if (unit.empty()) {
     unit = diagnose_program::unit_of_column(column.name);
-    if (unit != "deg" && unit != "deg/s" && unit != "rpm" && unit != "mm" && unit != "mm/s" && unit != "mN m") return column;
+    if (unit != "deg" && unit != "deg/s" && unit != "rpm" && unit != "mm" && unit != "mm/s" && unit != "mN m")
+      return column;
   }
   column.factor *= factor_of_unit(table, *value, unit);
   return column;
@@ -108,11 +111,13 @@ void read_joint(const TomlTable& table, const std::string& name, const DriveNumb
   joint.kd = own.kd;
   joint.limit = own.limit;
   const std::string where = place(table, *table.value);
-  if (joint.angle.name.empty()) fail(where, "the key 'angle' is missing: the column of the measured position, or list the joint in held");
+  if (joint.angle.name.empty())
+    fail(where, "the key 'angle' is missing: the column of the measured position, or list the joint in held");
   if (setup.drive == DriveKind::position && joint.goal.name.empty()) {
     fail(where, "the key 'goal' is missing: the column of what the position drive is told");
   }
-  if (setup.drive == DriveKind::position && !(joint.kp > 0)) fail(where, "kp is missing: a position drive needs it, here or in [drive]");
+  if (setup.drive == DriveKind::position && !(joint.kp > 0))
+    fail(where, "kp is missing: a position drive needs it, here or in [drive]");
   if (setup.drive == DriveKind::torque && joint.torque.name.empty()) {
     fail(where, "the key 'torque' is missing: the column of the torque that drives the joint");
   }
@@ -128,7 +133,8 @@ void read_groups(const TomlTable& table, RobotSetup& setup) {
       if (std::ranges::find(setup.joints, joint, &JointSetup::name) == setup.joints.end()) {
         fail(where, "the joint " + in_quotes(joint) + " has no table under [joints]");
       }
-      if (std::ranges::find(placed, joint) != placed.end()) fail(where, "the joint " + in_quotes(joint) + " is in two groups");
+      if (std::ranges::find(placed, joint) != placed.end())
+        fail(where, "the joint " + in_quotes(joint) + " is in two groups");
       placed.push_back(joint);
     }
     if (!group.joints.empty()) setup.groups.push_back(group);
@@ -138,7 +144,8 @@ void read_groups(const TomlTable& table, RobotSetup& setup) {
 void read_head(const TomlTable& root, RobotSetup& setup) {
   const std::string schema = text_or(root, "schema", "");
   if (schema != "surefoot.robot/1") {
-    throw surefoot::DiagnoseError(setup.file + ": the first line must be schema = \"surefoot.robot/1\"; `surefoot-diagnose setup "
+    throw surefoot::DiagnoseError(setup.file +
+                                  ": the first line must be schema = \"surefoot.robot/1\"; `surefoot-diagnose setup "
                                   "robot.xml log.csv` writes such a file");
   }
   setup.time = text_or(root, "time", setup.time);
@@ -153,7 +160,8 @@ void read_head(const TomlTable& root, RobotSetup& setup) {
     const std::string where = place(root, *gravity, "gravity");
     if (!gravity->is_array() || gravity->as_array().size() != 3) fail(where, "three numbers are expected");
     setup.gravity.emplace();
-    for (std::size_t i = 0; i < 3; ++i) (*setup.gravity)[i] = diagnose_program::to_number(gravity->as_array()[i], where);
+    for (std::size_t i = 0; i < 3; ++i)
+      (*setup.gravity)[i] = diagnose_program::to_number(gravity->as_array()[i], where);
   }
   const toml::value* calibrate = find(root, "calibrate");
   if (calibrate == nullptr) return;
@@ -171,23 +179,26 @@ RobotSetup read_tables(const toml::value& value, const std::string& file) {
   RobotSetup setup;
   setup.file = file;
   const TomlTable root{&value, file, ""};
-  allow_keys(root, {"schema", "time", "base", "contacts", "gravity", "step", "held", "calibrate", "friction_of_the_file",
-                    "drive", "joints", "groups"});
+  allow_keys(root, {"schema", "time", "base", "contacts", "gravity", "step", "held", "calibrate",
+                    "friction_of_the_file", "drive", "joints", "groups"});
   read_head(root, setup);
   DriveNumbers drive;
   if (const toml::value* table = find(root, "drive")) {
     const TomlTable inner = diagnose_program::sub_table(root, {"drive", table}, "a table of the drives");
     allow_keys(inner, {"kind", "kp", "kd", "limit"});
-    setup.drive = choice(inner, "kind", "position", {"position", "torque"}) == "torque" ? DriveKind::torque : DriveKind::position;
+    setup.drive =
+        choice(inner, "kind", "position", {"position", "torque"}) == "torque" ? DriveKind::torque : DriveKind::position;
     drive = read_drive_numbers(inner, drive);
   }
   const toml::value* joints = find(root, "joints");
-  if (joints == nullptr) throw surefoot::DiagnoseError(file + ": there is no table [joints.NAME]; name the columns of each joint");
+  if (joints == nullptr)
+    throw surefoot::DiagnoseError(file + ": there is no table [joints.NAME]; name the columns of each joint");
   const TomlTable all = diagnose_program::sub_table(root, {"joints", joints}, "tables of joints");
   for (const TomlEntry& entry : entries(all)) {
     read_joint(diagnose_program::sub_table(all, entry, "a table of columns"), entry.key, drive, setup);
   }
-  if (setup.joints.empty()) throw surefoot::DiagnoseError(file + ": [joints] is empty; name the columns of at least one joint");
+  if (setup.joints.empty())
+    throw surefoot::DiagnoseError(file + ": [joints] is empty; name the columns of at least one joint");
   if (const toml::value* groups = find(root, "groups")) {
     read_groups(diagnose_program::sub_table(root, {"groups", groups}, "lists of joints"), setup);
   }

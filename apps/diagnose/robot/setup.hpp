@@ -1,4 +1,5 @@
-// How a log belongs to a robot: columns of joints, drives, groups of equal motors. A TOML file, schema surefoot.robot/1.
+// How a log belongs to a robot: columns of joints, drives, groups of equal motors. A TOML file, schema
+// surefoot.robot/1.
 #pragma once
 
 #include <array>
@@ -35,12 +36,12 @@ struct RobotSetup {
   std::string time = "t_s";
   double time_factor = 1;  // to seconds
   DriveKind drive = DriveKind::position;
-  bool base_held = false;      // a floating base that was held in the recordings
+  bool base_held = false;  // a floating base that was held in the recordings
   bool ignore_contacts = false;
   std::optional<std::array<double, 3>> gravity;  // none: that of the model
-  double step = 0;             // [s] of the simulation; 0: see simulation_step()
+  double step = 0;                               // [s] of the simulation; 0: see simulation_step()
   bool calibrate_gains = true, calibrate_bodies = false;
-  bool from_model = true;      // friction, damping and armature of the file are part of the nominal model
+  bool from_model = true;         // friction, damping and armature of the file are part of the nominal model
   std::vector<std::string> held;  // joints that did not move
   std::vector<JointSetup> joints;
   std::vector<Group> groups;  // joints with equal motors; every joint of `joints` is in one

@@ -26,12 +26,16 @@ struct Match {
   bool found = false;
 };
 
-constexpr std::array<std::string_view, 12> goal_words{"goal", "target", "command", "cmd", "des", "desired", "ref", "reference", "setpoint", "order", "ctrl", "qd"};
+constexpr std::array<std::string_view, 12> goal_words{"goal", "target",    "command",  "cmd",   "des",  "desired",
+                                                      "ref",  "reference", "setpoint", "order", "ctrl", "qd"};
 constexpr std::array<std::string_view, 7> torque_words{"torque", "effort", "tau", "force", "load", "moment", "trq"};
 constexpr std::array<std::string_view, 7> speed_words{"speed", "vel", "velocity", "dq", "qdot", "rate", "omega"};
-constexpr std::array<std::string_view, 22> plain_words{"joint", "rad", "deg", "n", "m", "nm", "s", "q", "pos", "position", "angle", "measured", "present",
-                                                       "actual", "state", "j", "joints", "theta", "1", "mm", "link", "motor"};
-constexpr std::array<std::string_view, 20> side_words{"l", "r", "left", "right", "fl", "fr", "rl", "rr", "bl", "br", "lf", "rf", "lh", "rh", "hl", "hr", "front", "rear", "back", "hind"};
+constexpr std::array<std::string_view, 22> plain_words{
+    "joint",    "rad",     "deg",    "n",     "m", "nm",     "s",     "q", "pos", "position", "angle",
+    "measured", "present", "actual", "state", "j", "joints", "theta", "1", "mm",  "link",     "motor"};
+constexpr std::array<std::string_view, 20> side_words{"l",  "r",  "left",  "right", "fl",   "fr",  "rl",
+                                                      "rr", "bl", "br",    "lf",    "rf",   "lh",  "rh",
+                                                      "hl", "hr", "front", "rear",  "back", "hind"};
 
 template <std::size_t N>
 bool is_in(const std::array<std::string_view, N>& words, const std::string& word) {
@@ -42,7 +46,9 @@ bool is_in(const std::array<std::string_view, N>& words, const std::string& word
 std::vector<std::string> telling(const std::vector<std::string>& parts) {
   std::vector<std::string> result;
   for (const std::string& part : parts) {
-    if (!is_in(plain_words, part) && !is_in(goal_words, part) && !is_in(torque_words, part) && !is_in(speed_words, part)) result.push_back(part);
+    if (!is_in(plain_words, part) && !is_in(goal_words, part) && !is_in(torque_words, part) &&
+        !is_in(speed_words, part))
+      result.push_back(part);
   }
   return result;
 }
@@ -69,7 +75,8 @@ std::vector<std::string> split_digits(const std::vector<std::string>& parts) {
 double likeness(const std::string& column, const std::string& joint) {
   std::vector<std::string> a = split_digits(name_parts(column)), b = split_digits(name_parts(joint));
   const std::vector<std::string> whole_b = b;
-  const bool has_number = std::ranges::any_of(b, [](const std::string& part) { return std::isdigit(static_cast<unsigned char>(part[0])) != 0; });
+  const bool has_number = std::ranges::any_of(
+      b, [](const std::string& part) { return std::isdigit(static_cast<unsigned char>(part[0])) != 0; });
   a = telling(a);
   b = telling(b);
   if (has_number && std::ranges::find(whole_b, "1") != whole_b.end()) b.push_back("1");
@@ -89,8 +96,10 @@ Kind kind_of(const std::string& column) {
            std::ranges::any_of(split, [&](const std::string& p) { return is_in(words, p); });
   };
   if (any(goal_words)) return Kind::goal;
-  if (any(torque_words) || column.ends_with("_N_m") || column.ends_with("_Nm") || column.ends_with("_N")) return Kind::torque;
-  if (any(speed_words) || column.ends_with("rad_s") || column.ends_with("deg_s") || column.ends_with("_m_s")) return Kind::speed;
+  if (any(torque_words) || column.ends_with("_N_m") || column.ends_with("_Nm") || column.ends_with("_N"))
+    return Kind::torque;
+  if (any(speed_words) || column.ends_with("rad_s") || column.ends_with("deg_s") || column.ends_with("_m_s"))
+    return Kind::speed;
   return Kind::angle;
 }
 
@@ -113,7 +122,10 @@ Match match(const RobotModel& model, const std::string& column) {
 }
 
 ColumnOf& column_of(JointSetup& joint, Kind kind) {
-  return kind == Kind::angle ? joint.angle : kind == Kind::speed ? joint.speed : kind == Kind::goal ? joint.goal : joint.torque;
+  return kind == Kind::angle   ? joint.angle
+         : kind == Kind::speed ? joint.speed
+         : kind == Kind::goal  ? joint.goal
+                               : joint.torque;
 }
 
 // Degrees, where the name does not tell and the readings go beyond what radians could be.
@@ -151,13 +163,16 @@ void guess_groups(const RobotModel& model, SetupGuess& guess) {
 }
 
 void guess_drive(const diagnose_program::Csv& csv, SetupGuess& guess) {
-  const bool goals = std::ranges::all_of(guess.setup.joints, [](const JointSetup& joint) { return !joint.goal.name.empty(); });
+  const bool goals =
+      std::ranges::all_of(guess.setup.joints, [](const JointSetup& joint) { return !joint.goal.name.empty(); });
   guess.setup.drive = goals ? DriveKind::position : DriveKind::torque;
   guess.remarks.push_back(goals ? "position drives, since every joint has a column of its goal"
                                 : "torque drives, since not every joint has a column of its goal");
   if (!goals) {
     guess.setup.calibrate_gains = false;
-    guess.remarks.push_back("torques are taken as they are; write calibrate = [\"gains\"] if their scale is uncertain, with \"bodies\" if masses are");
+    guess.remarks.push_back(
+        "torques are taken as they are; write calibrate = [\"gains\"] if their scale is uncertain, with \"bodies\" if "
+        "masses are");
     return;
   }
   double kp = 0, kd = 0;
@@ -172,8 +187,9 @@ void guess_drive(const diagnose_program::Csv& csv, SetupGuess& guess) {
     if (joint.kd == 0) joint.kd = kd;
     unknown = unknown || joint.kp == 0;
   }
-  guess.remarks.push_back(unknown ? "SET kp and kd of the drives: neither the model nor the log states them"
-                                  : "kp and kd are those of the model's position actuators or of the log's first lines");
+  guess.remarks.push_back(unknown
+                              ? "SET kp and kd of the drives: neither the model nor the log states them"
+                              : "kp and kd are those of the model's position actuators or of the log's first lines");
 }
 
 }  // namespace
@@ -184,7 +200,8 @@ std::vector<std::string> name_parts(const std::string& name) {
   char before = 0;
   for (const char c : name) {
     const bool letter = std::isalnum(static_cast<unsigned char>(c)) != 0;
-    const bool begins = std::isupper(static_cast<unsigned char>(c)) != 0 && std::islower(static_cast<unsigned char>(before)) != 0;
+    const bool begins =
+        std::isupper(static_cast<unsigned char>(c)) != 0 && std::islower(static_cast<unsigned char>(before)) != 0;
     if ((!letter || begins) && !now.empty()) {
       parts.push_back(now);
       now.clear();
@@ -211,7 +228,8 @@ std::string without_side(const std::string& joint) {
 
 SetupGuess guess_setup(const RobotModel& model, const diagnose_program::Csv& csv) {
   SetupGuess guess;
-  guess.remarks.push_back("guessed from " + model.file + " and " + csv.file + ": look through it before you rely on it");
+  guess.remarks.push_back("guessed from " + model.file + " and " + csv.file +
+                          ": look through it before you rely on it");
   guess_time(csv, guess);
   std::vector<JointSetup> joints(model.joints.size());
   std::vector<std::string> unused, degrees;
@@ -245,7 +263,8 @@ SetupGuess guess_setup(const RobotModel& model, const diagnose_program::Csv& csv
   }
   if (guess.setup.joints.empty()) {
     throw surefoot::DiagnoseError(csv.file + ": no column is named like a joint of " + model.file +
-                                  "; rename the columns after the joints, for example " + model.joints.front().name + "_rad");
+                                  "; rename the columns after the joints, for example " + model.joints.front().name +
+                                  "_rad");
   }
   guess_drive(csv, guess);
   const bool torque = guess.setup.drive == DriveKind::torque;
@@ -255,16 +274,21 @@ SetupGuess guess_setup(const RobotModel& model, const diagnose_program::Csv& csv
     return true;
   });
   if (guess.setup.joints.empty()) {
-    throw surefoot::DiagnoseError(csv.file + ": the joints have neither goals nor torques; add their columns, named like goal_" +
+    throw surefoot::DiagnoseError(csv.file +
+                                  ": the joints have neither goals nor torques; add their columns, named like goal_" +
                                   model.joints.front().name + "_rad or torque_" + model.joints.front().name + "_N_m");
   }
   guess_groups(model, guess);
   guess.setup.base_held = model.floating_base;
-  if (model.floating_base) guess.remarks.push_back("the model's base floats; base = \"held\" says that it was held in the recording");
-  if (!guess.setup.held.empty()) guess.remarks.push_back("joints without columns are listed under held: they must not have moved");
-  if (!unused.empty()) guess.remarks.push_back("columns that belong to no joint and are not used: " + diagnose_program::listed(unused));
+  if (model.floating_base)
+    guess.remarks.push_back("the model's base floats; base = \"held\" says that it was held in the recording");
+  if (!guess.setup.held.empty())
+    guess.remarks.push_back("joints without columns are listed under held: they must not have moved");
+  if (!unused.empty())
+    guess.remarks.push_back("columns that belong to no joint and are not used: " + diagnose_program::listed(unused));
   guess.remarks.push_back(degrees.empty() ? "units are those that the names of columns end in, else rad, N m and s"
-                                          : "taken for degrees, since they go far beyond the joint's range: " + diagnose_program::listed(degrees));
+                                          : "taken for degrees, since they go far beyond the joint's range: " +
+                                                diagnose_program::listed(degrees));
   return guess;
 }
 

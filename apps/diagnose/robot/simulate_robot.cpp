@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "surefoot/diagnose/simulation/coupled_dry_friction.hpp"
+#include "surefoot/optimize/coupled_dry_friction.hpp"
 
 namespace diagnose_robot {
 namespace {
@@ -39,11 +39,16 @@ struct Simulation {
   ModelPointer model;
   DataPointer data;
   Eigen::MatrixXd mass;
-  Eigen::VectorXd q, v, before, middle, next, momentum, friction, drive_damping, seen, lagging;  // middle: speed in mid-step
-  surefoot::diagnosis::CoupledDryFriction work;
+  Eigen::VectorXd q, v, before, middle, next, momentum, friction, drive_damping, seen,
+      lagging;  // middle: speed in mid-step
+  surefoot::CoupledDryFriction work;
 
-  Simulation(const Robot& robot_, const RobotRecording& recording_, const StartState& start, const RobotPhysics& physics_)
-      : robot(robot_), recording(recording_), physics(physics_), model(model_with_bodies(robot_, physics_)),
+  Simulation(const Robot& robot_, const RobotRecording& recording_, const StartState& start,
+             const RobotPhysics& physics_)
+      : robot(robot_),
+        recording(recording_),
+        physics(physics_),
+        model(model_with_bodies(robot_, physics_)),
         data(mj_makeData(model.get())) {
     const auto n = static_cast<Eigen::Index>(robot.joints.size());
     mass.setZero(n, n);
@@ -86,7 +91,8 @@ struct Simulation {
   DriveTorque drive(Eigen::Index i, Eigen::Index row, double t, double h) {
     const JointSetup& stated = robot.joints[static_cast<std::size_t>(i)].setup;
     const JointPhysics& p = joint(i);
-    const double goal = p[Property::delay] > 0 ? mean_goal(recording, i, row, t - p[Property::delay], h) : recording.goal(row, i);
+    const double goal =
+        p[Property::delay] > 0 ? mean_goal(recording, i, row, t - p[Property::delay], h) : recording.goal(row, i);
     // Positions are those of mid-step.
     seen[i] = std::clamp(seen[i], q[i] - p[Property::backlash], q[i] + p[Property::backlash]);
     const double gain = 1 + p[Property::torque_gain];
@@ -116,8 +122,9 @@ struct Simulation {
       const ModelJoint& model_joint = robot.joints[static_cast<std::size_t>(i)].model;
       const DriveTorque torque = drive(i, row, t, h);
       const double spring = m->jnt_stiffness[model_joint.id] * (q[i] - m->qpos_spring[model_joint.position]);
-      const double force = torque.constant + p[Property::constant_torque] - p[Property::drag] * middle[i] * std::abs(middle[i]) -
-                           data->qfrc_bias[model_joint.dof] - spring;
+      const double force = torque.constant + p[Property::constant_torque] -
+                           p[Property::drag] * middle[i] * std::abs(middle[i]) - data->qfrc_bias[model_joint.dof] -
+                           spring;
       mass(i, i) += p[Property::armature];
       const double damping = p[Property::viscous] + torque.damping;
       const double implicit = h * damping < stiff * mass(i, i) ? 0.5 : 1;
@@ -129,7 +136,7 @@ struct Simulation {
       if (p[Property::lag] > 0) lagging[i] = torque.constant;
       drive_damping[i] = torque.damping;
     }
-    surefoot::diagnosis::solve_coupled_dry_friction(mass, momentum, friction, work, next);
+    surefoot::solve_coupled_dry_friction(mass, momentum, friction, work, next);
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       if (joint(i)[Property::lag] > 0) lagging[i] -= drive_damping[i] * next[i];
     }
@@ -156,7 +163,8 @@ Eigen::MatrixXd simulate_robot(const Robot& robot, const RobotRecording& recordi
                                const RobotPhysics& physics) {
   Simulation simulation(robot, recording, start, physics);
   const Eigen::Index rows = recording.time.size();
-  Eigen::MatrixXd readings = Eigen::MatrixXd::Constant(rows, recording.angle.cols(), std::numeric_limits<double>::infinity());
+  Eigen::MatrixXd readings =
+      Eigen::MatrixXd::Constant(rows, recording.angle.cols(), std::numeric_limits<double>::infinity());
   const double wanted = simulation_step(robot, recording);
   simulation.read(readings, 0);
   for (Eigen::Index k = 0; k + 1 < rows; ++k) {

@@ -1,7 +1,8 @@
 // Simulation of a whole robot over a recording, its joints driven to their goals.
 //
-// Steps of second order: half a step of position, a step of velocity with the forces of mid-step, the other half. Damping
-// (of joints and drives) is implicit, dry friction of all joints sticks and slips together (coupled_dry_friction.hpp).
+// Steps of second order: half a step of position, a step of velocity with the forces of mid-step, the other half.
+// Damping (of joints and drives) is implicit, dry friction of all joints sticks and slips together
+// (coupled_dry_friction.hpp).
 #pragma once
 
 #include <Eigen/Core>

@@ -29,14 +29,17 @@ Eigen::MatrixXd unexplained_commands(const Evidence& evidence) {
   const bool torque = evidence.robot.setup.drive == DriveKind::torque;
   const auto joints = static_cast<Eigen::Index>(evidence.robot.joints.size());
   const Motion& motion = evidence.motions.front();
-  const Eigen::MatrixXd bodies = torque ? rigid_body_torque(evidence.robot, motion, RobotPhysics(evidence.robot.joints.size())) : Eigen::MatrixXd();
+  const Eigen::MatrixXd bodies =
+      torque ? rigid_body_torque(evidence.robot, motion, RobotPhysics(evidence.robot.joints.size()))
+             : Eigen::MatrixXd();
   const Eigen::MatrixXd& commands = torque ? motion.torque : motion.goal;
   const Eigen::MatrixXd centred = commands.rowwise() - commands.colwise().mean();
   Eigen::MatrixXd result(joints, joints);
   for (Eigen::Index j = 0; j < joints; ++j) {
     const Eigen::MatrixXd x = features(motion, j, bodies, torque);
     const Eigen::MatrixXd left = centred - x * x.colPivHouseholderQr().solve(centred);
-    result.col(j) = (left.colwise().squaredNorm().array() / centred.colwise().squaredNorm().array().max(1e-300)).matrix();
+    result.col(j) =
+        (left.colwise().squaredNorm().array() / centred.colwise().squaredNorm().array().max(1e-300)).matrix();
   }
   return result;
 }

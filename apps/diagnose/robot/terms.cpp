@@ -24,20 +24,24 @@ bool is_considered(const Robot& robot, const PropertyInfo& info, int joint) {
   const RobotJoint& at = robot.joints[static_cast<std::size_t>(joint)];
   if (!(position ? info.position_drive : info.torque_drive)) return false;
   if (is_body(info.property)) return robot.setup.calibrate_bodies;
-  if (!is_body(info.property) && (info.calibration || info.property == Property::torque_gain) && !robot.setup.calibrate_gains) return false;
+  if (!is_body(info.property) && (info.calibration || info.property == Property::torque_gain) &&
+      !robot.setup.calibrate_gains)
+    return false;
   if (info.property == Property::torque_limit) return at.setup.limit > 0;
   if (info.property == Property::kd_error) return at.setup.kd > 0;
   return !is_pair(info.property) || at.before >= 0;
 }
 
-Term make_term(const std::vector<int>& joints, int group, const PropertyInfo& info, const std::vector<JointScale>& scales) {
+Term make_term(const std::vector<int>& joints, int group, const PropertyInfo& info,
+               const std::vector<JointScale>& scales) {
   Term term;
   term.property = info.property;
   term.joints = joints;
   term.group = group;
   term.typical = 0;
   for (const int j : joints) {
-    term.typical += typical_size(info.property, scales[static_cast<std::size_t>(j)]) / static_cast<double>(joints.size());
+    term.typical +=
+        typical_size(info.property, scales[static_cast<std::size_t>(j)]) / static_cast<double>(joints.size());
   }
   term.low = info.low * term.typical;
   term.high = info.high * term.typical;
@@ -55,14 +59,16 @@ std::vector<Term> all_terms(const Robot& robot, const std::vector<JointScale>& s
       for (const int j : robot.groups[g]) {
         if (is_considered(robot, info, j)) joints.push_back(j);
       }
-      if (!joints.empty() && (joints.size() == 1 || !is_of_one_joint(info.property))) terms.push_back(make_term(joints, static_cast<int>(g), info, scales));
+      if (!joints.empty() && (joints.size() == 1 || !is_of_one_joint(info.property)))
+        terms.push_back(make_term(joints, static_cast<int>(g), info, scales));
     }
   }
   std::vector<int> every(robot.joints.size());
   std::iota(every.begin(), every.end(), 0);
   for (const PropertyInfo& info : property_table()) {
     const bool may = std::ranges::all_of(every, [&](int j) { return is_considered(robot, info, j); });
-    if (robot.groups.size() > 1 && is_of_electronics(info.property) && may) terms.push_back(make_term(every, all_joints, info, scales));
+    if (robot.groups.size() > 1 && is_of_electronics(info.property) && may)
+      terms.push_back(make_term(every, all_joints, info, scales));
   }
   for (const PropertyInfo& info : property_table()) {
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
@@ -77,7 +83,8 @@ std::vector<Term> all_terms(const Robot& robot, const std::vector<JointScale>& s
 RobotPhysics physics_of(const std::vector<Term>& terms, const Eigen::VectorXd& theta, std::size_t joints) {
   RobotPhysics physics(joints);
   for (std::size_t t = 0; t < terms.size(); ++t) {
-    for (const int j : terms[t].joints) physics[static_cast<std::size_t>(j)][terms[t].property] += theta[static_cast<Eigen::Index>(t)];
+    for (const int j : terms[t].joints)
+      physics[static_cast<std::size_t>(j)][terms[t].property] += theta[static_cast<Eigen::Index>(t)];
   }
   for (JointPhysics& joint : physics) {
     for (const PropertyInfo& info : property_table()) {

@@ -14,7 +14,8 @@ inline constexpr int single_joint = -1, all_joints = -2;
 struct Term {
   Property property{};
   std::vector<int> joints;
-  int group = single_joint;     // of the setup; single: a joint of its own, beyond what its group has; all: every joint alike
+  int group =
+      single_joint;  // of the setup; single: a joint of its own, beyond what its group has; all: every joint alike
   double typical = 1, low = 0, high = 0;
 };
 

@@ -9,7 +9,9 @@ namespace {
 
 constexpr double resting_share = 0.03;  // of the root mean square speed: what smoothing leaves of a reversal
 
-double rms(const Eigen::Ref<const Eigen::VectorXd>& x) { return std::sqrt(x.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, x.size()))); }
+double rms(const Eigen::Ref<const Eigen::VectorXd>& x) {
+  return std::sqrt(x.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, x.size())));
+}
 
 double sign_of(double v) { return v > 0 ? 1.0 : v < 0 ? -1.0 : 0.0; }
 
@@ -36,8 +38,9 @@ Eigen::MatrixXd rigid_body_torque(const Robot& robot, const Motion& motion, cons
     mj_rne(m, d, 1, force.data());
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
       const ModelJoint& joint = robot.joints[j].model;
-      torque(k, static_cast<Eigen::Index>(j)) = force[static_cast<std::size_t>(joint.dof)] +
-                                                m->jnt_stiffness[joint.id] * (d->qpos[joint.position] - m->qpos_spring[joint.position]);
+      torque(k, static_cast<Eigen::Index>(j)) =
+          force[static_cast<std::size_t>(joint.dof)] +
+          m->jnt_stiffness[joint.id] * (d->qpos[joint.position] - m->qpos_spring[joint.position]);
     }
   }
   return torque;
@@ -56,7 +59,9 @@ Eigen::MatrixXd drive_torque(const Robot& robot, const Motion& motion) {
     const JointSetup& drive = robot.joints[j].setup;
     const auto c = static_cast<Eigen::Index>(j);
     const double limit = drive.limit > 0 ? drive.limit : std::numeric_limits<double>::infinity();
-    torque.col(c) = (drive.kp * (motion.goal.col(c) - motion.q.col(c)) - drive.kd * motion.v.col(c)).cwiseMax(-limit).cwiseMin(limit);
+    torque.col(c) = (drive.kp * (motion.goal.col(c) - motion.q.col(c)) - drive.kd * motion.v.col(c))
+                        .cwiseMax(-limit)
+                        .cwiseMin(limit);
   }
   return torque;
 }
@@ -73,7 +78,8 @@ Eigen::MatrixXd torque_residual(const Robot& robot, const Motion& motion, const 
     const int before = robot.joints[j].before;
     for (Eigen::Index k = 0; k < needed.rows(); ++k) {
       const double v = motion.v(k, c), slow = v / stribeck_speed;
-      const double dry = p[Property::coulomb] + p[Property::breakaway] * std::exp(-slow * slow) + p[Property::load_friction] * load(k, c);
+      const double dry = p[Property::coulomb] + p[Property::breakaway] * std::exp(-slow * slow) +
+                         p[Property::load_friction] * load(k, c);
       needed(k, c) += dry * sign_of(v) + p[Property::viscous] * v + p[Property::drag] * v * std::abs(v) +
                       p[Property::armature] * motion.a(k, c) - p[Property::constant_torque];
       if (before < 0) continue;
@@ -84,7 +90,8 @@ Eigen::MatrixXd torque_residual(const Robot& robot, const Motion& motion, const 
       needed(k, before) += pair;
     }
   }
-  for (std::size_t j = 0; j < robot.joints.size(); ++j) needed.col(static_cast<Eigen::Index>(j)) *= 1 + physics[j][Property::reading_scale];
+  for (std::size_t j = 0; j < robot.joints.size(); ++j)
+    needed.col(static_cast<Eigen::Index>(j)) *= 1 + physics[j][Property::reading_scale];
   Eigen::MatrixXd residual = drive_torque(robot, motion) - needed;
   for (Eigen::Index c = 0; c < residual.cols(); ++c) {
     for (Eigen::Index k = 0; k < residual.rows(); ++k) {

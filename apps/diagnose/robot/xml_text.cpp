@@ -102,7 +102,8 @@ std::string with_possible_inertias(const std::string& text) {
 std::string without_joints(const std::string& text, const std::vector<std::string>& names) {
   const auto unwanted = [&](const std::string& tag) {
     const std::string name = attribute(tag, "name");
-    return attribute(tag, "type") == "free" || (!name.empty() && std::find(names.begin(), names.end(), name) != names.end());
+    return attribute(tag, "type") == "free" ||
+           (!name.empty() && std::find(names.begin(), names.end(), name) != names.end());
   };
   return without(without_elements(text, {"freejoint", "equality", "tendon", "contact", "keyframe"}), "joint", unwanted);
 }
@@ -111,7 +112,8 @@ std::string attribute(const std::string& tag, const std::string& name) {
   for (std::size_t at = tag.find(name); at != std::string::npos; at = tag.find(name, at + 1)) {
     if (at == 0 || std::isspace(static_cast<unsigned char>(tag[at - 1])) == 0) continue;
     std::size_t quote = at + name.size();
-    while (quote < tag.size() && (std::isspace(static_cast<unsigned char>(tag[quote])) != 0 || tag[quote] == '=')) ++quote;
+    while (quote < tag.size() && (std::isspace(static_cast<unsigned char>(tag[quote])) != 0 || tag[quote] == '='))
+      ++quote;
     if (quote >= tag.size() || (tag[quote] != '"' && tag[quote] != '\'')) continue;
     const std::size_t end = tag.find(tag[quote], quote + 1);
     if (end != std::string::npos) return tag.substr(quote + 1, end - quote - 1);

@@ -73,8 +73,8 @@ struct Hidden {
   const char *effect, *parameter;
   double low, high;  // of the size that `size` says
   std::function<double(const Joint&)> size;
-  double HiddenJoint::* where;
-  bool groups;           // friction and inertia come in groups and everywhere, other faults in one joint
+  double HiddenJoint::*where;
+  bool groups;            // friction and inertia come in groups and everywhere, other faults in one joint
   bool position, torque;  // which robots may have it
 };
 
@@ -85,20 +85,23 @@ const std::vector<Hidden>& catalogue() {
       {"coulomb_friction", "level", 0.05, 0.3, torque, &HiddenJoint::coulomb, true, true, true},
       {"viscous_friction", "damping", 0.05, 0.3, torque, &HiddenJoint::viscous, true, true, true},
       {"load_dependent_friction", "factor", 0.1, 0.3, one, &HiddenJoint::load_friction, true, true, true},
-      {"rotor_inertia", "armature", 0.3, 1.5, [](const Joint& joint) { return joint.inertia; }, &HiddenJoint::armature, true, true, true},
+      {"rotor_inertia", "armature", 0.3, 1.5, [](const Joint& joint) { return joint.inertia; }, &HiddenJoint::armature,
+       true, true, true},
       {"input_delay", "delay", 0.01, 0.04, one, &HiddenJoint::delay, true, true, false},
       {"backlash", "half_width", 0.005, 0.03, one, &HiddenJoint::backlash, false, true, false},
       {"saturation", "missing_share", 0.85, 0.93, one, &HiddenJoint::missing_limit, false, true, false},
       {"input_gain", "gain_error", 0.15, 0.5, one, &HiddenJoint::weakness, false, true, true},
       {"link_mass", "mass_error", 0.2, 0.8, one, &HiddenJoint::mass_error, false, true, true},
-      {"payload", "mass", 0.3, 1.0, [](const Joint& joint) { return joint.mass; }, &HiddenJoint::payload, false, true, true},
+      {"payload", "mass", 0.3, 1.0, [](const Joint& joint) { return joint.mass; }, &HiddenJoint::payload, false, true,
+       true},
       {"sensor_bias", "bias", 0.04, 0.15, one, &HiddenJoint::bias, false, true, true},
   };
   return list;
 }
 
 // The joints of a place, and its name.
-std::pair<std::string, std::vector<std::size_t>> draw_place(const RobotCase& robot, const Hidden& what, plants::Random& random) {
+std::pair<std::string, std::vector<std::size_t>> draw_place(const RobotCase& robot, const Hidden& what,
+                                                            plants::Random& random) {
   const std::size_t chosen = random.index(robot.joints.size());
   const double where = random.uniform(0, 1);
   if (!what.groups || where < 0.4) {
@@ -152,7 +155,8 @@ RobotCase draw_robot(plants::Random& random, const std::string& family, bool non
   if (random.chance(0.08)) {
     const std::size_t a = random.index(robot.joints.size() - 1);
     robot.swapped.emplace_back(a, a + 1);
-    robot.truth.push_back({{"effect", "columns_swapped"}, {"place", robot.joints[a].name}, {"parameter", ""}, {"value", 0}});
+    robot.truth.push_back(
+        {{"effect", "columns_swapped"}, {"place", robot.joints[a].name}, {"parameter", ""}, {"value", 0}});
     return robot;
   }
   const double count = random.uniform(0, 1);

@@ -39,8 +39,10 @@ int main(int argc, char** argv) {
       const auto folder = out / "cases" / name;
       write(folder / "robot.xml", blind_robots::robot_xml(robot, false));
       write(folder / "robot.toml", blind_robots::robot_setup(robot));
-      for (int r = 1; r <= recordings; ++r) write(folder / ("rec_" + std::to_string(r) + ".csv"), blind_robots::record(robot, random));
-      const nlohmann::ordered_json truth{{"family", family}, {"drive", robot.torque_driven ? "torque" : "position"}, {"hidden", robot.truth}};
+      for (int r = 1; r <= recordings; ++r)
+        write(folder / ("rec_" + std::to_string(r) + ".csv"), blind_robots::record(robot, random));
+      const nlohmann::ordered_json truth{
+          {"family", family}, {"drive", robot.torque_driven ? "torque" : "position"}, {"hidden", robot.truth}};
       write(out / "truth" / (std::string(name) + ".json"), truth.dump(1) + "\n");
     }
   } catch (const std::exception& error) {

@@ -31,7 +31,8 @@ struct Goal {
 
   double operator()(double t) const {
     double sum = middle;
-    for (std::size_t i = 0; i < 3; ++i) sum += amplitude[i] * std::sin(2 * std::numbers::pi * frequency[i] * t + phase[i]);
+    for (std::size_t i = 0; i < 3; ++i)
+      sum += amplitude[i] * std::sin(2 * std::numbers::pi * frequency[i] * t + phase[i]);
     return sum;
   }
 };
@@ -67,7 +68,8 @@ std::string record(const RobotCase& robot, plants::Random& random) {
   }
   const double noise = random.uniform(5e-5, 3e-4);  // [rad]
   std::string text = "t_s";
-  for (const Joint& joint : robot.joints) text += robot.torque_driven ? ",torque_" + joint.name + "_N_m" : ",goal_" + joint.name + "_rad";
+  for (const Joint& joint : robot.joints)
+    text += robot.torque_driven ? ",torque_" + joint.name + "_N_m" : ",goal_" + joint.name + "_rad";
   for (const Joint& joint : robot.joints) text += "," + joint.name + "_rad";
   text += "\n";
   const auto steps_per_row = static_cast<int>(std::lround(row_period / m->opt.timestep));
@@ -100,7 +102,8 @@ std::string record(const RobotCase& robot, plants::Random& random) {
     }
     if (row < 0) continue;
     text += plants::text(t, "%.4f");
-    for (std::size_t j = 0; j < n; ++j) text += "," + plants::text(robot.torque_driven ? told_torque[j] : goal[j], "%.7g");
+    for (std::size_t j = 0; j < n; ++j)
+      text += "," + plants::text(robot.torque_driven ? told_torque[j] : goal[j], "%.7g");
     for (std::size_t j = 0; j < n; ++j) text += "," + plants::text(reading[j], "%.7g");
     text += "\n";
   }

@@ -20,9 +20,9 @@ struct HiddenJoint {
 struct Joint {
   std::string name, group, parent;
   char axis = 'y';
-  double length = 0.2, mass = 1, offset = 0;       // [m] along -z of the link before; offset: sideways, of legs
-  double kp = 0, kd = 0, limit = 0;                // drive
-  double torque = 1, inertia = 0.1;                // what the link and those behind it weigh at most on the joint
+  double length = 0.2, mass = 1, offset = 0;  // [m] along -z of the link before; offset: sideways, of legs
+  double kp = 0, kd = 0, limit = 0;           // drive
+  double torque = 1, inertia = 0.1;           // what the link and those behind it weigh at most on the joint
   HiddenJoint hidden;
 };
 

@@ -27,10 +27,11 @@ std::string body(const RobotCase& robot, const Joint& joint, bool real) {
   const auto parent = std::ranges::find(robot.joints, joint.parent, &Joint::name);
   const double drop = parent == robot.joints.end() ? 0 : parent->length;
   const std::string axis = joint.axis == 'x' ? "1 0 0" : joint.axis == 'y' ? "0 1 0" : "0 0 1";
-  std::string text = "<body name=\"" + joint.name + "_link\" pos=\"" + numbers({0, parent == robot.joints.end() ? joint.offset : 0, -drop}) +
-                     "\">\n<inertial pos=\"" + numbers({0, 0, centre}) + "\" mass=\"" + numbers({total}) + "\" diaginertia=\"" +
-                     numbers({wide, wide, thin}) + "\"/>\n<joint name=\"" + joint.name + "\" axis=\"" + axis + "\" armature=\"" +
-                     numbers({file_armature + hidden.armature}) + "\"";
+  std::string text = "<body name=\"" + joint.name + "_link\" pos=\"" +
+                     numbers({0, parent == robot.joints.end() ? joint.offset : 0, -drop}) + "\">\n<inertial pos=\"" +
+                     numbers({0, 0, centre}) + "\" mass=\"" + numbers({total}) + "\" diaginertia=\"" +
+                     numbers({wide, wide, thin}) + "\"/>\n<joint name=\"" + joint.name + "\" axis=\"" + axis +
+                     "\" armature=\"" + numbers({file_armature + hidden.armature}) + "\"";
   if (real) {
     text += " damping=\"" + numbers({hidden.viscous}) + "\" frictionloss=\"" + numbers({hidden.coulomb}) +
             "\" solreffriction=\"0.002 1\" solimpfriction=\"0.98 0.99 0.001 0.5 2\"";
@@ -53,8 +54,9 @@ std::string robot_xml(const RobotCase& robot, bool real) {
 }
 
 std::string robot_setup(const RobotCase& robot) {
-  std::string text = "schema = \"surefoot.robot/1\"\ntime = \"t_s\"\ncalibrate = [\"gains\", \"bodies\"]\n[drive]\nkind = \"" +
-                     std::string(robot.torque_driven ? "torque" : "position") + "\"\n[groups]\n";
+  std::string text =
+      "schema = \"surefoot.robot/1\"\ntime = \"t_s\"\ncalibrate = [\"gains\", \"bodies\"]\n[drive]\nkind = \"" +
+      std::string(robot.torque_driven ? "torque" : "position") + "\"\n[groups]\n";
   std::vector<std::string> groups;
   for (const Joint& joint : robot.joints) {
     if (std::ranges::find(groups, joint.group) == groups.end()) groups.push_back(joint.group);
@@ -71,7 +73,8 @@ std::string robot_setup(const RobotCase& robot) {
     if (robot.torque_driven) {
       text += "torque = \"torque_" + joint.name + "_N_m\"\n";
     } else {
-      text += "goal = \"goal_" + joint.name + "_rad\"\nkp = " + numbers({joint.kp}) + "\nkd = " + numbers({joint.kd}) + "\nlimit = " + numbers({joint.limit}) + "\n";
+      text += "goal = \"goal_" + joint.name + "_rad\"\nkp = " + numbers({joint.kp}) + "\nkd = " + numbers({joint.kd}) +
+              "\nlimit = " + numbers({joint.limit}) + "\n";
     }
   }
   return text;

@@ -18,7 +18,9 @@ json read(const std::filesystem::path& file) {
 }
 
 // At the place itself, or at all joints by way of each group.
-bool same_place(const std::string& said, const std::string& truth) { return said == truth || (truth == "all" && said == "all joints"); }
+bool same_place(const std::string& said, const std::string& truth) {
+  return said == truth || (truth == "all" && said == "all joints");
+}
 
 struct Match {
   bool found = false, tied = false;
@@ -44,11 +46,13 @@ Match match(const json& truth, const json& diagnosis, std::vector<char>& used) {
     places += 1;
     result.found = true;
     const double value = one["parameters"][0]["value"], expected = truth["value"];
-    if (one["parameters"][0]["name"] == truth["parameter"]) result.error = std::abs(value - expected) / std::abs(expected);
+    if (one["parameters"][0]["name"] == truth["parameter"])
+      result.error = std::abs(value - expected) / std::abs(expected);
   }
   if (result.found) return result;
   for (const json& other : diagnosis["alternatives"]) {
-    for (const json& one : other["effects"]) result.tied = result.tied || (one["name"] == effect && same_place(one["attached_to"], place));
+    for (const json& one : other["effects"])
+      result.tied = result.tied || (one["name"] == effect && same_place(one["attached_to"], place));
   }
   return result;
 }
@@ -57,11 +61,14 @@ Match match(const json& truth, const json& diagnosis, std::vector<char>& used) {
 
 int main(int argc, char** argv) {
   if (argc != 3) {
-    std::fputs("usage: concealed_robots_score CASES RESULTS: the folder of concealed_robots, and of diagnoses by case\n", stderr);
+    std::fputs(
+        "usage: concealed_robots_score CASES RESULTS: the folder of concealed_robots, and of diagnoses by case\n",
+        stderr);
     return 2;
   }
   const std::filesystem::path cases = argv[1], results = argv[2];
-  std::size_t hidden = 0, found = 0, tied = 0, none = 0, false_alarms = 0, extra = 0, complete = 0, robots = 0, contradicted = 0;
+  std::size_t hidden = 0, found = 0, tied = 0, none = 0, false_alarms = 0, extra = 0, complete = 0, robots = 0,
+              contradicted = 0;
   std::vector<double> errors;
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(cases / "truth")) files.push_back(entry.path());
@@ -74,7 +81,8 @@ int main(int argc, char** argv) {
     }
     ++robots;
     std::vector<char> used(diagnosis["effects"].size(), 0);
-    std::string line = std::string(truth["family"]) + " " + std::string(truth["drive"]) + " " + std::string(diagnosis["verdict"]) + ":";
+    std::string line = std::string(truth["family"]) + " " + std::string(truth["drive"]) + " " +
+                       std::string(diagnosis["verdict"]) + ":";
     bool all = true;
     for (const json& one : truth["hidden"]) {
       const Match result = match(one, diagnosis, used);
@@ -84,8 +92,12 @@ int main(int argc, char** argv) {
       all = all && (result.found || result.tied);
       if (std::isfinite(result.error)) errors.push_back(result.error);
       char text[200];
-      std::snprintf(text, sizeof text, " %s@%s=%.3g %s(%.0f %%)", std::string(one["effect"]).c_str(), std::string(one["place"]).c_str(), double(one["value"]),
-                    result.found ? "found" : result.tied ? "tied" : "MISSED", 100 * result.error);
+      std::snprintf(text, sizeof text, " %s@%s=%.3g %s(%.0f %%)", std::string(one["effect"]).c_str(),
+                    std::string(one["place"]).c_str(), double(one["value"]),
+                    result.found  ? "found"
+                    : result.tied ? "tied"
+                                  : "MISSED",
+                    100 * result.error);
       line += text;
     }
     for (std::size_t i = 0; i < used.size(); ++i) {
@@ -93,7 +105,8 @@ int main(int argc, char** argv) {
       const json& one = diagnosis["effects"][i];
       ++extra;
       char text[200];
-      std::snprintf(text, sizeof text, " +%s@%s=%.3g", std::string(one["name"]).c_str(), std::string(one["attached_to"]).c_str(), double(one["parameters"][0]["value"]));
+      std::snprintf(text, sizeof text, " +%s@%s=%.3g", std::string(one["name"]).c_str(),
+                    std::string(one["attached_to"]).c_str(), double(one["parameters"][0]["value"]));
       line += text;
     }
     if (truth["hidden"].empty()) {
@@ -104,11 +117,14 @@ int main(int argc, char** argv) {
     }
     const json& ratio = diagnosis["noise_ratio"];
     contradicted += ratio.is_number() && double(ratio) > 1.5 && diagnosis["verdict"] != "unexplained" ? 1 : 0;
-    std::printf("%s %s (%.0f s, noise ratio %.2f)\n", file.stem().c_str(), line.c_str(), double(diagnosis["seconds"]), ratio.is_number() ? double(ratio) : NAN);
+    std::printf("%s %s (%.0f s, noise ratio %.2f)\n", file.stem().c_str(), line.c_str(), double(diagnosis["seconds"]),
+                ratio.is_number() ? double(ratio) : NAN);
   }
   std::sort(errors.begin(), errors.end());
-  std::printf("robots %zu; hidden %zu: found %zu, in a stated tie %zu; without fault and without extras %zu of %zu; extras %zu; "
-              "false alarms %zu of %zu; verdicts against the noise floor %zu; parameters off by %.1f %% in the median\n",
-              robots, hidden, found, tied, complete, robots - none, extra, false_alarms, none, contradicted,
-              errors.empty() ? NAN : 100 * errors[errors.size() / 2]);
+  std::printf(
+      "robots %zu; hidden %zu: found %zu, in a stated tie %zu; without fault and without extras %zu of %zu; extras "
+      "%zu; "
+      "false alarms %zu of %zu; verdicts against the noise floor %zu; parameters off by %.1f %% in the median\n",
+      robots, hidden, found, tied, complete, robots - none, extra, false_alarms, none, contradicted,
+      errors.empty() ? NAN : 100 * errors[errors.size() / 2]);
 }

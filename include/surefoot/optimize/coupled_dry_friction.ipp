@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "surefoot/diagnose/simulation/coupled_dry_friction.hpp"
+#include "surefoot/optimize/coupled_dry_friction.hpp"
 
-namespace surefoot::diagnosis {
+namespace surefoot {
 
 namespace detail {
 
-inline constexpr int friction_set_changes = 12;   // sets tried before coordinate descent: warm, one or two are enough
-inline constexpr int friction_sweeps = 2000;      // of coordinate descent at most; each lowers the energy
+inline constexpr int friction_set_changes = 12;  // sets tried before coordinate descent: warm, one or two are enough
+inline constexpr int friction_sweeps = 2000;     // of coordinate descent at most; each lowers the energy
 inline constexpr double friction_tolerance = 1e-13;  // of a velocity, relative to the largest
 
 // Velocities of the slipping joints from A_ss v_s = b_s - f_s sign_s by Cholesky, those of the others 0.
@@ -101,4 +101,4 @@ SUREFOOT_INLINE void solve_coupled_dry_friction(const Eigen::MatrixXd& mass, con
   for (Eigen::Index i = 0; i < n; ++i) work.sign[i] = friction[i] == 0 ? 1 : (v[i] > 0) - (v[i] < 0);
 }
 
-}  // namespace surefoot::diagnosis
+}  // namespace surefoot

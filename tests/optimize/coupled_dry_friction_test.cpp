@@ -1,4 +1,4 @@
-#include "surefoot/diagnose/simulation/coupled_dry_friction.hpp"
+#include "surefoot/optimize/coupled_dry_friction.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,8 +6,8 @@
 
 #include "surefoot/core/rng.hpp"
 
-using surefoot::diagnosis::CoupledDryFriction;
-using surefoot::diagnosis::solve_coupled_dry_friction;
+using surefoot::CoupledDryFriction;
+using surefoot::solve_coupled_dry_friction;
 
 namespace {
 
