@@ -45,7 +45,6 @@ LinearModel made_up(const Eigen::VectorXd& sizes, std::uint64_t seed) {
   model.prior = Eigen::VectorXd::Constant(terms, 5);
   model.smallest = Eigen::VectorXd::Zero(terms);
   model.cost = Eigen::VectorXd::Constant(terms, std::log(400.0) + 2 * std::log(static_cast<double>(terms)));
-  model.pinned.assign(static_cast<std::size_t>(terms), 0);
   model.acts_on.assign(static_cast<std::size_t>(terms), {0});
   add_up(model);
   return model;

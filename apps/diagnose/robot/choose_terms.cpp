@@ -33,7 +33,7 @@ Eigen::Index negligible_term(const LinearModel& model, const LinearFit& fit, con
 Best best_change(const LinearModel& model, const TermSet& set, const TermSet& allowed, bool add) {
   Best best;
   for (std::size_t t = 0; t < set.size(); ++t) {
-    const bool may = add ? set[t] == 0 && allowed[t] != 0 : set[t] != 0 && model.pinned[t] == 0;
+    const bool may = add ? set[t] == 0 && allowed[t] != 0 : set[t] != 0;
     if (!may) continue;
     const LinearFit fit = fit_linear(model, changed(set, static_cast<Eigen::Index>(t), add));
     if (add && is_negligible(model, fit, static_cast<Eigen::Index>(t))) continue;
@@ -113,7 +113,7 @@ std::vector<TermAlternative> alternatives_of(const LinearModel& model, const Ter
   std::vector<TermAlternative> result;
   const double now = fit_linear(model, set).criterion;
   for (std::size_t t = 0; t < set.size(); ++t) {
-    if (set[t] == 0 || model.pinned[t] != 0) continue;
+    if (set[t] == 0) continue;
     const TermSet without = changed(set, static_cast<Eigen::Index>(t), false);
     for (std::size_t other = 0; other < set.size(); ++other) {
       if (set[other] != 0 || allowed[other] == 0) continue;

@@ -9,7 +9,7 @@ namespace diagnose_robot {
 namespace {
 
 RobotPhysics physics_at(const Evidence& evidence, const Eigen::VectorXd& theta) {
-  return physics_of(evidence.terms, theta, evidence.robot.joints.size());
+  return physics_of(evidence.terms, theta, evidence.robot.nominal);
 }
 
 struct HeldOut {

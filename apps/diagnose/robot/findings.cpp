@@ -11,7 +11,7 @@ namespace {
 using diagnose_program::rounded;
 using surefoot::FittedValue;
 
-std::string sentence_of(const Evidence& evidence, const Term& term, double value, double error, bool known) {
+std::string sentence_of(const Evidence& evidence, const Term& term, double value, double error) {
   const PropertyInfo& info = info_of(term.property);
   const std::string unit = unit_of(evidence.robot, term), place = place_of(evidence.robot, term);
   const std::string size = rounded(value) + (unit == "1" ? "" : " " + unit) + " +- " + rounded(z95 * error, 2);
@@ -22,34 +22,7 @@ std::string sentence_of(const Evidence& evidence, const Term& term, double value
               .size() > 1) {
     return place + " differs from its group: " + info.of_group + ", by " + size;
   }
-  return std::string(info.of_group) + " of " + size + " at " + place + (known ? ", as the file has it" : "");
-}
-
-// Whether the size that the file has for this would do as well: the error of the joints rises by less than is
-// negligible.
-bool is_in_file(const Evidence& evidence, const SearchResult& found, Eigen::Index t) {
-  constexpr double negligible = 0.02;  // of the error, as for terms that held-out blocks do not want
-  const Term& term = evidence.terms[static_cast<std::size_t>(t)];
-  double nominal = 0;
-  for (const int j : term.joints) {
-    nominal +=
-        evidence.robot.nominal[static_cast<std::size_t>(j)][term.property] / static_cast<double>(term.joints.size());
-  }
-  if (nominal == 0 || term.group == single_joint) return false;
-  LinearModel as_in_file = found.linear;
-  as_in_file.low[t] = as_in_file.high[t] = nominal;
-  const Eigen::VectorXd with = fit_linear(found.linear, found.set).square,
-                        without = fit_linear(as_in_file, found.set).square;
-  double before = 0, after = 0, numerical = 0;
-  for (const int j : term.joints) {
-    before += with[j];
-    after += without[j];
-    if (evidence.numerical.size() > 0)
-      numerical += evidence.numerical[j] * evidence.numerical[j] * found.linear.whole[static_cast<std::size_t>(j)].rows;
-  }
-  constexpr double times_numerical = 2;
-  return std::sqrt(after) < (1 + negligible) * std::sqrt(before) ||
-         after - before < times_numerical * times_numerical * numerical;
+  return std::string(info.of_group) + " of " + size + " at " + place;
 }
 
 }  // namespace
@@ -74,26 +47,25 @@ void name_effects(const Evidence& evidence, const SearchResult& found, RobotDiag
     const auto at = static_cast<Eigen::Index>(t);
     const Term& term = evidence.terms[t];
     const PropertyInfo& info = info_of(term.property);
-    if (found.theta[at] == 0)
-      continue;  // what the file has and the robot has not; the table of the corrected model tells
-    const bool known = is_in_file(evidence, found, at);
-    FittedValue value{info.parameter, unit_of(evidence.robot, term), found.theta[at], found.theta[at] - z95 * error[at],
-                      found.theta[at] + z95 * error[at]};
+    const double value_now = found.theta[at] + (term.group == single_joint ? 0 : nominal_of(evidence.robot, term));
+    FittedValue value{info.parameter, unit_of(evidence.robot, term), value_now, value_now - z95 * error[at],
+                      value_now + z95 * error[at]};
     if (info.calibration) {
       value.name = std::string(info.parameter) + " at " + place_of(evidence.robot, term);
-      d.common.augmented_parameters.push_back({value, 0, value.value <= term.low || value.value >= term.high, false});
+      d.common.augmented_parameters.push_back(
+          {value, 0, found.theta[at] <= term.low || found.theta[at] >= term.high, false});
     }
     surefoot::FoundEffect effect;
     effect.name = info.effect;
     effect.attached_to = place_of(evidence.robot, term);
-    effect.sentence = sentence_of(evidence, term, found.theta[at], error[at], known);
+    effect.sentence = sentence_of(evidence, term, value_now, error[at]);
     effect.parameters = {value};
     effect.parameters.front().name = info.parameter;
     effect.evidence.gain = gain[at];
     effect.evidence.confidence = 1 / (1 + std::exp(-odds[at] / 2));
     effect.evidence.p_value = std::exp(-odds[at] / 2);
     effect.form = term.group == single_joint ? "joint" : term.group == all_joints ? "all" : "group";
-    (known ? d.common.known_effects : d.common.effects).push_back(effect);
+    d.common.effects.push_back(effect);
   }
 }
 

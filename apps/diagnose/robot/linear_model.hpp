@@ -24,7 +24,6 @@ struct LinearModel {
   Eigen::VectorXd prior;                  // standard deviation of the term before anything is seen
   Eigen::VectorXd smallest;               // size of the term below which nobody would correct a model
   Eigen::VectorXd cost;                   // of having the term, in -2 log of its odds
-  std::vector<char> pinned;               // by term: part of the model that was given; only its size may change
   std::vector<std::vector<int>> acts_on;  // by term: joints
 };
 

@@ -92,9 +92,9 @@ void set_priors(const Evidence& evidence, LinearModel& model) {
     const bool stated =
         info.calibration || term.property == Property::torque_gain || term.property == Property::sensor_bias;
     model.low[t] = term.low;
-    if (term.group == single_joint && info.low >= 0) {  // with its group's not below 0
-      model.low[t] = 0;
-      for (Eigen::Index other = 0; other < count; ++other) {
+    if (info.low >= 0) {  // with what the file and its group have not below 0
+      model.low[t] = -nominal_of(evidence.robot, term);
+      for (Eigen::Index other = 0; other < count && term.group == single_joint; ++other) {
         const Term& tied = evidence.terms[static_cast<std::size_t>(other)];
         if (tied.property != term.property || tied.group == single_joint) continue;
         if (std::ranges::find(tied.joints, term.joints.front()) != tied.joints.end())
@@ -103,16 +103,11 @@ void set_priors(const Evidence& evidence, LinearModel& model) {
     }
     model.high[t] = term.high;
     model.prior[t] = stated ? stated_prior * term.typical : prior_share * std::max(term.high, -term.low);
-    double in_file = 0;
-    for (const int j : term.joints)
-      in_file += std::abs(evidence.robot.nominal[static_cast<std::size_t>(j)][term.property]);
-    const bool pinned = in_file > 0 && term.group != single_joint;
-    model.pinned.push_back(pinned ? 1 : 0);
-    model.smallest[t] = in_file > 0 ? 0 : smallest_share * term.typical;
+    model.smallest[t] = smallest_share * term.typical;
     double independent = 0;
     for (const int j : term.joints) independent += model.independent[j];
     // Schwarz's log n for the parameter, and the choice among so many terms (extended BIC of Chen and Chen, 2008).
-    model.cost[t] = pinned ? 0 : std::log(independent) + 2 * std::log(static_cast<double>(count));
+    model.cost[t] = std::log(independent) + 2 * std::log(static_cast<double>(count));
     model.acts_on.push_back(term.joints);
   }
 }
@@ -222,7 +217,7 @@ void take_derivatives(const Evidence& evidence, const Eigen::VectorXd& theta, co
         Eigen::VectorXd moved = theta;
         for (const std::size_t t : groups[b])
           moved[static_cast<Eigen::Index>(t)] += step_of(evidence.terms[t], theta[static_cast<Eigen::Index>(t)]);
-        return errors_of(evidence, physics_of(evidence.terms, moved, joints));
+        return errors_of(evidence, physics_of(evidence.terms, moved, evidence.robot.nominal));
       },
       evidence.stop);
   for (std::size_t b = 0; b < groups.size(); ++b) {

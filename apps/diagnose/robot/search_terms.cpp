@@ -16,7 +16,7 @@ struct Point {
 };
 
 Eigen::MatrixXd errors_at(const Evidence& evidence, const Eigen::VectorXd& theta) {
-  return errors_of(evidence, physics_of(evidence.terms, theta, evidence.robot.joints.size()));
+  return errors_of(evidence, physics_of(evidence.terms, theta, evidence.robot.nominal));
 }
 
 // What steps must lower: as the criterion of the linear model, without the cost of the terms.
@@ -37,12 +37,6 @@ double misfit(const Evidence& evidence, const LinearModel& model, const Point& p
     sum += share * share + (point.set[static_cast<std::size_t>(t)] != 0 ? model.cost[t] : 0);
   }
   return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
-}
-
-TermSet nonzero(const Eigen::VectorXd& theta) {
-  TermSet set(static_cast<std::size_t>(theta.size()), 0);
-  for (Eigen::Index t = 0; t < theta.size(); ++t) set[static_cast<std::size_t>(t)] = theta[t] != 0 ? 1 : 0;
-  return set;
 }
 
 TermSet either(TermSet a, const TermSet& b) {
@@ -105,21 +99,12 @@ void trace(const Evidence& evidence, const Point& point) {
   std::fprintf(stderr, "\n");
 }
 
-// The rigid body, or what the file says, whichever is nearer.
+// The file as it stands.
 Point start(const Evidence& evidence) {
-  Point best;
-  double least = std::numeric_limits<double>::infinity();
-  for (const RobotPhysics& physics : {RobotPhysics(evidence.robot.joints.size()), evidence.robot.nominal}) {
-    Point point;
-    point.theta = theta_of(evidence.terms, physics);
-    point.set = nonzero(theta_of(evidence.terms, evidence.robot.nominal));
-    point.errors = errors_at(evidence, point.theta);
-    const double size = rms_by_joint(evidence, point.errors).squaredNorm();
-    if (best.theta.size() > 0 && !(size < least)) continue;
-    best = std::move(point);
-    least = size;
-  }
-  return best;
+  const auto terms = static_cast<Eigen::Index>(evidence.terms.size());
+  Point point{Eigen::VectorXd::Zero(terms), TermSet(evidence.terms.size(), 0), {}};
+  point.errors = errors_at(evidence, point.theta);
+  return point;
 }
 
 // Takes the term away that held-out blocks want least, if they do not want it, or if it takes away no more than
@@ -130,7 +115,7 @@ bool drop_one(const Evidence& evidence, const LinearModel& model, const SearchCr
   Eigen::Index worst = -1;
   double least = 1;
   for (Eigen::Index t = 0; t < gain.share.size(); ++t) {
-    if (point.set[static_cast<std::size_t>(t)] == 0 || model.pinned[static_cast<std::size_t>(t)] != 0) continue;
+    if (point.set[static_cast<std::size_t>(t)] == 0) continue;
     const Term& term = evidence.terms[static_cast<std::size_t>(t)];
     double numerical = 0;
     for (const int j : term.joints) {

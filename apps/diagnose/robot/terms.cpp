@@ -1,7 +1,6 @@
 #include "terms.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace diagnose_robot {
@@ -80,11 +79,11 @@ std::vector<Term> all_terms(const Robot& robot, const std::vector<JointScale>& s
   return terms;
 }
 
-RobotPhysics physics_of(const std::vector<Term>& terms, const Eigen::VectorXd& theta, std::size_t joints) {
-  RobotPhysics physics(joints);
+RobotPhysics physics_of(const std::vector<Term>& terms, const Eigen::VectorXd& theta, const RobotPhysics& nominal) {
+  RobotPhysics physics = nominal;
   for (std::size_t t = 0; t < terms.size(); ++t) {
-    for (const int j : terms[t].joints)
-      physics[static_cast<std::size_t>(j)][terms[t].property] += theta[static_cast<Eigen::Index>(t)];
+    const double change = theta[static_cast<Eigen::Index>(t)];
+    for (const int j : terms[t].joints) physics[static_cast<std::size_t>(j)][terms[t].property] += change;
   }
   for (JointPhysics& joint : physics) {
     for (const PropertyInfo& info : property_table()) {
@@ -96,22 +95,10 @@ RobotPhysics physics_of(const std::vector<Term>& terms, const Eigen::VectorXd& t
   return physics;
 }
 
-Eigen::VectorXd theta_of(const std::vector<Term>& terms, const RobotPhysics& physics) {
-  Eigen::VectorXd theta = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(terms.size()));
-  RobotPhysics placed(physics.size());
-  for (std::size_t t = 0; t < terms.size(); ++t) {
-    const Term& term = terms[t];
-    if (term.group == all_joints) continue;
-    double mean = 0;
-    for (const int j : term.joints) {
-      const auto at = static_cast<std::size_t>(j);
-      mean += (physics[at][term.property] - placed[at][term.property]) / static_cast<double>(term.joints.size());
-    }
-    if (std::abs(mean) < 1e-12 * term.typical) continue;
-    theta[static_cast<Eigen::Index>(t)] = mean;
-    for (const int j : term.joints) placed[static_cast<std::size_t>(j)][term.property] += mean;
-  }
-  return theta;
+double nominal_of(const Robot& robot, const Term& term) {
+  double sum = 0;
+  for (const int j : term.joints) sum += robot.nominal[static_cast<std::size_t>(j)][term.property];
+  return sum / static_cast<double>(term.joints.size());
 }
 
 std::string place_of(const Robot& robot, const Term& term) {

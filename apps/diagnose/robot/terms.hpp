@@ -22,11 +22,11 @@ struct Term {
 /// Groups first, then what all joints may have alike, then single joints.
 std::vector<Term> all_terms(const Robot& robot, const std::vector<JointScale>& scales);
 
-/// Sums of terms by joint, each property within what is possible.
-RobotPhysics physics_of(const std::vector<Term>& terms, const Eigen::VectorXd& theta, std::size_t joints);
+/// What the file states and the sums of terms, by joint, each property within what is possible.
+RobotPhysics physics_of(const std::vector<Term>& terms, const Eigen::VectorXd& theta, const RobotPhysics& nominal);
 
-/// Sizes of the group terms that come nearest to what the joints have, and the rest in the terms of single joints.
-Eigen::VectorXd theta_of(const std::vector<Term>& terms, const RobotPhysics& physics);
+/// Mean over the joints of the term of what the file states.
+double nominal_of(const Robot& robot, const Term& term);
 
 /// "hip", the name of the joint, or "all joints".
 std::string place_of(const Robot& robot, const Term& term);
