@@ -15,6 +15,9 @@ constexpr const char* help_example = R"(Example:
 Says what physics the model leaves out of what the recordings show, or that nothing is missing. Writes into the folder
 of --out: report.html (read this), diagnosis.json, augmented.toml, augmented.hpp, pictures, and residual.forest if
 nothing explains what is missing but a forest on the residuals helps.
+A robot in MuJoCo's format, told which columns belong to which joints; augmented.xml is the corrected model:
+  surefoot-diagnose setup robot.xml log.csv > robot.toml
+  surefoot-diagnose --model robot.xml --setup robot.toml --out diagnosis log.csv
 Exit codes: 0 a verdict was reached; 2 wrong options or files; 130 stopped by Ctrl-C, what was known by then is kept.)";
 
 }  // namespace
@@ -24,7 +27,10 @@ std::optional<CommandLine> parse_command_line(int argc, const char* const* argv,
   CLI::App program{"Finds, names and models the physics that a simulator leaves out", "surefoot-diagnose"};
   program.footer(help_example);
   program.set_version_flag("--version", example::version_text(program.get_name()));
-  if (with_model) program.add_option("--model", line.model, "model file with the equations (TOML)")->required();
+  if (with_model) {
+    program.add_option("--model", line.model, "model file with the equations (TOML), or a robot (MJCF or URDF)")->required();
+    program.add_option("--setup", line.setup, "setup of a robot (TOML); `surefoot-diagnose setup ROBOT LOG` prints a first one");
+  }
   program.add_option("--out", line.out, "folder for the results, made if needed")->required();
   program.add_option("--test", line.test, "a recording kept for the test alone; may be given several times")
       ->allow_extra_args(false);

@@ -12,6 +12,7 @@ namespace diagnose_program {
 
 struct CommandLine {
   std::filesystem::path model;  // empty for a simulator in C++
+  std::filesystem::path setup;  // of a robot: joints, columns, drives
   std::filesystem::path out;
   std::vector<std::filesystem::path> recordings;
   std::vector<std::string> test;  // recordings kept for the test

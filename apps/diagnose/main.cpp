@@ -1,7 +1,12 @@
 // surefoot-diagnose: says what physics a model leaves out of what recordings show.
 // Exit codes: 0 a verdict was reached, 1 a defect of this program, 2 wrong options or files, 130 stopped by Ctrl-C.
+#include <iostream>
+#include <string_view>
+
 #include "equations.hpp"
+#include "robot/run_robot.hpp"
 #include "run.hpp"
+#include "surefoot/core/error.hpp"
 
 namespace {
 
@@ -13,6 +18,7 @@ int diagnose_model(const S& simulator, const diagnose_program::Layout& layout,
 
 int diagnose_model_file(const diagnose_program::CommandLine& line) {
   using namespace diagnose_program;
+  if (diagnose_robot::is_robot_model(line.model)) return diagnose_robot::run_robot(line);
   const ModelFile model = read_model_file(line.model);
   const Layout layout = layout_of(model);
   return layout.ode ? diagnose_model(OdeModel(model), layout, line, model)
@@ -21,4 +27,14 @@ int diagnose_model_file(const diagnose_program::CommandLine& line) {
 
 }  // namespace
 
-int main(int argc, char** argv) { return diagnose_program::guarded(argc, argv, true, diagnose_model_file); }
+int main(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "setup") {
+    try {
+      return diagnose_robot::run_setup(argc, argv);
+    } catch (const surefoot::Error& error) {
+      std::cerr << "surefoot-diagnose: " << error.what() << '\n';
+      return diagnose_program::exit_wrong_input;
+    }
+  }
+  return diagnose_program::guarded(argc, argv, true, diagnose_model_file);
+}

@@ -5,5 +5,6 @@
 #include "surefoot/optimize/cma_es.hpp"
 #include "surefoot/optimize/cma_es_core.hpp"
 #include "surefoot/optimize/cma_es_serialize.hpp"
+#include "surefoot/optimize/coupled_dry_friction.hpp"
 #include "surefoot/optimize/least_squares.hpp"
 #include "surefoot/optimize/search_space.hpp"

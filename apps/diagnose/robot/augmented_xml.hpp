@@ -1,0 +1,31 @@
+// The corrected model: MJCF with what was found in it, a C++ header for what MJCF cannot say, and a replay of both.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "robot_diagnosis.hpp"
+#include "robot_log.hpp"
+#include "robot_model.hpp"
+#include "simulate_robot.hpp"
+
+namespace diagnose_robot {
+
+/// Steps of MuJoCo, which are of first order, for one of ours.
+inline constexpr double steps_of_ours = 8;
+
+struct AugmentedModel {
+  std::string xml, header;
+  std::vector<AugmentedEntry> table;
+};
+
+/// `step`: of the model [s]. `folder`: of the model file. Throws surefoot::DiagnoseError if MuJoCo cannot write the
+/// model.
+AugmentedModel augmented_model(const Robot& robot, const RobotPhysics& physics, double step,
+                               const std::filesystem::path& folder);
+
+/// Angles from MuJoCo's own step over the recording: row x joint. Contacts are switched off.
+Eigen::MatrixXd replay(const Robot& robot, const AugmentedModel& augmented, const RobotPhysics& physics,
+                       const RobotRecording& recording, const StartState& start);
+
+}  // namespace diagnose_robot

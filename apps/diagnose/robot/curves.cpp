@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose_robot.hpp"
+#include "findings.hpp"
+#include "simulate_robot.hpp"
+#include "surefoot/core/rng.hpp"
+#include "torque_residual.hpp"
+
+namespace diagnose_robot {
+namespace {
+
+TorquePicture torque_picture(const Evidence& evidence, Eigen::Index joint, const RobotPhysics& physics) {
+  constexpr Eigen::Index bins = 41;
+  TorquePicture picture;
+  const RobotJoint& at = evidence.robot.joints[static_cast<std::size_t>(joint)];
+  picture.joint = at.setup.name;
+  picture.unit = at.model.slides ? "N" : "N m";
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(bins, 3);
+  double fastest = 1e-9;
+  for (const Motion& motion : evidence.motions) fastest = std::max(fastest, motion.v.col(joint).cwiseAbs().maxCoeff());
+  for (const Motion& motion : evidence.motions) {
+    const Eigen::MatrixXd rigid = torque_residual(evidence.robot, motion, RobotPhysics(physics.size()));
+    const Eigen::MatrixXd after = torque_residual(evidence.robot, motion, physics);
+    for (Eigen::Index k = 0; k < rigid.rows(); ++k) {
+      if (!std::isfinite(rigid(k, joint)) || !std::isfinite(after(k, joint))) continue;
+      const auto bin = static_cast<Eigen::Index>((motion.v(k, joint) / fastest + 1) / 2 * (bins - 1e-6));
+      sum.row(bin) += Eigen::RowVector3d(1, rigid(k, joint), after(k, joint));
+    }
+  }
+  picture.speed = Eigen::VectorXd::LinSpaced(bins, -fastest, fastest);
+  picture.rigid = (sum.col(0).array() > 0).select(sum.col(1).array() / sum.col(0).array().max(1), std::nan(""));
+  picture.after = (sum.col(0).array() > 0).select(sum.col(2).array() / sum.col(0).array().max(1), std::nan(""));
+  return picture;
+}
+
+}  // namespace
+
+void draw_worst(const Evidence& evidence, RobotDiagnosis& d) {
+  constexpr std::size_t most = 4;  // joints that are drawn
+  std::vector<std::size_t> by_error(d.joints.size());
+  for (std::size_t j = 0; j < by_error.size(); ++j) by_error[j] = j;
+  std::ranges::sort(by_error, [&](std::size_t a, std::size_t b) {
+    const auto size = [&](std::size_t j) {
+      return d.torque_driven ? d.joints[j].after / std::max(1e-9, d.joints[j].torque) : d.joints[j].after;
+    };
+    return size(a) > size(b);
+  });
+  by_error.resize(std::min(most, by_error.size()));
+  for (const std::size_t j : by_error)
+    d.torques.push_back(torque_picture(evidence, static_cast<Eigen::Index>(j), d.physics));
+  const RobotRecording& recording = evidence.recordings.front();
+  const Motion& motion = evidence.motions.front();
+  const Eigen::MatrixXd nominal =
+      d.torque_driven ? torque_residual(evidence.robot, motion, RobotPhysics(d.physics.size()))
+                      : simulate_robot(evidence.robot, recording, start_of(motion), evidence.robot.nominal);
+  const Eigen::MatrixXd after = d.torque_driven
+                                    ? torque_residual(evidence.robot, motion, d.physics)
+                                    : simulate_robot(evidence.robot, recording, start_of(motion), d.physics);
+  for (const std::size_t j : by_error) {
+    const auto c = static_cast<Eigen::Index>(j);
+    d.curves.push_back({d.joints[j].joint, recording.time,
+                        d.torque_driven ? Eigen::VectorXd() : Eigen::VectorXd(recording.angle.col(c)), nominal.col(c),
+                        after.col(c)});
+  }
+}
+
+double noise_of(const Eigen::Ref<const Eigen::VectorXd>& readings) {
+  constexpr double gain = 70;           // sum of squares of 1, -4, 6, -4, 1
+  constexpr double of_median = 0.6745;  // median of |x| of a normal distribution
+  std::vector<double> differences;
+  double square = 0;
+  for (Eigen::Index k = 4; k < readings.size(); ++k) {
+    const double d = readings[k] - 4 * readings[k - 1] + 6 * readings[k - 2] - 4 * readings[k - 3] + readings[k - 4];
+    differences.push_back(std::abs(d));
+    square += d * d;
+  }
+  if (differences.empty()) return 0;
+  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::ranges::nth_element(differences, middle);
+  const double robust = *middle / of_median;
+  const double plain = std::sqrt(square / static_cast<double>(differences.size()));
+  return (robust > 0 ? robust : plain) / std::sqrt(gain);  // readings that mostly stay the same have a median of 0
+}
+
+Eigen::VectorXd noise_by_joint(const Evidence& evidence, const RobotPhysics& physics, std::uint64_t seed) {
+  const auto joints = static_cast<Eigen::Index>(evidence.robot.joints.size());
+  Eigen::VectorXd square = Eigen::VectorXd::Zero(joints);
+  surefoot::Rng rng(seed);
+  for (std::size_t r = 0; r < evidence.recordings.size(); ++r) {
+    RobotRecording noisy = evidence.recordings[r];
+    Eigen::VectorXd angle(joints), torque = Eigen::VectorXd::Zero(joints);
+    for (Eigen::Index j = 0; j < joints; ++j) {
+      angle[j] = noise_of(noisy.angle.col(j));
+      if (is_torque_driven(evidence)) torque[j] = noise_of(noisy.torque.col(j));
+    }
+    Eigen::VectorXd one = angle.cwiseAbs2();
+    if (is_torque_driven(evidence)) {
+      for (Eigen::Index j = 0; j < joints; ++j) {
+        for (Eigen::Index k = 0; k < noisy.time.size(); ++k) {
+          noisy.angle(k, j) += angle[j] * rng.normal();
+          noisy.torque(k, j) += torque[j] * rng.normal();
+        }
+      }
+      const Eigen::MatrixXd change = torque_residual(evidence.robot, smooth(noisy), physics) -
+                                     torque_residual(evidence.robot, evidence.motions[r], physics);
+      for (Eigen::Index j = 0; j < joints; ++j) {
+        double sum = 0, rows = 0;
+        for (const double x : change.col(j)) {
+          if (!std::isfinite(x)) continue;
+          sum += x * x;
+          rows += 1;
+        }
+        one[j] = sum / std::max(1.0, rows);
+      }
+    }
+    square += one / static_cast<double>(evidence.recordings.size());
+  }
+  return square.cwiseSqrt();
+}
+
+}  // namespace diagnose_robot

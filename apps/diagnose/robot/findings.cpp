@@ -1,0 +1,166 @@
+#include "findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "../wording.hpp"
+
+namespace diagnose_robot {
+namespace {
+
+using diagnose_program::rounded;
+using surefoot::FittedValue;
+
+std::string sentence_of(const Evidence& evidence, const Term& term, double value, double error) {
+  const PropertyInfo& info = info_of(term.property);
+  const std::string unit = unit_of(evidence.robot, term), place = place_of(evidence.robot, term);
+  const std::string size = rounded(value) + (unit == "1" ? "" : " " + unit) + " +- " + rounded(z95 * error, 2);
+  if (term.group == single_joint &&
+      evidence.robot
+              .groups[static_cast<std::size_t>(
+                  evidence.robot.joints[static_cast<std::size_t>(term.joints.front())].group)]
+              .size() > 1) {
+    return place + " differs from its group: " + info.of_group + ", by " + size;
+  }
+  return std::string(info.of_group) + " of " + size + " at " + place;
+}
+
+}  // namespace
+
+double overall(const Evidence& evidence, const Eigen::VectorXd& rms) {
+  double sum = 0, joints = 0;
+  for (Eigen::Index j = 0; j < rms.size(); ++j) {
+    if (evidence.silent[static_cast<std::size_t>(j)] != 0) continue;
+    const double unit = is_torque_driven(evidence) ? evidence.scales[static_cast<std::size_t>(j)].reading : 1;
+    sum += rms[j] * rms[j] / (unit * unit);
+    joints += 1;
+  }
+  return std::sqrt(sum / std::max(1.0, joints));
+}
+
+void name_effects(const Evidence& evidence, const SearchResult& found, RobotDiagnosis& d) {
+  const Eigen::VectorXd error = standard_errors(found.linear, found.set),
+                        odds = evidence_of_terms(found.linear, found.set);
+  const Eigen::VectorXd gain = held_out_gain(found.linear, found.set).share;
+  for (std::size_t t = 0; t < found.set.size(); ++t) {
+    if (found.set[t] == 0) continue;
+    const auto at = static_cast<Eigen::Index>(t);
+    const Term& term = evidence.terms[t];
+    const PropertyInfo& info = info_of(term.property);
+    const double value_now = found.theta[at] + (term.group == single_joint ? 0 : nominal_of(evidence.robot, term));
+    FittedValue value{info.parameter, unit_of(evidence.robot, term), value_now, value_now - z95 * error[at],
+                      value_now + z95 * error[at]};
+    if (info.calibration) {
+      value.name = std::string(info.parameter) + " at " + place_of(evidence.robot, term);
+      d.common.augmented_parameters.push_back(
+          {value, 0, found.theta[at] <= term.low || found.theta[at] >= term.high, false});
+    }
+    surefoot::FoundEffect effect;
+    effect.name = info.effect;
+    effect.attached_to = place_of(evidence.robot, term);
+    effect.sentence = sentence_of(evidence, term, value_now, error[at]);
+    effect.parameters = {value};
+    effect.parameters.front().name = info.parameter;
+    effect.evidence.gain = gain[at];
+    effect.evidence.confidence = 1 / (1 + std::exp(-odds[at] / 2));
+    effect.evidence.p_value = std::exp(-odds[at] / 2);
+    effect.form = term.group == single_joint ? "joint" : term.group == all_joints ? "all" : "group";
+    d.common.effects.push_back(effect);
+  }
+}
+
+void name_alternatives(const Evidence& evidence, const SearchResult& found, RobotDiagnosis& d) {
+  const TermSet all(evidence.terms.size(), 1);
+  double others = 0;
+  for (const TermAlternative& one : alternatives_of(found.linear, found.set, all)) {
+    const Term& term = evidence.terms[static_cast<std::size_t>(one.other)];
+    const Term& instead = evidence.terms[static_cast<std::size_t>(one.instead)];
+    surefoot::Alternative alternative;
+    alternative.effects = {{info_of(term.property).effect, place_of(evidence.robot, term)}};
+    alternative.indistinguishable = true;
+    alternative.fitted_rmse = d.after;
+    alternative.probability = std::exp(-std::max(0.0, one.criterion) / 2);
+    others += alternative.probability;
+    d.common.alternatives.push_back(alternative);
+    d.common.remarks.push_back({"", std::string(info_of(instead.property).effect) + " at " +
+                                        place_of(evidence.robot, instead) + " cannot be told apart from " +
+                                        info_of(term.property).effect + " at " + place_of(evidence.robot, term)});
+  }
+  d.common.probability = 1 / (1 + others);
+  for (surefoot::Alternative& one : d.common.alternatives) one.probability /= 1 + others;
+}
+
+void compare_with_groups(const Evidence& evidence, const SearchResult& found, RobotDiagnosis& d) {
+  for (std::size_t s = 0; s < evidence.terms.size(); ++s) {
+    const Term& single = evidence.terms[s];
+    if (single.group != single_joint) continue;
+    for (std::size_t t = 0; t < evidence.terms.size(); ++t) {
+      const Term& tied = evidence.terms[t];
+      if (tied.group < 0 || tied.property != single.property || tied.joints.size() < 2 || found.set[t] == 0) continue;
+      if (std::ranges::find(tied.joints, single.joints.front()) == tied.joints.end()) continue;
+      TermSet set = found.set;
+      set[s] = 1;
+      const auto at = static_cast<Eigen::Index>(s);
+      const PropertyInfo& info = info_of(single.property);
+      d.differences.push_back(
+          {place_of(evidence.robot, single), place_of(evidence.robot, tied), info.effect, info.parameter,
+           unit_of(evidence.robot, single), found.theta[at] + fit_linear(found.linear, set).change[at],
+           standard_errors(found.linear, set)[at], found.theta[static_cast<Eigen::Index>(t)], found.set[s] != 0});
+    }
+  }
+}
+
+void share_errors(const Evidence& evidence, const SearchResult& found, RobotDiagnosis& d) {
+  for (std::size_t t = 0; t < found.set.size(); ++t) {
+    const std::string name = info_of(evidence.terms[t].property).effect;
+    if (found.set[t] != 0 && std::ranges::find(d.effect_columns, name) == d.effect_columns.end())
+      d.effect_columns.push_back(name);
+  }
+  const Eigen::VectorXd with = fit_linear(found.linear, found.set).square;
+  d.shares.resize(with.size(), static_cast<Eigen::Index>(d.effect_columns.size()));
+  for (std::size_t c = 0; c < d.effect_columns.size(); ++c) {
+    TermSet set = found.set;
+    for (std::size_t t = 0; t < set.size(); ++t) {
+      if (info_of(evidence.terms[t].property).effect == d.effect_columns[c]) set[t] = 0;
+    }
+    const Eigen::VectorXd without = fit_linear(found.linear, set).square;
+    d.shares.col(static_cast<Eigen::Index>(c)) = (1 - (with.array() / without.array().max(1e-300)).sqrt()).max(0);
+  }
+}
+
+void name_sign_faults(const Evidence& evidence, RobotDiagnosis& d) {
+  for (std::size_t j = 0; j < d.physics.size(); ++j) {
+    if (!(d.physics[j][Property::reading_scale] < -1)) continue;
+    const JointSetup& joint = evidence.robot.joints[j].setup;
+    surefoot::LogFault fault;
+    fault.kind = "sign_flipped";
+    fault.channel = joint.torque.name;
+    fault.size = 1 + d.physics[j][Property::reading_scale];
+    fault.unit = "1";
+    fault.sentence = joint.torque.name + " has the other sign than the motion of " + joint.name;
+    fault.cure = "write torque = { column = \"" + joint.torque.name + "\", factor = -1 } in the setup";
+    d.common.log_faults.push_back(fault);
+  }
+}
+
+void conclude(const Evidence& evidence, RobotDiagnosis& d) {
+  std::size_t calibrated = 0;
+  for (const auto& effect : d.common.effects) {
+    for (const PropertyInfo& info : property_table())
+      calibrated +=
+          effect.name == info.effect && info.calibration && effect.parameters.front().name == info.parameter ? 1 : 0;
+  }
+  const std::size_t effects = d.common.effects.size() - calibrated;
+  d.common.verdict = verdict_of(effects, calibrated, d.held_out, d.noise, d.common.complete);
+  std::string sentence;
+  for (const auto& effect : d.common.effects) sentence += (sentence.empty() ? "" : "; ") + effect.sentence;
+  const std::string unit = d.torque_driven ? " of the drives' torque" : " rad";
+  const std::string figures =
+      "the error on held-out " +
+      std::string(d.common.held_out == d.common.fit && evidence.recordings.size() == 1 ? "blocks" : "recordings") +
+      " is " + rounded(d.held_out) + unit + " instead of " + rounded(d.common.held_out_before) +
+      " of the file as it stands";
+  d.common.sentence = (sentence.empty() ? "nothing is missing that these recordings show" : sentence) + "; " + figures;
+}
+
+}  // namespace diagnose_robot

@@ -1,0 +1,228 @@
+#include "linear_model.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace diagnose_robot {
+namespace {
+
+constexpr double fewest_independent = 4;   // errors of a joint, however slowly they change
+constexpr double smallest_square = 1e-24;  // errors of nothing have no logarithm
+constexpr int bound_changes = 60;          // of the active set
+
+// Sums of the terms `of` alone, with or without a block.
+Sums part(const LinearModel& model, std::size_t joint, const std::vector<Eigen::Index>& of, int without_block) {
+  const Sums& whole = model.whole[joint];
+  Sums sums{whole.gram(of, of), whole.slope(of), whole.square, whole.rows};
+  if (without_block < 0) return sums;
+  const Sums& block = model.sums[joint][static_cast<std::size_t>(without_block)];
+  sums.gram -= block.gram(of, of);
+  sums.slope -= block.slope(of);
+  sums.square -= block.square;
+  sums.rows -= block.rows;
+  return sums;
+}
+
+// Mean square errors of pools, by joint: those of their joints by the count of independent errors.
+Eigen::VectorXd pooled(const LinearModel& model, const std::vector<Sums>& joints, const Eigen::VectorXd& square) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(square.size()), count = sum, result = sum;
+  for (Eigen::Index j = 0; j < square.size(); ++j) {
+    const int p = model.pool[static_cast<std::size_t>(j)];
+    const double rows = std::max(1.0, joints[static_cast<std::size_t>(j)].rows);
+    sum[p] += model.independent[j] * square[j] / rows;
+    count[p] += model.independent[j];
+  }
+  for (Eigen::Index j = 0; j < square.size(); ++j) {
+    const int p = model.pool[static_cast<std::size_t>(j)];
+    result[j] = std::max(smallest_square, sum[p] / count[p]);
+  }
+  return result;
+}
+
+// Errors of joints, weighted by their independent count over their size, and the prior.
+void normal_equations(const LinearModel& model, const std::vector<Sums>& joints, const std::vector<Eigen::Index>& of,
+                      const Eigen::VectorXd& square, Eigen::MatrixXd& q, Eigen::VectorXd& c) {
+  const Eigen::VectorXd size = pooled(model, joints, square);
+  const auto terms = static_cast<Eigen::Index>(of.size());
+  q = Eigen::MatrixXd::Zero(terms, terms);
+  c = Eigen::VectorXd::Zero(terms);
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const auto at = static_cast<Eigen::Index>(j);
+    const double weight = model.independent[at] / (size[at] * std::max(1.0, joints[j].rows));
+    q += weight * joints[j].gram;
+    c += weight * joints[j].slope;
+  }
+  for (Eigen::Index i = 0; i < terms; ++i) {
+    const Eigen::Index t = of[static_cast<std::size_t>(i)];
+    const double precision = 1 / (model.prior[t] * model.prior[t]);
+    q(i, i) += precision;
+    c[i] += precision * model.theta[t];
+  }
+}
+
+std::vector<Eigen::Index> members(const TermSet& set) {
+  std::vector<Eigen::Index> result;
+  for (std::size_t t = 0; t < set.size(); ++t) {
+    if (set[t] != 0) result.push_back(static_cast<Eigen::Index>(t));
+  }
+  return result;
+}
+
+}  // namespace
+
+double square_after(const Sums& sums, const Eigen::VectorXd& change) {
+  return sums.square + 2 * sums.slope.dot(change) + change.dot(sums.gram * change);
+}
+
+Eigen::VectorXd bounded_minimum(const Eigen::MatrixXd& q, const Eigen::VectorXd& c, const Eigen::VectorXd& low,
+                                const Eigen::VectorXd& high) {
+  const Eigen::Index n = c.size();
+  const Eigen::VectorXd scale = q.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * q * scale.asDiagonal();
+  std::vector<int> side(static_cast<std::size_t>(n), 0);  // at its low or high bound, or free
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+  for (int change = 0; change < bound_changes; ++change) {
+    std::vector<Eigen::Index> free;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const int s = side[static_cast<std::size_t>(i)];
+      if (s == 0) free.push_back(i);
+      x[i] = s < 0 ? low[i] : s > 0 ? high[i] : 0;
+    }
+    const Eigen::VectorXd gradient = c + q * x;
+    if (!free.empty()) {
+      const Eigen::VectorXd step = scaled(free, free).ldlt().solve(-(scale.cwiseProduct(gradient))(free));
+      for (std::size_t i = 0; i < free.size(); ++i) x[free[i]] = scale[free[i]] * step[static_cast<Eigen::Index>(i)];
+    }
+    Eigen::Index worst = -1;
+    double beyond = 0;
+    for (const Eigen::Index i : free) {
+      const double over = std::max(low[i] - x[i], x[i] - high[i]) / scale[i];
+      if (over > beyond) {
+        beyond = over;
+        worst = i;
+      }
+    }
+    if (worst >= 0) {
+      side[static_cast<std::size_t>(worst)] = x[worst] < low[worst] ? -1 : 1;
+      continue;
+    }
+    const Eigen::VectorXd end = c + q * x;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double inward = -end[i] * side[static_cast<std::size_t>(i)] * scale[i];
+      if (side[static_cast<std::size_t>(i)] != 0 && -inward > 1e-9 && -inward > beyond) {
+        beyond = -inward;
+        worst = i;
+      }
+    }
+    if (worst < 0) break;
+    side[static_cast<std::size_t>(worst)] = 0;
+  }
+  return x.cwiseMax(low).cwiseMin(high);
+}
+
+void add_up(LinearModel& model) {
+  model.whole.clear();
+  for (const std::vector<Sums>& blocks : model.sums) {
+    Sums sum = blocks.front();
+    for (std::size_t b = 1; b < blocks.size(); ++b) {
+      sum.gram += blocks[b].gram;
+      sum.slope += blocks[b].slope;
+      sum.square += blocks[b].square;
+      sum.rows += blocks[b].rows;
+    }
+    model.whole.push_back(std::move(sum));
+  }
+}
+
+LinearFit fit_linear(const LinearModel& model, const TermSet& set, int without_block) {
+  const auto joints = model.sums.size();
+  // Terms that can change: those of the set, and others that are not 0 yet.
+  std::vector<Eigen::Index> of, in;  // in: places in `of` of the set's
+  for (std::size_t t = 0; t < set.size(); ++t) {
+    if (set[t] != 0) in.push_back(static_cast<Eigen::Index>(of.size()));
+    if (set[t] != 0 || model.theta[static_cast<Eigen::Index>(t)] != 0) of.push_back(static_cast<Eigen::Index>(t));
+  }
+  std::vector<Sums> by_joint;
+  LinearFit fit;
+  fit.square.resize(static_cast<Eigen::Index>(joints));
+  for (std::size_t j = 0; j < joints; ++j) {
+    by_joint.push_back(part(model, j, of, without_block));
+    fit.square[static_cast<Eigen::Index>(j)] = by_joint[j].square;
+  }
+  const Eigen::VectorXd theta = model.theta(of), low = model.low(of) - theta, high = model.high(of) - theta;
+  Eigen::VectorXd change;
+  constexpr int reweightings = 3;  // weights follow what is left; they hardly change after that
+  for (int again = 0; again < reweightings; ++again) {
+    Eigen::MatrixXd q;
+    Eigen::VectorXd c;
+    normal_equations(model, by_joint, of, fit.square, q, c);
+    change = -theta;
+    change(in).setZero();
+    if (!in.empty()) {
+      const Eigen::VectorXd here = (c + q * change)(in);
+      change(in) = bounded_minimum(q(in, in), here, low(in), high(in));
+    }
+    for (std::size_t j = 0; j < joints; ++j) {
+      fit.square[static_cast<Eigen::Index>(j)] = std::max(smallest_square, square_after(by_joint[j], change));
+    }
+  }
+  fit.change = Eigen::VectorXd::Zero(model.theta.size());
+  fit.change(of) = change;
+  fit.criterion = model.independent.dot(pooled(model, by_joint, fit.square).array().log().matrix());
+  for (const Eigen::Index t : members(set)) {
+    const double share = (model.theta[t] + fit.change[t]) / model.prior[t];
+    fit.criterion += model.cost[t] + share * share;
+  }
+  return fit;
+}
+
+Eigen::VectorXd standard_errors(const LinearModel& model, const TermSet& set) {
+  const std::vector<Eigen::Index> in = members(set);
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(model.theta.size());
+  if (in.empty()) return result;
+  std::vector<Sums> by_joint;
+  Eigen::VectorXd square(static_cast<Eigen::Index>(model.whole.size()));
+  for (std::size_t j = 0; j < model.whole.size(); ++j) {
+    by_joint.push_back(part(model, j, in, -1));
+    square[static_cast<Eigen::Index>(j)] = by_joint[j].square;
+  }
+  Eigen::MatrixXd q;
+  Eigen::VectorXd c;
+  normal_equations(model, by_joint, in, square, q, c);
+  const Eigen::VectorXd scale = q.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * q * scale.asDiagonal();
+  const Eigen::MatrixXd inverse = scaled.ldlt().solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    result[in[i]] = scale[at] * std::sqrt(std::max(0.0, inverse(at, at)));
+  }
+  return result;
+}
+
+double independent_errors(const Eigen::Ref<const Eigen::VectorXd>& errors) {
+  double square = 0, rows = 0;
+  for (const double e : errors) {
+    if (!std::isfinite(e)) continue;
+    square += e * e;
+    rows += 1;
+  }
+  if (!(square > 0)) return std::max(fewest_independent, rows);
+  const auto correlation = [&](Eigen::Index lag) {
+    double sum = 0;
+    for (Eigen::Index k = lag; k < errors.size(); ++k) {
+      const double product = errors[k] * errors[k - lag];
+      if (std::isfinite(product)) sum += product;
+    }
+    return sum / square;
+  };
+  double time = 1;
+  for (Eigen::Index lag = 1; lag + 1 < errors.size() / 2; lag += 2) {
+    const double pair = correlation(lag) + correlation(lag + 1);
+    if (!(pair > 0)) break;
+    time += 2 * pair;
+  }
+  return std::max(fewest_independent, rows / time);
+}
+
+}  // namespace diagnose_robot

@@ -1,0 +1,58 @@
+// A diagnosis made linear at one point: how errors of each joint and block change with each term. Sums alone, so that
+// sets of terms are compared without simulating. No MuJoCo here.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace diagnose_robot {
+
+/// Of the errors r + X d of one joint in one block of rows.
+struct Sums {
+  Eigen::MatrixXd gram;   // X'X
+  Eigen::VectorXd slope;  // X'r
+  double square = 0;      // r'r
+  double rows = 0;
+};
+
+struct LinearModel {
+  std::vector<std::vector<Sums>> sums;  // joint, block
+  std::vector<Sums> whole;              // by joint, over all blocks; see add_up()
+  Eigen::VectorXd independent;          // by joint: how many of its errors count as independent
+  std::vector<int> pool;  // by joint: joints of one pool have errors of one size, since their motors are equal
+  Eigen::VectorXd theta, low, high;       // by term
+  Eigen::VectorXd prior;                  // standard deviation of the term before anything is seen
+  Eigen::VectorXd smallest;               // size of the term below which nobody would correct a model
+  Eigen::VectorXd cost;                   // of having the term, in -2 log of its odds
+  std::vector<std::vector<int>> acts_on;  // by term: joints
+};
+
+/// Fills `whole`.
+void add_up(LinearModel& model);
+
+using TermSet = std::vector<char>;  // by term: is it there
+
+struct LinearFit {
+  Eigen::VectorXd change;  // of theta, by term
+  Eigen::VectorXd square;  // predicted sum of squares by joint
+  double criterion = 0;    // -2 log posterior, up to a constant
+};
+
+/// The minimum over the terms of `set`, within bounds; others go to 0. `without_block` is left out (-1: none).
+LinearFit fit_linear(const LinearModel& model, const TermSet& set, int without_block = -1);
+
+/// Sum of squares of a joint in a block after a change.
+double square_after(const Sums& sums, const Eigen::VectorXd& change);
+
+/// Standard errors by term; 0 for those that are not there.
+Eigen::VectorXd standard_errors(const LinearModel& model, const TermSet& set);
+
+/// The minimum of x'Qx/2 + c'x for low <= x <= high.
+Eigen::VectorXd bounded_minimum(const Eigen::MatrixXd& q, const Eigen::VectorXd& c, const Eigen::VectorXd& low,
+                                const Eigen::VectorXd& high);
+
+/// Errors that count as independent in a series with gaps (NaN): rows over the autocorrelation time (Geyer's initial
+/// positive sequence).
+double independent_errors(const Eigen::Ref<const Eigen::VectorXd>& errors);
+
+}  // namespace diagnose_robot

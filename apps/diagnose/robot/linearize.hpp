@@ -1,0 +1,58 @@
+// Errors of a robot, of whole simulations or of torques, and how they change with each term.
+#pragma once
+
+#include <functional>
+#include <stop_token>
+#include <vector>
+
+#include "linear_model.hpp"
+#include "motion.hpp"
+#include "robot.hpp"
+#include "surefoot/core/executor.hpp"
+#include "terms.hpp"
+
+namespace diagnose_robot {
+
+/// What the search has to explain.
+struct Evidence {
+  const Robot& robot;
+  std::vector<RobotRecording> recordings;
+  std::vector<Motion> motions;
+  std::vector<int> block;  // by row of all recordings: contiguous parts that are held out one at a time
+  int blocks = 0;
+  std::vector<char> silent;   // by joint: its torque is not recorded, only its motion
+  Eigen::VectorXd numerical;  // by joint: errors of simulation, see numerical_error(); empty: none
+  std::vector<JointScale> scales;
+  std::vector<Term> terms;
+  surefoot::Threads threads{1};
+  std::stop_token stop;
+
+  explicit Evidence(const Robot& r) : robot(r) {}
+};
+
+/// Blocks, scales and terms from recordings and motions.
+void prepare(Evidence& evidence);
+
+/// Errors of all recordings, one after the other: row x joint. Measured less simulated angle for position drives, the
+/// torque that is left for torque drives. NaN: not known. Not finite in all of a column where a simulation ran away.
+Eigen::MatrixXd errors_of(const Evidence& evidence, const RobotPhysics& physics);
+
+/// Sets errors of a simulation to NaN while it still depends on how it began.
+void leave_out_start(const Robot& robot, const RobotRecording& recording, Eigen::Ref<Eigen::MatrixXd> errors);
+
+/// Derivatives of the errors by term, kept while parameters move: those of terms that are not in the model change
+/// little.
+struct Derivatives {
+  std::vector<Eigen::MatrixXd> of;  // by term: row x joint; empty: not known
+  TermSet fresh;                    // taken where the parameters are now
+};
+
+/// Sums at `theta`, where `errors` are those of all rows. Derivatives of `renewed` terms are taken anew, those of other
+/// `wanted` terms where they are not known yet; the rest are 0.
+LinearModel linearize(const Evidence& evidence, const Eigen::VectorXd& theta, const Eigen::MatrixXd& errors,
+                      const TermSet& wanted, const TermSet& renewed, Derivatives& derivatives);
+
+/// Root mean square by joint, of the rows of a block (-1: all).
+Eigen::VectorXd rms_by_joint(const Evidence& evidence, const Eigen::MatrixXd& errors, int block = -1);
+
+}  // namespace diagnose_robot

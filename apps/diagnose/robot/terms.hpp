@@ -1,0 +1,37 @@
+// Terms of the search: a property at a joint, or one size of it tied over a group.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "robot.hpp"
+
+namespace diagnose_robot {
+
+inline constexpr int single_joint = -1, all_joints = -2;
+
+struct Term {
+  Property property{};
+  std::vector<int> joints;
+  int group =
+      single_joint;  // of the setup; single: a joint of its own, beyond what its group has; all: every joint alike
+  double typical = 1, low = 0, high = 0;
+};
+
+/// Groups first, then what all joints may have alike, then single joints.
+std::vector<Term> all_terms(const Robot& robot, const std::vector<JointScale>& scales);
+
+/// What the file states and the sums of terms, by joint, each property within what is possible.
+RobotPhysics physics_of(const std::vector<Term>& terms, const Eigen::VectorXd& theta, const RobotPhysics& nominal);
+
+/// Mean over the joints of the term of what the file states.
+double nominal_of(const Robot& robot, const Term& term);
+
+/// "hip", the name of the joint, or "all joints".
+std::string place_of(const Robot& robot, const Term& term);
+
+/// The unit at this joint, which may slide instead of turn.
+std::string unit_of(const Robot& robot, const Term& term);
+
+}  // namespace diagnose_robot

@@ -1,0 +1,104 @@
+#include "torque_residual.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace diagnose_robot {
+namespace {
+
+constexpr double resting_share = 0.03;  // of the root mean square speed: what smoothing leaves of a reversal
+
+double rms(const Eigen::Ref<const Eigen::VectorXd>& x) {
+  return std::sqrt(x.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, x.size())));
+}
+
+double sign_of(double v) { return v > 0 ? 1.0 : v < 0 ? -1.0 : 0.0; }
+
+}  // namespace
+
+Eigen::MatrixXd rigid_body_torque(const Robot& robot, const Motion& motion, const RobotPhysics& physics) {
+  const ModelPointer model = model_with_bodies(robot, physics);
+  const mjModel* m = model.get();
+  const DataPointer data(mj_makeData(m));
+  mjData* d = data.get();
+  std::vector<double> force(static_cast<std::size_t>(m->nv));
+  Eigen::MatrixXd torque(motion.q.rows(), motion.q.cols());
+  for (Eigen::Index k = 0; k < motion.q.rows(); ++k) {
+    for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+      const ModelJoint& joint = robot.joints[j].model;
+      const auto c = static_cast<Eigen::Index>(j);
+      d->qpos[joint.position] = motion.q(k, c) - physics[j][Property::sensor_bias];
+      d->qvel[joint.dof] = motion.v(k, c);
+      d->qacc[joint.dof] = motion.a(k, c);
+    }
+    mj_kinematics(m, d);
+    mj_comPos(m, d);
+    mj_comVel(m, d);
+    mj_rne(m, d, 1, force.data());
+    for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+      const ModelJoint& joint = robot.joints[j].model;
+      torque(k, static_cast<Eigen::Index>(j)) =
+          force[static_cast<std::size_t>(joint.dof)] +
+          m->jnt_stiffness[joint.id] * (d->qpos[joint.position] - m->qpos_spring[joint.position]);
+    }
+  }
+  return torque;
+}
+
+Eigen::VectorXd resting_speed(const Motion& motion) {
+  Eigen::VectorXd speed(motion.v.cols());
+  for (Eigen::Index j = 0; j < speed.size(); ++j) speed[j] = resting_share * rms(motion.v.col(j));
+  return speed;
+}
+
+Eigen::MatrixXd drive_torque(const Robot& robot, const Motion& motion) {
+  if (robot.setup.drive == DriveKind::torque) return motion.torque;
+  Eigen::MatrixXd torque(motion.q.rows(), motion.q.cols());
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    const JointSetup& drive = robot.joints[j].setup;
+    const auto c = static_cast<Eigen::Index>(j);
+    const double limit = drive.limit > 0 ? drive.limit : std::numeric_limits<double>::infinity();
+    torque.col(c) = (drive.kp * (motion.goal.col(c) - motion.q.col(c)) - drive.kd * motion.v.col(c))
+                        .cwiseMax(-limit)
+                        .cwiseMin(limit);
+  }
+  return torque;
+}
+
+// Recorded less expected reading: no scale makes this small by itself.
+// Friction by load goes with the torque of the rigid bodies, not with the measured one, of which friction is a part.
+Eigen::MatrixXd torque_residual(const Robot& robot, const Motion& motion, const RobotPhysics& physics) {
+  Eigen::MatrixXd needed = rigid_body_torque(robot, motion, physics);
+  const Eigen::VectorXd rest = resting_speed(motion);
+  const Eigen::MatrixXd load = needed.cwiseAbs();
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    const auto c = static_cast<Eigen::Index>(j);
+    const JointPhysics& p = physics[j];
+    const int before = robot.joints[j].before;
+    for (Eigen::Index k = 0; k < needed.rows(); ++k) {
+      const double v = motion.v(k, c), slow = v / stribeck_speed;
+      const double dry = p[Property::coulomb] + p[Property::breakaway] * std::exp(-slow * slow) +
+                         p[Property::load_friction] * load(k, c);
+      needed(k, c) += dry * sign_of(v) + p[Property::viscous] * v + p[Property::drag] * v * std::abs(v) +
+                      p[Property::armature] * motion.a(k, c) - p[Property::constant_torque];
+      if (before < 0) continue;
+      const double sum = v + motion.v(k, before);
+      const double pair = p[Property::pair_coulomb] * sign_of(sum) + p[Property::pair_viscous] * sum +
+                          p[Property::pair_armature] * (motion.a(k, c) + motion.a(k, before));
+      needed(k, c) += pair;
+      needed(k, before) += pair;
+    }
+  }
+  for (std::size_t j = 0; j < robot.joints.size(); ++j)
+    needed.col(static_cast<Eigen::Index>(j)) *= 1 + physics[j][Property::reading_scale];
+  Eigen::MatrixXd residual = drive_torque(robot, motion) - needed;
+  for (Eigen::Index c = 0; c < residual.cols(); ++c) {
+    for (Eigen::Index k = 0; k < residual.rows(); ++k) {
+      if (std::abs(motion.v(k, c)) < rest[c]) residual(k, c) = std::nan("");
+    }
+  }
+  return residual;
+}
+
+}  // namespace diagnose_robot

@@ -1,0 +1,21 @@
+// Torque along the measured motion that neither the rigid bodies nor the physics of the joints account for.
+#pragma once
+
+#include "motion.hpp"
+#include "robot.hpp"
+
+namespace diagnose_robot {
+
+/// Row x joint [N m or N]. NaN where a joint is too slow for its friction to be known.
+Eigen::MatrixXd torque_residual(const Robot& robot, const Motion& motion, const RobotPhysics& physics);
+
+/// What the rigid bodies need along the motion [N m].
+Eigen::MatrixXd rigid_body_torque(const Robot& robot, const Motion& motion, const RobotPhysics& physics);
+
+/// What the drives give along the motion: measured, or what position drives would give [N m].
+Eigen::MatrixXd drive_torque(const Robot& robot, const Motion& motion);
+
+/// Speeds below which a joint may stick, by joint.
+Eigen::VectorXd resting_speed(const Motion& motion);
+
+}  // namespace diagnose_robot

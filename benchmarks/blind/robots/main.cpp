@@ -1,0 +1,52 @@
+// concealed_robots: robots in MuJoCo with physics that their models leave out, for surefoot-diagnose; the truth apart.
+// Nothing here comes from the library.
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+
+#include "robot_case.hpp"
+
+namespace {
+
+constexpr const char* usage =
+    "usage: concealed_robots OUT CASES SEED\n"
+    "writes OUT/cases/case_0001/{robot.xml,robot.toml,rec_1.csv,...} and OUT/truth/case_0001.json\n";
+constexpr int recordings = 3;
+
+void write(const std::filesystem::path& file, const std::string& text) {
+  std::filesystem::create_directories(file.parent_path());
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 4) {
+    std::fputs(usage, stderr);
+    return 2;
+  }
+  try {
+    const std::filesystem::path out = argv[1];
+    const std::vector<std::string> families{"arm2", "arm6", "arm7", "legs12"};
+    for (unsigned long i = 1; i <= std::stoul(argv[2]); ++i) {
+      plants::Random random(1000003 * std::stoull(argv[3]) + i);
+      const std::string family = families[i % families.size()];
+      const bool none = random.chance(0.2);
+      const auto robot = blind_robots::draw_robot(random, family, none);
+      char name[20];
+      std::snprintf(name, sizeof name, "case_%04lu", i);
+      const auto folder = out / "cases" / name;
+      write(folder / "robot.xml", blind_robots::robot_xml(robot, false));
+      write(folder / "robot.toml", blind_robots::robot_setup(robot));
+      for (int r = 1; r <= recordings; ++r)
+        write(folder / ("rec_" + std::to_string(r) + ".csv"), blind_robots::record(robot, random));
+      const nlohmann::ordered_json truth{
+          {"family", family}, {"drive", robot.torque_driven ? "torque" : "position"}, {"hidden", robot.truth}};
+      write(out / "truth" / (std::string(name) + ".json"), truth.dump(1) + "\n");
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "concealed_robots: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,138 @@
+#include "apps/diagnose/robot/linear_model.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "apps/diagnose/robot/choose_terms.hpp"
+#include "apps/diagnose/robot/diagnose_robot.hpp"
+#include "apps/diagnose/robot/robot_diagnosis.hpp"
+#include "apps/diagnose/robot/swapped_joints.hpp"
+#include "surefoot/core/rng.hpp"
+
+using namespace diagnose_robot;
+
+namespace {
+
+double normal(surefoot::Rng& rng) {
+  double sum = 0;
+  for (int i = 0; i < 12; ++i) sum += rng.uniform();
+  return sum - 6;
+}
+
+// One joint, four blocks, terms of white columns; the errors are `sizes` times the columns and noise of 1.
+LinearModel made_up(const Eigen::VectorXd& sizes, std::uint64_t seed) {
+  surefoot::Rng rng(seed);
+  constexpr Eigen::Index rows = 400;
+  constexpr int blocks = 4;
+  const Eigen::Index terms = sizes.size();
+  LinearModel model;
+  model.sums.resize(1);
+  for (int b = 0; b < blocks; ++b) {
+    Eigen::MatrixXd x(rows / blocks, terms);
+    Eigen::VectorXd r(rows / blocks);
+    for (Eigen::Index k = 0; k < x.rows(); ++k) {
+      for (Eigen::Index t = 0; t < terms; ++t) x(k, t) = -normal(rng);
+      r[k] = normal(rng) - x.row(k).dot(sizes);
+    }
+    model.sums[0].push_back({x.transpose() * x, x.transpose() * r, r.squaredNorm(), static_cast<double>(x.rows())});
+  }
+  model.independent = Eigen::VectorXd::Constant(1, rows);
+  model.pool = {0};
+  model.theta = Eigen::VectorXd::Zero(terms);
+  model.low = Eigen::VectorXd::Zero(terms);
+  model.high = Eigen::VectorXd::Constant(terms, 10);
+  model.prior = Eigen::VectorXd::Constant(terms, 5);
+  model.smallest = Eigen::VectorXd::Zero(terms);
+  model.cost = Eigen::VectorXd::Constant(terms, std::log(400.0) + 2 * std::log(static_cast<double>(terms)));
+  model.acts_on.assign(static_cast<std::size_t>(terms), {0});
+  add_up(model);
+  return model;
+}
+
+}  // namespace
+
+TEST_CASE("a quadratic is minimised within its bounds") {
+  surefoot::Rng rng(3);
+  for (int trial = 0; trial < 100; ++trial) {
+    Eigen::MatrixXd root(4, 4);
+    for (double& value : root.reshaped()) value = normal(rng);
+    const Eigen::MatrixXd q = root * root.transpose() + 0.1 * Eigen::MatrixXd::Identity(4, 4);
+    Eigen::VectorXd c(4);
+    for (double& value : c) value = 3 * normal(rng);
+    const Eigen::VectorXd low = Eigen::VectorXd::Constant(4, -0.5), high = Eigen::VectorXd::Constant(4, 0.7);
+    const Eigen::VectorXd x = bounded_minimum(q, c, low, high), gradient = c + q * x;
+    for (Eigen::Index i = 0; i < 4; ++i) {
+      CHECK(x[i] >= low[i]);
+      CHECK(x[i] <= high[i]);
+      if (x[i] > low[i] && x[i] < high[i]) CHECK(std::abs(gradient[i]) < 1e-8);
+      if (x[i] == low[i]) CHECK(gradient[i] > -1e-8);
+      if (x[i] == high[i]) CHECK(gradient[i] < 1e-8);
+    }
+  }
+}
+
+TEST_CASE("the terms that made the errors are chosen, with their sizes, and no others") {
+  const Eigen::VectorXd sizes{{0, 0.8, 0, 0, 0.5, 0}};
+  const LinearModel model = made_up(sizes, 4);
+  const TermSet set = choose_terms(model, TermSet(6, 0), TermSet(6, 1));
+  CHECK(set == TermSet{0, 1, 0, 0, 1, 0});
+  const Eigen::VectorXd found = fit_linear(model, set).change, error = standard_errors(model, set);
+  CHECK(std::abs(found[1] - 0.8) < 4 * error[1]);
+  CHECK(error[1] == doctest::Approx(0.05).epsilon(0.2));
+  CHECK(held_out_gain(model, set).share[1] > 0.1);
+  CHECK(evidence_of_terms(model, set)[4] > 20);
+}
+
+TEST_CASE("noise alone gives no term") {
+  int chosen = 0;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    for (const char in : choose_terms(made_up(Eigen::VectorXd::Zero(10), seed), TermSet(10, 0), TermSet(10, 1)))
+      chosen += in;
+  }
+  CHECK(chosen == 0);
+}
+
+TEST_CASE("a term that is not needed any more is taken away, and its size goes to zero") {
+  LinearModel model = made_up(Eigen::VectorXd::Zero(3), 5);
+  const TermSet set = choose_terms(model, TermSet{1, 0, 0}, TermSet(3, 1));
+  CHECK(set == TermSet{0, 0, 0});
+  model.theta[0] = 0.3;
+  CHECK(fit_linear(model, set).change[0] == -0.3);
+}
+
+TEST_CASE("rows that repeat what the ones before said count less") {
+  surefoot::Rng rng(6);
+  Eigen::VectorXd white(4000), slow(4000);
+  for (Eigen::Index k = 0; k < 4000; ++k) {
+    white[k] = normal(rng);
+    slow[k] = k == 0 ? white[0] : 0.9 * slow[k - 1] + white[k];
+  }
+  CHECK(independent_errors(white) == doctest::Approx(4000).epsilon(0.15));
+  CHECK(independent_errors(slow) == doctest::Approx(4000 * 0.1 / 1.9).epsilon(0.4));
+}
+
+TEST_CASE("columns that were swapped are told by what each is told to do") {
+  Eigen::MatrixXd unexplained = Eigen::MatrixXd::Constant(3, 3, 0.9);
+  unexplained(0, 0) = 0.02;
+  unexplained(1, 2) = unexplained(2, 1) = 0.03;
+  CHECK(swapped_pairs(unexplained) == std::vector<std::pair<int, int>>{{1, 2}});
+  unexplained.setConstant(0.05);  // all move alike: no one can tell
+  CHECK(swapped_pairs(unexplained).empty());
+}
+
+TEST_CASE("the verdict follows the noise floor, then what was found") {
+  using surefoot::Verdict;
+  CHECK(verdict_of(2, 0, 1.2, 1, true) == Verdict::missing_physics);
+  CHECK(verdict_of(2, 0, 1.6, 1, true) == Verdict::unexplained);
+  CHECK(verdict_of(0, 1, 1, 1, true) == Verdict::parameters_only);
+  CHECK(verdict_of(0, 0, 1, 1, true) == Verdict::adequate);
+  CHECK(verdict_of(0, 0, 1, 1, false) == Verdict::unfinished);
+}
+
+TEST_CASE("the noise of an encoder is seen through its motion") {
+  surefoot::Rng rng(7);
+  Eigen::VectorXd readings(2000);
+  for (Eigen::Index k = 0; k < 2000; ++k) readings[k] = std::sin(0.03 * static_cast<double>(k)) + 1e-3 * normal(rng);
+  CHECK(noise_of(readings) == doctest::Approx(1e-3).epsilon(0.1));
+}

@@ -1,0 +1,111 @@
+// surefoot-diagnose with robots, from files to files.
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/diagnose_robot/small_robots.hpp"
+
+using approach_program::Outcome;
+using nlohmann::json;
+using robot_test::ScratchFolder;
+
+namespace {
+
+std::string program() { return SUREFOOT_BIN_DIR "/surefoot-diagnose"; }
+
+Outcome diagnose(const ScratchFolder& folder, const std::string& more = "") {
+  return approach_program::run_command(program() + " --model " + folder.file("robot.xml") + " --setup " +
+                                       folder.file("robot.toml") + " --out " + folder.file("out") + " --quiet " + more +
+                                       " " + folder.file("rec_1.csv") + " " + folder.file("rec_2.csv"));
+}
+
+json result_of(const ScratchFolder& folder) {
+  std::ifstream file(folder.file("out/diagnosis.json"));
+  return json::parse(file);
+}
+
+}  // namespace
+
+TEST_CASE("dry friction in one joint of an arm is found with its size, and nothing else") {
+  const ScratchFolder folder;
+  auto arm = robot_test::small_arm();
+  arm.joints[0].hidden.coulomb = 0.6;
+  robot_test::write_files(folder, arm, 11);
+  const Outcome outcome = diagnose(folder);
+  CAPTURE(outcome.output);
+  REQUIRE(outcome.code == 0);
+  const json result = result_of(folder);
+  REQUIRE(result["effects"].size() == 1);
+  CHECK(result["effects"][0]["name"] == "coulomb_friction");
+  CHECK(result["effects"][0]["attached_to"] == "upper");
+  CHECK(double(result["effects"][0]["parameters"][0]["value"]) == doctest::Approx(0.6).epsilon(0.05));
+  CHECK(double(result["robot"]["rmse_replayed"]) ==
+        doctest::Approx(double(result["robot"]["rmse_after"])).epsilon(0.02));
+  for (const char* file : {"report.html", "augmented.xml", "augmented.hpp"})
+    CHECK(std::filesystem::file_size(folder.file(std::string("out/") + file)) > 100);
+}
+
+TEST_CASE("an arm that is as its model says gets no effect") {
+  const ScratchFolder folder;
+  robot_test::write_files(folder, robot_test::small_arm(), 12);
+  REQUIRE(diagnose(folder).code == 0);
+  const json result = result_of(folder);
+  CHECK(result["effects"].empty());
+  CHECK(result["verdict"] == "adequate");
+}
+
+TEST_CASE("the same seed gives the same result for any number of threads") {
+  const ScratchFolder folder;
+  auto arm = robot_test::small_arm();
+  arm.joints[1].hidden.viscous = 0.4;
+  robot_test::write_files(folder, arm, 13);
+  REQUIRE(diagnose(folder, "--threads 1").code == 0);
+  json one = result_of(folder);
+  REQUIRE(diagnose(folder, "--threads 3").code == 0);
+  json three = result_of(folder);
+  one.erase("seconds");
+  three.erase("seconds");
+  CHECK(one == three);
+}
+
+TEST_CASE("swapped columns are named, and repaired if asked for") {
+  const ScratchFolder folder;
+  auto arm = robot_test::small_arm();
+  arm.swapped = {{0, 1}};
+  robot_test::write_files(folder, arm, 14);
+  REQUIRE(diagnose(folder).code == 0);
+  CHECK(result_of(folder)["log_faults"][0]["kind"] == "columns_swapped");
+  CHECK(result_of(folder)["verdict"] == "unexplained");
+}
+
+TEST_CASE("a setup is printed that the diagnosis can use") {
+  const ScratchFolder folder;
+  robot_test::write_files(folder, robot_test::small_arm(), 15);
+  const Outcome setup = approach_program::run_command(program() + " setup " + folder.file("robot.xml") + " " +
+                                                      folder.file("rec_1.csv") + " > " + folder.file("first.toml"));
+  CHECK(setup.code == 0);
+  std::ifstream file(folder.file("first.toml"));
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  CHECK(text.find("goal = \"goal_upper_rad\"") != std::string::npos);
+  CHECK(text.find("SET kp") != std::string::npos);
+}
+
+TEST_CASE("legs of a real quadruped: held-out error at most 0.0100 rad" *
+          doctest::skip(std::getenv("SUREFOOT_RECORDINGS") == nullptr)) {
+  const ScratchFolder folder;
+  const std::string recordings = std::string(std::getenv("SUREFOOT_RECORDINGS")) + "/go2_legs/";
+  approach_program::run_command(program() + " setup " + recordings + "go2.xml " + recordings + "first.csv > " +
+                                folder.file("robot.toml"));
+  const Outcome outcome = approach_program::run_command(program() + " --model " + recordings + "go2.xml --setup " +
+                                                        folder.file("robot.toml") + " --quiet --out " +
+                                                        folder.file("out") + " " + recordings + "first.csv");
+  REQUIRE(outcome.code == 0);
+  const json result = result_of(folder);
+  CHECK(double(result["robot"]["rmse_heldout"]) < 0.0100);
+  CHECK(double(result["robot"]["rmse_replayed"]) ==
+        doctest::Approx(double(result["robot"]["rmse_after"])).epsilon(0.02));
+}

@@ -1,0 +1,124 @@
+#include "apps/diagnose/robot/robot_model.hpp"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "apps/diagnose/robot/augmented_xml.hpp"
+#include "apps/diagnose/robot/simulate_robot.hpp"
+#include "surefoot/core/error.hpp"
+#include "tests/diagnose_robot/small_robots.hpp"
+
+using namespace diagnose_robot;
+using robot_test::ScratchFolder;
+using robot_test::write_text;
+
+namespace {
+
+template <class Work>
+std::string refusal(const Work& work) {
+  try {
+    work();
+  } catch (const surefoot::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool contains(const std::string& text, const std::string& words) {
+  CAPTURE(text);
+  return text.find(words) != std::string::npos && text.find('\n') == std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a model that MuJoCo cannot load is refused in one sentence") {
+  const ScratchFolder folder;
+  for (const std::string text :
+       {"<mujoco><worldbody><body></mujoco>", "nothing", "<mujoco><worldbody><body><joint/></body></worldbody>"}) {
+    write_text(folder.file("robot.xml"), text);
+    CHECK(contains(refusal([&] { load_robot(folder.file("robot.xml")); }), "robot.xml"));
+  }
+  write_text(folder.file("robot.xml"), "<mujoco><worldbody/></mujoco>");
+  CHECK(contains(refusal([&] { load_robot(folder.file("robot.xml")); }), "no hinge"));
+}
+
+TEST_CASE("meshes that are missing are left out") {
+  const ScratchFolder folder;
+  write_text(folder.file("robot.xml"), R"(<mujoco><asset><mesh name="m" file="not_there.stl"/></asset><worldbody><body>
+    <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/><joint name="j"/><geom type="mesh" mesh="m"/></body></worldbody></mujoco>)");
+  const RobotModel robot = load_robot(folder.file("robot.xml"));
+  CHECK(robot.joints.size() == 1);
+  CHECK(robot.remarks.size() == 1);
+}
+
+TEST_CASE("a floating base, joints without columns, degrees and contacts are said in one sentence each") {
+  const ScratchFolder folder;
+  auto arm = robot_test::small_arm();
+  robot_test::write_files(folder, arm, 1, 1);
+  RobotSetup setup = read_setup(folder.file("robot.toml"));
+  std::string xml = blind_robots::robot_xml(arm, false);
+  const RobotSetup all = setup;
+  setup.joints.pop_back();
+  setup.groups.pop_back();
+  CHECK(contains(refusal([&] { bind_robot(load_robot(folder.file("robot.xml")), setup); }), "'lower'") == false);
+  CHECK(contains(refusal([&] { bind_robot(load_robot(folder.file("robot.xml")), setup); }), "lower"));
+  setup = all;
+  setup.joints[0].name = "uper";
+  CHECK(contains(refusal([&] { bind_robot(load_robot(folder.file("robot.xml")), setup); }), "did you mean 'upper'"));
+  const std::string base =
+      "<worldbody>\n<body name=\"base\"><freejoint/><inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/>";
+  std::string floating = xml;
+  floating.replace(floating.find("<worldbody>"), 11, base);
+  floating.replace(floating.find("</worldbody>"), 12, "</body></worldbody>");
+  write_text(folder.file("floating.xml"), floating);
+  CHECK(contains(refusal([&] { bind_robot(load_robot(folder.file("floating.xml")), all); }), "base = \"held\""));
+  RobotSetup held = all;
+  held.base_held = true;
+  CHECK(bind_robot(load_robot(folder.file("floating.xml")), held).joints.size() == 2);
+
+  std::string range = xml;
+  range.replace(range.find("name=\"upper\" axis"), 12, "name=\"upper\" limited=\"true\" range=\"-90 90\"");
+  write_text(folder.file("range.xml"), range);
+  const Robot robot = bind_robot(load_robot(folder.file("range.xml")), all);
+  RobotRecording recording = read_recording(diagnose_program::read_csv(folder.file("rec_1.csv")), all, 500);
+  CHECK(check_recording(robot, recording).empty());
+  recording.angle *= 57.3;
+  CHECK(contains(refusal([&] { check_recording(robot, recording); }), "unit = \"deg\""));
+
+  std::string floor = xml;
+  floor.replace(floor.find("<worldbody>"), 11, "<worldbody><geom type=\"plane\" size=\"1 1 1\" pos=\"0 0 -0.3\"/>");
+  floor.replace(floor.find("<site name=\"lower_end\""), 5,
+                "<geom type=\"sphere\" size=\"0.1\" pos=\"0 0 -0.25\"/>\n<site");
+  write_text(folder.file("floor.xml"), floor);
+  recording.angle /= 57.3;
+  CHECK(contains(refusal([&] { check_recording(bind_robot(load_robot(folder.file("floor.xml")), all), recording); }),
+                 "contacts"));
+}
+
+TEST_CASE("the corrected model loads in MuJoCo and moves as the simulation that it came from") {
+  const ScratchFolder folder;
+  robot_test::write_files(folder, robot_test::small_arm(), 2, 1);
+  const Robot robot = robot_test::load(folder);
+  Evidence evidence(robot);
+  robot_test::add_recording(evidence, folder.file("rec_1.csv"));
+  RobotPhysics physics(2);
+  physics[0][Property::coulomb] = 0.5;
+  physics[0][Property::armature] = 0.05;
+  physics[0][Property::kp_error] = -0.2;
+  physics[0][Property::load_friction] = 0.1;
+  physics[1][Property::viscous] = 0.3;
+  physics[1][Property::delay] = 0.012;
+  physics[1][Property::payload] = 0.4;
+  physics[1][Property::backlash] = 0.01;
+  physics[1][Property::constant_torque] = 0.2;
+  const StartState start = start_of(evidence.motions[0]);
+  const Eigen::MatrixXd ours = simulate_robot(robot, evidence.recordings[0], start, physics);
+  const AugmentedModel augmented =
+      augmented_model(robot, physics, simulation_step(robot, evidence.recordings[0]) / steps_of_ours, folder.path());
+  const Eigen::MatrixXd theirs = replay(robot, augmented, physics, evidence.recordings[0], start);
+  const double error = (evidence.recordings[0].angle - ours).norm();
+  CHECK((ours - theirs).norm() < 0.05 * error);
+  CHECK((evidence.recordings[0].angle - theirs).norm() == doctest::Approx(error).epsilon(0.02));
+  CHECK(augmented.xml.find("frictionloss=\"0.5\"") != std::string::npos);
+}
