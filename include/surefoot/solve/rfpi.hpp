@@ -22,6 +22,7 @@
 #include "surefoot/core/problem.hpp"
 #include "surefoot/core/rollout.hpp"
 #include "surefoot/solve/forest_policy.hpp"
+#include "surefoot/solve/rfpi_adapt.hpp"
 #include "surefoot/solve/rfpi_backup.hpp"
 #include "surefoot/solve/rfpi_options.hpp"
 #include "surefoot/solve/rfpi_rollouts.hpp"
@@ -51,7 +52,7 @@ std::uint64_t rfpi_fingerprint(const P& problem, const RfpiOptions& o, std::uint
          o.initial_iterations, o.box_share, o.visited_share, o.exploration, o.backup_steps, o.backup_runs,
          o.backup_weight, o.reuse_previous_samples, o.value_runs, o.evaluation_runs);
   const LookaheadOptions& l = o.lookahead;
-  number(l.candidates, l.samples, l.corners, l.common_noise, l.kept, l.refined, l.refined_samples, l.step, l.softness,
+  number(o.agreement, o.adapt, l.hold, l.candidates, l.samples, l.corners, l.common_noise, l.kept, l.refined, l.refined_samples, l.step, l.softness,
          l.radius);
   for (const ExtraTreesOptions* f : {&o.value_forest, &o.policy_forest}) {
     number(f->trees, f->candidates, f->min_leaf, f->max_depth, f->max_leaves, f->bootstrap, f->threshold_rule,
@@ -76,16 +77,16 @@ class RfpiRun {
  public:
   using States = std::span<const typename P::State>;
 
-  RfpiRun(const P& problem, const RfpiOptions& options, const E& executor, std::uint64_t seed, States seed_states,
+  RfpiRun(const P& problem, RfpiOptions options, const E& executor, std::uint64_t seed, States seed_states,
           std::stop_token stop)
       : problem_(problem),
-        options_(options),
+        options_(std::move(options)),
         executor_(executor),
         seed_(seed),
         seed_states_(seed_states),
-        fingerprint_(rfpi_fingerprint(problem, options, seed, seed_states)),
+        fingerprint_(rfpi_fingerprint(problem, options_, seed, seed_states)),
         resumed_(resume()),
-        limit_(std::move(stop), options.max_seconds - resumed_.seconds) {}
+        limit_(std::move(stop), options_.max_seconds - resumed_.seconds) {}
 
   RfpiResult<P> work() {
     RfpiStop reason = RfpiStop::budget;
@@ -114,6 +115,16 @@ class RfpiRun {
   }
 
  private:
+  static constexpr int patience = 5;  // iterations in a row that may be clearly worse before it goes back to the best
+                                      // policy: values that come from far away make some worse on the way
+  static constexpr double clearly_worse = 0.1;  // of the best policy's cost
+
+  /// Whether what was learnt is being forgotten.
+  bool forgets(const RfpiState<P>& next) const {
+    return next.iteration > options_.initial_iterations &&
+           next.cost > next.best_cost + clearly_worse * std::abs(next.best_cost);
+  }
+
   using Clock = std::chrono::steady_clock;
   using ActionForest = typename ForestPolicy<P>::ActionForest;
 
@@ -138,27 +149,26 @@ class RfpiRun {
     const Rng rng(seed_, 1, static_cast<std::uint64_t>(state_.iteration));
     try {
       if (options_.value_method == ValueMethod::rollouts) {
-        return improve_by_rollouts(problem_, options_, state_, seed_states_, executor_, rng, limit_.token());
+        return improve_by_rollouts(problem_, options_, state_, seed_states_, executor_, rng, evaluation_seed(2),
+                                   limit_.token());
       }
       const int grown = std::max(0, state_.iteration - options_.fixed_size_iterations);
       double count = std::min<double>(options_.max_states, options_.first_states * std::pow(options_.growth, grown));
       // The last iteration takes what is left.
       if (grown > 0 && last_work_ > 0) count *= std::clamp(left / (last_work_ * options_.growth), 0.1, 1.0);
       return improve_by_backup(problem_, options_, state_, static_cast<std::size_t>(count), seed_states_, executor_,
-                               rng, limit_.token());
+                               rng, evaluation_seed(2), limit_.token());
     } catch (const Error&) {  // work that a stop left incomplete
       if (!stopped()) throw;
     }
     return {};
   }
 
+  std::uint64_t evaluation_seed(std::uint64_t stream) const { return Rng(seed_, stream).bits(); }
+
   /// Minus the mean return over `runs` runs from random numbers of `stream`.
   Estimate cost_of(const ActionForest& forest, int runs, std::uint64_t stream) const {
-    const RolloutOptions rollouts{.runs = runs, .horizon = options_.horizon};
-    Estimate cost =
-        evaluate(problem_, ForestPolicy<P>(problem_, forest), rollouts, executor_, Rng(seed_, stream).bits(), {});
-    cost.mean = -cost.mean;
-    return cost;
+    return policy_cost(problem_, forest, options_, runs, executor_, evaluation_seed(stream)).cost;
   }
 
   void accept(RfpiState<P> next) {
@@ -167,14 +177,15 @@ class RfpiRun {
     progress.iteration = next.iteration;
     progress.states = next.samples.size();
     progress.leaves = next.policy.leaves();
-    progress.cost = cost_of(next.policy, options_.evaluation_runs, 2).mean;
-    const std::uint64_t steps =
-        static_cast<std::uint64_t>(options_.evaluation_runs) * static_cast<std::uint64_t>(options_.horizon);
-    next.work.steps += steps;
-    next.work.lookups += steps * next.policy.trees();
+    progress.cost = next.cost;
     const bool better = next.history.empty() || progress.cost <= state_.best_cost;
     next.best_cost = progress.best_cost = better ? progress.cost : state_.best_cost;
     next.best_policy = better ? next.policy : std::move(state_.best_policy);
+    next.worse = forgets(next) ? state_.worse + 1 : 0;
+    if (next.worse >= patience) {
+      next.policy = next.best_policy;
+      next.worse = 0;
+    }
     progress.counted_seconds = next.work.seconds(options_.budget);
     progress.share = progress.counted_seconds / options_.budget.counted_seconds;
     progress.seconds = resumed_.seconds + std::chrono::duration<double>(Clock::now() - wall_start_).count();
@@ -202,15 +213,15 @@ class RfpiRun {
     if (state_.best_policy.empty()) {
       throw SolveError("rfpi: stopped before there was a first policy: give it more time");
     }
-    const int runs = 4 * options_.evaluation_runs;
+    const int runs = 4 * evaluation_runs(options_);
     const bool newest = cost_of(state_.policy, runs, 3).mean <= cost_of(state_.best_policy, runs, 3).mean;
     auto& chosen = newest ? state_.policy : state_.best_policy;
     const Estimate cost = cost_of(chosen, runs, 4);
-    return {ForestPolicy<P>(problem_, std::move(chosen)), cost, std::move(state_.history), reason};
+    return {ForestPolicy<P>(problem_, std::move(chosen), options_.agreement), cost, std::move(state_.history), reason};
   }
 
   const P& problem_;
-  const RfpiOptions& options_;
+  RfpiOptions options_;
   const E& executor_;
   std::uint64_t seed_;
   States seed_states_;
@@ -235,7 +246,12 @@ template <Problem P, Executor E>
 RfpiResult<P> rfpi(const P& problem, const RfpiOptions& options, const E& executor, std::uint64_t seed,
                    std::span<const typename P::State> seed_states = {}, std::stop_token stop = {}) {
   check(options);
-  return detail::RfpiRun<P, E>(problem, options, executor, seed, seed_states, std::move(stop)).work();
+  RfpiOptions adapted = resolved(options);
+  if (options.adapt && options.value_method == ValueMethod::backup &&
+      detail::is_deterministic(problem, options.horizon, Rng(seed, 5))) {
+    adapted = detail::without_noise(std::move(adapted));
+  }
+  return detail::RfpiRun<P, E>(problem, std::move(adapted), executor, seed, seed_states, std::move(stop)).work();
 }
 
 /// For a type that is not a Problem: one compile error that names the missing member.
