@@ -150,9 +150,7 @@ template <Problem P>
 ForestPolicy<P> load_policy(const P& problem, const std::string& path) {
   const Bytes bytes = read_file(path);
   ByteReader in(bytes, "policy file " + path);
-  ByteReader version = in;
-  version.raw(detail::policy_format.magic.size());
-  const bool agreeing = version.u32() == detail::agreeing_policy_format.version;
+  const bool agreeing = has_format(in, detail::agreeing_policy_format);
   expect_format(in, agreeing ? detail::agreeing_policy_format : detail::policy_format);
   auto expect = [&](int wanted, const char* what) {
     if (const auto found = in.u32(); found != static_cast<std::uint32_t>(wanted)) {

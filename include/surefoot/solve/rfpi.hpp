@@ -14,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,7 @@
 #include "surefoot/solve/forest_policy.hpp"
 #include "surefoot/solve/rfpi_adapt.hpp"
 #include "surefoot/solve/rfpi_backup.hpp"
+#include "surefoot/solve/rfpi_hints.hpp"
 #include "surefoot/solve/rfpi_options.hpp"
 #include "surefoot/solve/rfpi_rollouts.hpp"
 #include "surefoot/solve/rfpi_state.hpp"
@@ -37,6 +39,7 @@ struct RfpiResult {
   Estimate cost;                      // minus its mean return, on runs used for nothing else
   std::vector<RfpiProgress> history;  // one entry per iteration
   RfpiStop stop = RfpiStop::budget;
+  std::vector<std::string> hints;  // what speaks against discount, horizon or exploration, in plain words; see hints()
 };
 
 namespace detail {
@@ -52,12 +55,13 @@ std::uint64_t rfpi_fingerprint(const P& problem, const RfpiOptions& o, std::uint
          o.initial_iterations, o.box_share, o.visited_share, o.exploration, o.backup_steps, o.backup_runs,
          o.backup_weight, o.reuse_previous_samples, o.value_runs, o.evaluation_runs);
   const LookaheadOptions& l = o.lookahead;
-  number(o.agreement, o.adapt, l.hold, l.candidates, l.samples, l.corners, l.common_noise, l.kept, l.refined, l.refined_samples, l.step, l.softness,
+  number(l.candidates, l.samples, l.corners, l.common_noise, l.kept, l.refined, l.refined_samples, l.step, l.softness,
          l.radius);
   for (const ExtraTreesOptions* f : {&o.value_forest, &o.policy_forest}) {
     number(f->trees, f->candidates, f->min_leaf, f->max_depth, f->max_leaves, f->bootstrap, f->threshold_rule,
            f->model_score, f->ridge, f->clamp);
   }
+  if (o.adapt || std::isfinite(o.agreement) || l.hold != 1) number(o.adapt, o.agreement, l.hold);  // not in version 0.1
   for (const auto& state : seed_states) all.words(std::span<const double>(state.data(), P::state_dim));
   all.list(feature_probe(problem));
   Rng rng(seed, 0);
@@ -217,7 +221,9 @@ class RfpiRun {
     const bool newest = cost_of(state_.policy, runs, 3).mean <= cost_of(state_.best_policy, runs, 3).mean;
     auto& chosen = newest ? state_.policy : state_.best_policy;
     const Estimate cost = cost_of(chosen, runs, 4);
-    return {ForestPolicy<P>(problem_, std::move(chosen), options_.agreement), cost, std::move(state_.history), reason};
+    ForestPolicy<P> policy(problem_, std::move(chosen), options_.agreement);
+    const LearningSigns signs = learning_signs(problem_, policy, options_.horizon, evaluation_seed(6));
+    return {std::move(policy), cost, std::move(state_.history), reason, hints(signs, options_)};
   }
 
   const P& problem_;

@@ -1,4 +1,4 @@
-// What RFPI finds out about a problem by itself: whether its simulator has noise, and how large a policy is best.
+// Adaptation of RFPI to a problem: whether its simulator has noise, and how large a policy is best.
 #pragma once
 
 #include <algorithm>

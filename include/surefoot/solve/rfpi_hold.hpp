@@ -1,4 +1,5 @@
-// For how many transitions a lookahead holds an action: until what the action changes outweighs the errors of the values.
+// The number of transitions that a lookahead holds an action: until what the action changes outweighs the errors of the
+// values.
 #pragma once
 
 #include <algorithm>

@@ -73,6 +73,7 @@ struct RfpiState {
 namespace detail {
 
 constexpr FileFormat checkpoint_format{"SURERFPI", 2, "a checkpoint of RFPI"};
+constexpr FileFormat first_checkpoint_format{"SURERFPI", 1, "a checkpoint of RFPI"};  // no trend, no sizes
 
 template <class Vector>
 void write_vectors(ByteWriter& out, const std::vector<Vector>& vectors) {
@@ -124,18 +125,19 @@ F read_optional(ByteReader& in) {
 
 template <int Inputs>
 void write_value(ByteWriter& out, const ValueForest<Inputs>& value) {
-  out.list(std::vector<double>(value.trend.numbers().begin(), value.trend.numbers().end()));
+  out.list(std::vector<double>(value.trend.parameters().begin(), value.trend.parameters().end()));
   write_optional(out, value.forest);
 }
 
 template <int Inputs>
-ValueForest<Inputs> read_value(ByteReader& in) {
+ValueForest<Inputs> read_value(ByteReader& in, bool has_trend) {
   ValueForest<Inputs> value;
-  std::vector<double> numbers = in.list<double>();
-  if (!numbers.empty() && numbers.size() != QuadraticTrend<Inputs>::count_of_numbers) {
+  std::vector<double> numbers;
+  if (has_trend) numbers = in.list<double>();
+  if (!numbers.empty() && numbers.size() != QuadraticTrend<Inputs>::count_of_parameters) {
     in.fail("is damaged: its trend has " + std::to_string(numbers.size()) + " numbers");
   }
-  value.trend.set_numbers(std::move(numbers));
+  value.trend.set_parameters(std::move(numbers));
   value.forest = read_optional<Forest<Inputs, 1, LinearLeaf>>(in);
   return value;
 }
@@ -177,7 +179,8 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const R
 template <Problem P>
 RfpiState<P> load_checkpoint(std::span<const std::byte> bytes, const std::string& path, std::uint64_t fingerprint) {
   ByteReader in(bytes, "checkpoint " + path);
-  expect_format(in, detail::checkpoint_format);
+  const bool first = has_format(in, detail::first_checkpoint_format);
+  expect_format(in, first ? detail::first_checkpoint_format : detail::checkpoint_format);
   if (in.u64() != fingerprint) {
     throw SolveError(in.source() +
                      " belongs to a run with another problem, other options or another seed: "
@@ -192,13 +195,15 @@ RfpiState<P> load_checkpoint(std::span<const std::byte> bytes, const std::string
   state.work.fits = in.u64();
   state.samples = detail::read_samples<P>(in);
   state.previous = detail::read_samples<P>(in);
-  state.value = detail::read_value<RfpiState<P>::inputs>(in);
+  state.value = detail::read_value<RfpiState<P>::inputs>(in, !first);
   state.policy = detail::read_optional<typename RfpiState<P>::ActionForest>(in);
-  state.cost = in.f64();
-  state.leaves = static_cast<int>(in.u32() & 0x7FFFFFFFU);
+  if (!first) {
+    state.cost = in.f64();
+    state.leaves = static_cast<int>(in.u32() & 0x7FFFFFFFU);
+  }
   state.best_policy = detail::read_optional<typename RfpiState<P>::ActionForest>(in);
   state.best_cost = in.f64();
-  state.worse = static_cast<int>(in.u32() & 0x7FFFFFFFU);
+  if (!first) state.worse = static_cast<int>(in.u32() & 0x7FFFFFFFU);
   const std::uint64_t entries = in.u64();
   if (entries > in.remaining() / 60) in.fail("ends too early");
   for (std::uint64_t i = 0; i < entries; ++i) {

@@ -31,9 +31,9 @@ class QuadraticTrend {
   static constexpr Eigen::Index most_samples = 20'000;  // enough for any number of inputs here; more are thinned out
   static constexpr double ridge = 1e-6;                 // of the samples' own sum of squares: keeps dependent inputs solvable
   bool empty() const { return coefficients_.empty(); }
-  std::span<const double> numbers() const { return coefficients_; }  // coefficients, means, 1 / spreads, bounds
-  void set_numbers(std::vector<double> numbers) { coefficients_ = std::move(numbers); }
-  static constexpr std::size_t count_of_numbers = static_cast<std::size_t>(terms + 2 * Inputs + 2);
+  std::span<const double> parameters() const { return coefficients_; }  // coefficients, means, 1 / spreads, bounds
+  void set_parameters(std::vector<double> parameters) { coefficients_ = std::move(parameters); }
+  static constexpr std::size_t count_of_parameters = static_cast<std::size_t>(terms + 2 * Inputs + 2);
 
   double operator()(const float* x) const {
     const double* c = coefficients_.data();
@@ -66,7 +66,7 @@ class QuadraticTrend {
  private:
   // Means and spreads of the inputs, bounds of the outputs.
   void prepare(const Dataset<Inputs, 1>& data, Eigen::Index stride) {
-    coefficients_.assign(count_of_numbers, 0.0);
+    coefficients_.assign(count_of_parameters, 0.0);
     double* mean = coefficients_.data() + terms;
     double* scale = mean + Inputs;
     Vec<Inputs> sum = Vec<Inputs>::Zero(), squares = Vec<Inputs>::Zero();
