@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "surefoot/core/executor.hpp"
@@ -14,9 +16,9 @@ namespace {
 
 using Problem2 = toy::DoubleIntegrator;
 
-/// A value forest of minus the squared distance from the origin, and of noise.
-ValueForest<2> value_with_noise(double noise) {
-  Rng rng(1);
+/// A tree that has learnt minus the squared distance from the origin, and noise.
+Forest<2, 1, LinearLeaf> tree_with_noise(double noise, std::uint64_t seed) {
+  Rng rng(seed);
   Dataset<2, 1> data;
   data.inputs.resize(2, 2000);
   data.outputs.resize(1, 2000);
@@ -25,9 +27,14 @@ ValueForest<2> value_with_noise(double noise) {
     data.inputs.col(i) = x.cast<float>();
     data.outputs(0, i) = -x.squaredNorm() + noise * rng.normal();
   }
-  ValueForest<2> value;
-  value.forest = train_extra_trees<LinearLeaf>(data, {.trees = 12, .min_leaf = 5, .model_score = false}, Serial{}, 1);
-  return value;
+  return train_extra_trees<LinearLeaf>(data, {.trees = 1, .min_leaf = 5, .model_score = false}, Serial{}, 1);
+}
+
+/// Twelve of them, each with noise of its own.
+ValueForest<2> value_with_noise(double noise) {
+  std::vector<Forest<2, 1, LinearLeaf>> trees;
+  for (std::uint64_t seed = 0; seed < 12; ++seed) trees.push_back(tree_with_noise(noise, seed));
+  return {{}, merge(std::span<const Forest<2, 1, LinearLeaf>>(trees))};
 }
 
 std::vector<Vec<2>> some_states() {

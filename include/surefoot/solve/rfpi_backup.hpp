@@ -64,7 +64,7 @@ std::vector<typename P::State> choose_states(const P& problem, const RfpiOptions
     // Every action is random, held for some steps.
     const auto visited = visit([&](auto some) { return std::vector<typename P::Action>(some.size()); }, 1.0);
     work.steps += visited.size();
-    const auto some = random_subset(visited, wanted, choice);
+    const auto some = random_subset(visited, std::min(wanted, count - std::min(count, states.size())), choice);
     states.insert(states.end(), some.begin(), some.end());
   }
   const std::size_t from_box = initial ? count - std::min(count, states.size())

@@ -58,12 +58,21 @@ double add_runs(const P& problem, const F& policy, int horizon, std::uint64_t se
   return cost / runs;
 }
 
+/// RandomPolicy with the problem's own type of action.
+template <Problem P>
+struct RandomActions {
+  Box<P::action_dim> box;
+  Rng rng = Rng(0);
+  void reset(const Rng& from) { rng = from; }
+  typename P::Action operator()(const typename P::State&) { return box.sample(rng); }
+};
+
 template <Problem P, Policy<P> F>
 LearningSigns learning_signs(const P& problem, const F& policy, int horizon, std::uint64_t seed) {
   LearningSigns signs;
   signs.least_reward = std::numeric_limits<double>::infinity();
   signs.greatest_reward = -signs.least_reward;
-  signs.random_cost = add_runs(problem, RandomPolicy<P::action_dim>(problem.action_box()), horizon, seed, signs);
+  signs.random_cost = add_runs(problem, RandomActions<P>{problem.action_box()}, horizon, seed, signs);
   signs.learnt_cost = add_runs(problem, policy, horizon, seed, signs);
   return signs;
 }
