@@ -27,8 +27,9 @@ SUREFOOT_INLINE std::vector<std::string> hints(const LearningSigns& signs, const
                     std::to_string(options.horizon) + ") longer");
   } else if (signs.random_cost - signs.learnt_cost < criteria.no_gain * std::abs(signs.random_cost)) {
     found.push_back("the policy costs " + text(signs.learnt_cost) + ", random actions " + text(signs.random_cost) +
-                    ": nothing was learnt yet. Multiply budget.counted_seconds by five, raise exploration (" +
-                    text(options.exploration) + "), or let some runs start where more can be gained");
+                    ": nothing was learnt yet. Make the horizon (" + std::to_string(options.horizon) +
+                    ") longer if nothing can be reached within it, multiply budget.counted_seconds by five, or let some "
+                    "runs start where more can be gained");
   }
   if (ahead < criteria.short_sight * signs.mean_length) {
     found.push_back("runs last " + text(signs.mean_length) + " transitions, but with a discount of " +
