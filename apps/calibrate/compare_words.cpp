@@ -88,6 +88,7 @@ std::string coefficient_sentence(const WalkComparison& comparison, const WalkCha
   const SpokenAxis* of = axis_named(name.substr(0, 2));
   if (of == nullptr) return phrase("%s changed by %.3g", change.name.c_str(), size);
   if (name.ends_with("offset")) return drift(*of, size);
+  if (name.find(" and ") != std::string_view::npos) return gain(of->name, "", size);  // a factor
   const bool last = name.find(" last ") != std::string_view::npos;
   const std::string_view rest = name.substr(last ? 12 : 7);
   const SpokenAxis* per = axis_named(rest.substr(0, 2));

@@ -55,15 +55,38 @@ struct FittedFormerWalk {
   int delay = 0;  // [cycles]
 };
 
-SUREFOOT_INLINE std::vector<WalkSequence> delayed(std::span<const WalkSequence> sequences, int cycles) {
-  std::vector<WalkSequence> result(sequences.begin(), sequences.end());
-  for (WalkSequence& sequence : result) {
-    const Eigen::Matrix3Xd commanded = sequence.commands;
+/// The sequence from a later cycle on, seen from the pose before it; as it is, if that was not measured.
+SUREFOOT_INLINE WalkSequence without_first(const WalkSequence& sequence, Eigen::Index cycles) {
+  if (cycles == 0 || sequence.cycles() <= cycles) return sequence;
+  if (!sequence.position_measured(cycles - 1) || !sequence.heading_measured(cycles - 1)) return sequence;
+  const Eigen::Index left = sequence.cycles() - cycles;
+  WalkSequence rest{.name = sequence.name, .command_before = sequence.commands.col(cycles - 1)};
+  rest.commands.resize(3, left);
+  rest.poses.resize(3, left);
+  const Vec<3> start = sequence.poses.col(cycles - 1);
+  const Pose2 from = Pose2::from_vec(start).inverse();
+  for (Eigen::Index i = 0; i < left; ++i) {
+    const Vec<3> pose = sequence.poses.col(cycles + i);
+    const Vec<2> position = from.transform(pose.head<2>());
+    const double turned = pose[2] - start[2];
+    rest.commands.col(i) = sequence.commands.col(cycles + i);
+    rest.poses.col(i) << position, std::isfinite(turned) ? wrap_angle(turned) : turned;
+  }
+  return rest;
+}
+
+/// The sequences as if every command had come later by so many cycles, without their first cycles, at least those whose
+/// commands are not known then.
+SUREFOOT_INLINE std::vector<WalkSequence> delayed(std::span<const WalkSequence> sequences, int cycles, int first = 0) {
+  std::vector<WalkSequence> result;
+  for (const WalkSequence& sequence : sequences) {
+    WalkSequence late = sequence;
     for (Eigen::Index i = 0; i < sequence.cycles(); ++i) {
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        sequence.commands(axis, i) = i < cycles ? sequence.command_before[axis] : commanded(axis, i - cycles);
+        late.commands(axis, i) = i < cycles ? sequence.command_before[axis] : sequence.commands(axis, i - cycles);
       }
     }
+    result.push_back(without_first(late, std::max(first, cycles == 0 ? 0 : cycles + 1)));
   }
   return result;
 }
@@ -82,25 +105,29 @@ SUREFOOT_INLINE double mean_inflation(const Eigen::MatrixXd& spread) {
   return std::max(1.0, spread.trace() / static_cast<double>(spread.rows()));
 }
 
+/// The index of the one that leaves least.
+SUREFOOT_INLINE std::size_t best_fit(const std::vector<SequenceFit>& fits) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < fits.size(); ++i) {
+    if (fits[i].squares.sum() < fits[best].squares.sum()) best = i;
+  }
+  return best;
+}
+
 /// The delay of commands that the old walk was recorded with: none, unless another one is far more likely.
 SUREFOOT_INLINE int former_delay(std::span<const WalkSequence> recorded, const AnyMotionModel& start,
                                  const MotionNoise& noise, const WalkChangeOptions& options) {
   const ParameterPrior prior{start.default_parameters(), prior_information(start, options.prior)};
-  int best = 0;
-  double largest = 0;  // [nats] more than without a delay
-  double none = 0;
+  std::vector<SequenceFit> fits;
   for (int delay = 0; delay <= options.largest_delay; ++delay) {
-    const SequenceFit fit = fit_sequences(delayed(recorded, delay), start, noise, options.accuracy, prior);
-    const SequenceFit* const one[] = {&fit};
-    const double likelihood = log_best_likelihood(fit, mean_inflation(sequence_spread(one)));
-    if (delay == 0) none = likelihood;
-    const double needed = std::log(options.certainty / (1 - options.certainty));
-    if (delay > 0 && likelihood - none > std::max(largest, needed)) {
-      best = delay;
-      largest = likelihood - none;
-    }
+    fits.push_back(fit_sequences(delayed(recorded, delay, options.largest_delay + 1), start, noise, options.accuracy,
+                                 prior));
   }
-  return best;
+  const std::size_t best = best_fit(fits);
+  const SequenceFit* const likeliest[] = {&fits[best]};
+  const double inflation = mean_inflation(sequence_spread(likeliest));
+  const double more = log_best_likelihood(fits[best], inflation) - log_best_likelihood(fits[0], inflation);
+  return more > std::log(options.certainty / (1 - options.certainty)) ? static_cast<int>(best) : 0;
 }
 
 SUREFOOT_INLINE FittedFormerWalk fit_former(const FormerWalk& before, const WalkChangeOptions& options) {
@@ -139,16 +166,9 @@ SUREFOOT_INLINE std::vector<SequenceFit> fit_by_delay(const std::vector<std::vec
   return fits;
 }
 
-SUREFOOT_INLINE std::size_t best_fit(const std::vector<SequenceFit>& fits) {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < fits.size(); ++i) {
-    if (fits[i].squares.sum() < fits[best].squares.sum()) best = i;
-  }
-  return best;
-}
-
-/// The evidence about the coefficients for one delay.
-SUREFOOT_INLINE DifferenceEvidence difference_evidence(const SequenceFit& before, const SequenceFit& after, int delay,
+/// The evidence about the coefficients for one delay; `common` is the fit to the cycles that are seen at all delays.
+SUREFOOT_INLINE DifferenceEvidence difference_evidence(const SequenceFit& before, const SequenceFit& after,
+                                                       const SequenceFit& common, int delay,
                                                        const Eigen::MatrixXd& spread, double freedoms) {
   DifferenceEvidence result{.delay = delay, .freedoms = freedoms};
   result.difference = after.model.parameters() - before.model.parameters();
@@ -158,7 +178,7 @@ SUREFOOT_INLINE DifferenceEvidence difference_evidence(const SequenceFit& before
   result.information = root.inverse();
   const double squared = squared_norm(root.solve_lower(result.difference));
   const double half = 0.5 * (freedoms + static_cast<double>(result.difference.size()));
-  result.log_evidence = log_best_likelihood(after, mean_inflation(spread)) + half_log_determinant(own) -
+  result.log_evidence = log_best_likelihood(common, mean_inflation(spread)) + half_log_determinant(own) -
                         root.half_log_determinant() - half * std::log1p(squared / freedoms);
   return result;
 }
@@ -273,10 +293,13 @@ SUREFOOT_INLINE WalkComparison compare_walks(const FormerWalk& before, std::span
   check(after);
   const detail::FittedFormerWalk former = detail::fit_former(before, options);
   const std::vector<int> delays = detail::possible_delays(former.delay, options.largest_delay);
-  std::vector<std::vector<WalkSequence>> by_delay;
-  for (const int delay : delays) by_delay.push_back(detail::delayed(after, delay + former.delay));
+  std::vector<std::vector<WalkSequence>> by_delay, common;
+  for (const int delay : delays) {
+    by_delay.push_back(detail::delayed(after, delay + former.delay));
+    common.push_back(detail::delayed(after, delay + former.delay, options.largest_delay + 1));
+  }
+  const std::size_t best = detail::best_fit(detail::fit_by_delay(common, former.fit.model, former.noise, options));
   std::vector<SequenceFit> fits = detail::fit_by_delay(by_delay, former.fit.model, former.noise, options);
-  std::size_t best = detail::best_fit(fits);
   WalkComparison result{.before = former.fit.model, .after = fits[best].model, .former_delay = former.delay};
   const std::vector<WalkSequence> recorded = detail::delayed(before.recorded, former.delay);
   const detail::NoiseOfWalks noise =
@@ -284,7 +307,7 @@ SUREFOOT_INLINE WalkComparison compare_walks(const FormerWalk& before, std::span
                             options.accuracy, options.noise_deviation);
   result.noise = noise.components;
   fits = detail::fit_by_delay(by_delay, former.fit.model, noise.after, options);
-  best = detail::best_fit(fits);
+  const std::vector<SequenceFit> alike = detail::fit_by_delay(common, former.fit.model, noise.after, options);
   std::vector<const SequenceFit*> seen{&fits[best]};
   if (!recorded.empty()) seen.push_back(&former.fit);
   const Eigen::MatrixXd spread = sequence_spread(seen);
@@ -293,7 +316,7 @@ SUREFOOT_INLINE WalkComparison compare_walks(const FormerWalk& before, std::span
   std::vector<DifferenceEvidence> evidence;
   for (std::size_t i = 0; i < delays.size(); ++i) {
     evidence.push_back(
-        detail::difference_evidence(former.fit, fits[i], delays[i], spread, std::max(1.0, sequences - 2)));
+        detail::difference_evidence(former.fit, fits[i], alike[i], delays[i], spread, std::max(1.0, sequences - 2)));
   }
   result.changes = detail::possible_changes(former.fit.model, options.jump_deviation, options.delay_deviation,
                                             !recorded.empty());

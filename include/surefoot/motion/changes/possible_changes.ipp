@@ -43,6 +43,19 @@ SUREFOOT_INLINE void add_sides(const AnyMotionModel& model, double jump, std::ve
   }
 }
 
+/// Of what is done at once and in the next cycle, by the same factor: of a gain where part of it comes later.
+SUREFOOT_INLINE void add_whole_gains(const AnyMotionModel& model, double deviation, std::vector<WalkChange>& changes) {
+  for (const std::string of : {"dx", "dy", "dt"}) {
+    const int present = coefficient_named(model, of + " per " + of),
+              last = coefficient_named(model, of + " per last " + of);
+    if (present < 0 || last < 0) continue;
+    Eigen::VectorXd direction = Eigen::VectorXd::Zero(model.parameter_count());
+    direction[present] = model.parameters()[present];
+    direction[last] = model.parameters()[last];
+    changes.push_back({.name = of + " per " + of + " and last " + of, .direction = direction, .deviation = deviation});
+  }
+}
+
 /// What is done in the next cycle in place of this one, to first order: every coefficient of a command moves on to that
 /// of the last command.
 SUREFOOT_INLINE void add_part_of_cycle(const AnyMotionModel& model, double deviation, std::vector<WalkChange>& changes) {
@@ -61,6 +74,7 @@ SUREFOOT_INLINE void add_part_of_cycle(const AnyMotionModel& model, double devia
 
 SUREFOOT_INLINE std::vector<WalkChange> possible_changes(const AnyMotionModel& before, double jump, double delay,
                                                          bool sides_calibrated) {
+  constexpr double widest_gain = 3;  // width of the range of a gain: a factor, as that of a gain of 1
   std::vector<WalkChange> changes;
   const Eigen::VectorXd width = before.parameter_box().width();
   Eigen::Index i = 0;
@@ -74,6 +88,7 @@ SUREFOOT_INLINE std::vector<WalkChange> possible_changes(const AnyMotionModel& b
     ++i;
   }
   if (sides_calibrated) add_sides(before, jump, changes);
+  add_whole_gains(before, jump * widest_gain, changes);
   add_part_of_cycle(before, delay, changes);
   return changes;
 }
