@@ -274,14 +274,21 @@ SUREFOOT_INLINE Eigen::VectorXd sizes_alone(const WalkComparison& result, const 
   return sizes;
 }
 
+/// Half of the prior weight is that of the coefficients, the other half is shared by the kinds delay, noise and falls.
+constexpr double other_kinds = 3;
+
 /// Changes that are not of coefficients, in the order: components of the noise, falls.
 SUREFOOT_INLINE void add_other_changes(const std::optional<WalkFalls>& falls, WalkComparison& result) {
+  const auto coefficients = static_cast<double>(result.changes.size());
+  const double weight = coefficients / other_kinds;
   for (const NoiseChange& noise : result.noise) {
-    result.changes.push_back({.name = noise.name, .log_bayes_factor = noise.change.log_bayes_factor});
+    result.changes.push_back({.name = noise.name,
+                              .weight = weight / static_cast<double>(result.noise.size()),
+                              .log_bayes_factor = noise.change.log_bayes_factor});
   }
   if (falls && falls->before.fell + falls->after.fell > 0) {
     result.falls = fall_change(falls->before, falls->after);
-    result.changes.push_back({.name = "falls", .log_bayes_factor = result.falls->log_bayes_factor});
+    result.changes.push_back({.name = "falls", .weight = weight, .log_bayes_factor = result.falls->log_bayes_factor});
   }
 }
 
@@ -320,8 +327,10 @@ SUREFOOT_INLINE WalkComparison compare_walks(const FormerWalk& before, std::span
   }
   result.changes = detail::possible_changes(former.fit.model, options.jump_deviation, options.delay_deviation,
                                             !recorded.empty());
+  SparseChangeOptions sets = options.sets;
+  sets.delay_weight = static_cast<double>(result.changes.size()) / detail::other_kinds;
   detail::add_other_changes(falls, result);
-  result.posterior = posterior_of_changes(evidence, result.changes, options.sets);
+  result.posterior = posterior_of_changes(evidence, result.changes, sets);
   result.found = detail::certain_changes(result.posterior, options.certainty);
   result.likeliest = detail::likeliest_set(result.posterior, result.found);
   const auto chosen =

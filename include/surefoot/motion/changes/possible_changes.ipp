@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,10 +46,12 @@ SUREFOOT_INLINE void add_sides(const AnyMotionModel& model, double jump, std::ve
 
 /// Of what is done at once and in the next cycle, by the same factor: of a gain where part of it comes later.
 SUREFOOT_INLINE void add_whole_gains(const AnyMotionModel& model, double deviation, std::vector<WalkChange>& changes) {
+  constexpr double least_share = 0.2;  // of the next cycle; with less it is as if the gain alone changed
   for (const std::string of : {"dx", "dy", "dt"}) {
     const int present = coefficient_named(model, of + " per " + of),
               last = coefficient_named(model, of + " per last " + of);
     if (present < 0 || last < 0) continue;
+    if (std::abs(model.parameters()[last]) < least_share * std::abs(model.parameters()[present])) continue;
     Eigen::VectorXd direction = Eigen::VectorXd::Zero(model.parameter_count());
     direction[present] = model.parameters()[present];
     direction[last] = model.parameters()[last];

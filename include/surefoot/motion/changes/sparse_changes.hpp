@@ -1,6 +1,6 @@
 // Which few of many coefficients changed between two calibrations: the posterior probability of every sparse set of
 // changes, given the difference of the coefficients and how well it is known. Half of the prior is for no change; sets of
-// k changes share 1 / 2^(k+1). What a set predicts of the difference is its marginal likelihood (spike and slab: Mitchell
+// k changes share 1 / 2^(k+1), each by the product of the weights of its changes. What a set predicts of the difference is its marginal likelihood (spike and slab: Mitchell
 // and Beauchamp, "Bayesian variable selection in linear regression", Journal of the American Statistical Association
 // 83, 1988); the difference is Student's, since its covariance comes from a limited number of sequences. Sets are
 // searched from small to large, the best of each size being enlarged. Cost: size^3 per set, some ten thousand sets.
@@ -20,6 +20,7 @@ struct WalkChange {
   std::string name;
   Eigen::VectorXd direction = {};  // by coefficient, for a change of size 1; empty: not a change of coefficients
   double deviation = 0;            // standard deviation of the size, before anything is known
+  double weight = 1;               // how likely it is beside the others, before anything is known
   double log_bayes_factor = 0;     // of changes that are not of coefficients: of a change against none [nats]
 };
 
@@ -34,6 +35,7 @@ struct DifferenceEvidence {
 
 struct SparseChangeOptions {
   double nothing = 0.5;       // prior probability that nothing changed
+  double delay_weight = 1;    // of a delay beside the changes
   int largest_set = 10;       // sets of more changes are not looked at: the walk as a whole is another one then
   int enlarged = 100;         // best sets of each size that are enlarged; all pairs of 14 changes
   double negligible = 1e-5;   // a size whose sets have less than this posterior probability ends the search

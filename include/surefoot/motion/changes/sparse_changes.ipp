@@ -123,12 +123,33 @@ class ChangeEvidence {
   double squared_ = 0;
 };
 
-/// Logarithm of the prior probability of one set of that size out of `count` changes.
-SUREFOOT_INLINE double log_set_prior(int size, int count, double nothing) {
-  if (size == 0) return std::log(nothing);
-  const double sets = std::lgamma(count + 1.0) - std::lgamma(size + 1.0) - std::lgamma(count - size + 1.0);
-  return std::log(1 - nothing) - size * std::log(2.0) - sets;
-}
+/// Prior probabilities of sets of changes.
+class SetPrior {
+ public:
+  SetPrior(std::span<const WalkChange> changes, bool delays, const SparseChangeOptions& options)
+      : nothing_(options.nothing) {
+    for (const WalkChange& change : changes) weights_.push_back(change.weight);
+    weights_.push_back(delays ? options.delay_weight : 0);
+    sums_.assign(weights_.size() + 1, 0);
+    sums_[0] = 1;
+    for (const double weight : weights_) {
+      for (std::size_t size = sums_.size() - 1; size > 0; --size) sums_[size] += weight * sums_[size - 1];
+    }
+  }
+
+  /// Logarithm of the probability of this set, with a delay or without one.
+  double log_probability(std::span<const int> members, bool delayed) const {
+    const std::size_t size = members.size() + (delayed ? 1 : 0);
+    if (size == 0) return std::log(nothing_);
+    double result = std::log(1 - nothing_) - static_cast<double>(size) * std::log(2.0) - std::log(sums_[size]);
+    for (const int i : members) result += std::log(weights_[static_cast<std::size_t>(i)]);
+    return delayed ? result + std::log(weights_.back()) : result;
+  }
+
+ private:
+  double nothing_;
+  std::vector<double> weights_, sums_;  // of each change, the delay last; of all products of so many of them
+};
 
 struct WeightedSet {
   std::vector<int> members;
@@ -165,9 +186,9 @@ SUREFOOT_INLINE std::vector<WeightedSet> search_sets(const DifferenceEvidence& e
   const auto count = static_cast<int>(changes.size());
   const bool delayed = evidence.delay != 0;
   const double base = evidence.log_evidence - (delayed ? std::log(delays - 1.0) : 0.0);
+  const SetPrior prior(changes, delays > 1, options);
   const auto weight = [&](const std::vector<int>& members) {
-    const int size = static_cast<int>(members.size()) + (delayed ? 1 : 0);
-    return base + log_set_prior(size, count + (delays > 1 ? 1 : 0), options.nothing) + data.log_bayes_factor(members);
+    return base + prior.log_probability(members, delayed) + data.log_bayes_factor(members);
   };
   std::vector<WeightedSet> all{{{}, weight({})}}, best = all;
   for (int size = 1; size <= std::min(options.largest_set, count); ++size) {
@@ -244,8 +265,8 @@ SUREFOOT_INLINE double smallest_detectable(const DifferenceEvidence& evidence, s
   if (one.direction.size() == 0) return std::numeric_limits<double>::infinity();
   const double seen = detail::ChangeEvidence(evidence, changes).gram(change);
   const double gain = 1 + seen * one.deviation * one.deviation;
-  const double prior_odds = detail::log_set_prior(0, static_cast<int>(changes.size()) + 1, options.nothing) -
-                            detail::log_set_prior(1, static_cast<int>(changes.size()) + 1, options.nothing);
+  const detail::SetPrior prior(changes, true, options);
+  const double prior_odds = prior.log_probability({}, false) - prior.log_probability(std::span(&change, 1), false);
   const double needed = std::log(certainty / (1 - certainty)) + prior_odds + 0.5 * std::log(gain);
   const double sum = evidence.freedoms + static_cast<double>(evidence.difference.size());
   const double ratio = std::exp(2 * needed / sum);
