@@ -5,7 +5,8 @@
 #include <cstdarg>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <numbers>
+#include <string_view>
+#include <vector>
 
 #include "compare_words.hpp"
 
@@ -29,6 +30,14 @@ constexpr double half_interval = 1.96;  // [standard errors] to either side: 95 
 const char* verdict(double probability, double certainty) {
   if (probability >= certainty) return "changed";
   return probability <= 1 - certainty ? "-" : "perhaps";
+}
+
+std::vector<std::string_view> changed_coefficients(const ComparedWalks& walks) {
+  std::vector<std::string_view> names;
+  for (const CoefficientComparison& one : walks.comparison.coefficients) {
+    if (one.probability >= walks.certainty) names.push_back(one.info.name);
+  }
+  return names;
 }
 
 std::string coefficient_table(const ComparedWalks& walks) {
@@ -129,6 +138,9 @@ std::string compare_report(const ComparedWalks& walks) {
         result.posterior.nothing, walks.certainty);
   }
   for (const std::string& sentence : change_sentences(result, walks.falls)) text += sentence + "\n";
+  std::string names;
+  for (const std::string_view name : changed_coefficients(walks)) names += (names.empty() ? "" : ", ") + std::string(name);
+  if (!names.empty()) text += "Coefficients that changed: " + names + ".\n";
   if (result.former_delay > 0) {
     append(text, "Already the old walk responded later than its commands, by %d cycles.\n", result.former_delay);
   }
@@ -146,6 +158,7 @@ std::string compare_json(const ComparedWalks& walks) {
             {"certainty", walks.certainty},
             {"probability_nothing_changed", result.posterior.nothing},
             {"found", found_json(walks)},
+            {"changed_coefficients", changed_coefficients(walks)},
             {"coefficients", coefficients_json(walks)},
             {"noise", noise_json(result)},
             {"delay_cycles", result.likeliest.delay},

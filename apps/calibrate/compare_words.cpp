@@ -77,7 +77,7 @@ std::string coupling(const SpokenAxis& of, const SpokenAxis& per, double size, b
   const double command = turn ? 10 * degree : 0.1;
   const std::string asked = phrase("a command of %s %s%s", turn ? "10 degrees" : "10 cm",
                                     std::string(per.positive).c_str(), last ? " in the cycle before" : "");
-  return phrase("%s %s it by %.2g %s more %s", asked.c_str(), of.name == "dt" ? "turns" : "moves",
+  return phrase("answers %s by %.2g %s more %s", asked.c_str(),
                  std::abs(size) * command * of.shown, std::string(of.unit).c_str(),
                  std::string(size > 0 ? of.positive : of.negative).c_str());
 }

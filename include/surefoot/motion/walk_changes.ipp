@@ -17,8 +17,9 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/error.hpp"
 #include "surefoot/motion/calibrate.hpp"
+#include "surefoot/motion/changes/delayed_commands.hpp"
 #include "surefoot/motion/changes/possible_changes.hpp"
-#include "surefoot/motion/changes/sequence_spread.hpp"
+#include "surefoot/motion/changes/sequence_fit.hpp"
 #include "surefoot/motion/changes/walk_noise.hpp"
 #include "surefoot/motion/monitor/cholesky.hpp"
 #include "surefoot/motion/monitor/recursive_update.hpp"
@@ -55,42 +56,6 @@ struct FittedFormerWalk {
   int delay = 0;  // [cycles]
 };
 
-/// The sequence from a later cycle on, seen from the pose before it; as it is, if that was not measured.
-SUREFOOT_INLINE WalkSequence without_first(const WalkSequence& sequence, Eigen::Index cycles) {
-  if (cycles == 0 || sequence.cycles() <= cycles) return sequence;
-  if (!sequence.position_measured(cycles - 1) || !sequence.heading_measured(cycles - 1)) return sequence;
-  const Eigen::Index left = sequence.cycles() - cycles;
-  WalkSequence rest{.name = sequence.name, .command_before = sequence.commands.col(cycles - 1)};
-  rest.commands.resize(3, left);
-  rest.poses.resize(3, left);
-  const Vec<3> start = sequence.poses.col(cycles - 1);
-  const Pose2 from = Pose2::from_vec(start).inverse();
-  for (Eigen::Index i = 0; i < left; ++i) {
-    const Vec<3> pose = sequence.poses.col(cycles + i);
-    const Vec<2> position = from.transform(pose.head<2>());
-    const double turned = pose[2] - start[2];
-    rest.commands.col(i) = sequence.commands.col(cycles + i);
-    rest.poses.col(i) << position, std::isfinite(turned) ? wrap_angle(turned) : turned;
-  }
-  return rest;
-}
-
-/// The sequences as if every command had come later by so many cycles, without their first cycles, at least those whose
-/// commands are not known then.
-SUREFOOT_INLINE std::vector<WalkSequence> delayed(std::span<const WalkSequence> sequences, int cycles, int first = 0) {
-  std::vector<WalkSequence> result;
-  for (const WalkSequence& sequence : sequences) {
-    WalkSequence late = sequence;
-    for (Eigen::Index i = 0; i < sequence.cycles(); ++i) {
-      for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        late.commands(axis, i) = i < cycles ? sequence.command_before[axis] : sequence.commands(axis, i - cycles);
-      }
-    }
-    result.push_back(without_first(late, std::max(first, cycles == 0 ? 0 : cycles + 1)));
-  }
-  return result;
-}
-
 SUREFOOT_INLINE double half_log_determinant(const Eigen::MatrixXd& covariance) {
   return Cholesky(covariance).half_log_determinant();
 }
@@ -101,8 +66,8 @@ SUREFOOT_INLINE double log_best_likelihood(const SequenceFit& fit, double inflat
 }
 
 /// How much more whole sequences differ, on average over the coefficients; at least 1.
-SUREFOOT_INLINE double mean_inflation(const Eigen::MatrixXd& spread) {
-  return std::max(1.0, spread.trace() / static_cast<double>(spread.rows()));
+SUREFOOT_INLINE double mean_inflation(const Eigen::MatrixXd& inflation) {
+  return std::max(1.0, inflation.trace() / static_cast<double>(inflation.rows()));
 }
 
 /// The index of the one that leaves least.
@@ -125,7 +90,7 @@ SUREFOOT_INLINE int former_delay(std::span<const WalkSequence> recorded, const A
   }
   const std::size_t best = best_fit(fits);
   const SequenceFit* const likeliest[] = {&fits[best]};
-  const double inflation = mean_inflation(sequence_spread(likeliest));
+  const double inflation = mean_inflation(covariance_inflation(likeliest));
   const double more = log_best_likelihood(fits[best], inflation) - log_best_likelihood(fits[0], inflation);
   return more > std::log(options.certainty / (1 - options.certainty)) ? static_cast<int>(best) : 0;
 }
@@ -169,27 +134,18 @@ SUREFOOT_INLINE std::vector<SequenceFit> fit_by_delay(const std::vector<std::vec
 /// The evidence about the coefficients for one delay; `common` is the fit to the cycles that are seen at all delays.
 SUREFOOT_INLINE DifferenceEvidence difference_evidence(const SequenceFit& before, const SequenceFit& after,
                                                        const SequenceFit& common, int delay,
-                                                       const Eigen::MatrixXd& spread, double freedoms) {
+                                                       const Eigen::MatrixXd& inflation, double freedoms) {
   DifferenceEvidence result{.delay = delay, .freedoms = freedoms};
   result.difference = after.model.parameters() - before.model.parameters();
-  const Eigen::MatrixXd own = after.covariance(spread), covariance = before.covariance(spread) + own;
+  const Eigen::MatrixXd own = after.covariance(inflation), covariance = before.covariance(inflation) + own;
   const Cholesky root(covariance);
   if (!root.ok()) throw MotionError("the covariance of the coefficients is not positive definite");
   result.information = root.inverse();
   const double squared = squared_norm(root.solve_lower(result.difference));
   const double half = 0.5 * (freedoms + static_cast<double>(result.difference.size()));
-  result.log_evidence = log_best_likelihood(common, mean_inflation(spread)) + half_log_determinant(own) -
+  result.log_evidence = log_best_likelihood(common, mean_inflation(inflation)) + half_log_determinant(own) -
                         root.half_log_determinant() - half * std::log1p(squared / freedoms);
   return result;
-}
-
-/// All delays, none first.
-SUREFOOT_INLINE std::vector<int> possible_delays(int former, int largest) {
-  std::vector<int> delays{0};
-  for (int delay = 0; delay <= largest; ++delay) {
-    if (delay != former) delays.push_back(delay - former);
-  }
-  return delays;
 }
 
 /// The statements that are certain enough: first of single changes, then that one of several happened.
@@ -317,13 +273,13 @@ SUREFOOT_INLINE WalkComparison compare_walks(const FormerWalk& before, std::span
   const std::vector<SequenceFit> alike = detail::fit_by_delay(common, former.fit.model, noise.after, options);
   std::vector<const SequenceFit*> seen{&fits[best]};
   if (!recorded.empty()) seen.push_back(&former.fit);
-  const Eigen::MatrixXd spread = sequence_spread(seen);
-  result.inflation = spread.trace() / static_cast<double>(spread.rows());
+  const Eigen::MatrixXd inflation = covariance_inflation(seen);
+  result.inflation = inflation.trace() / static_cast<double>(inflation.rows());
   const double sequences = static_cast<double>((recorded.empty() ? before.sequences : recorded.size()) + after.size());
   std::vector<DifferenceEvidence> evidence;
   for (std::size_t i = 0; i < delays.size(); ++i) {
     evidence.push_back(
-        detail::difference_evidence(former.fit, fits[i], alike[i], delays[i], spread, std::max(1.0, sequences - 2)));
+        detail::difference_evidence(former.fit, fits[i], alike[i], delays[i], inflation, std::max(1.0, sequences - 2)));
   }
   result.changes = detail::possible_changes(former.fit.model, options.jump_deviation, options.delay_deviation,
                                             !recorded.empty());

@@ -1,9 +1,10 @@
-// Which few of many coefficients changed between two calibrations: the posterior probability of every sparse set of
-// changes, given the difference of the coefficients and how well it is known. Half of the prior is for no change; sets of
-// k changes share 1 / 2^(k+1), each by the product of the weights of its changes. What a set predicts of the difference is its marginal likelihood (spike and slab: Mitchell
-// and Beauchamp, "Bayesian variable selection in linear regression", Journal of the American Statistical Association
-// 83, 1988); the difference is Student's, since its covariance comes from a limited number of sequences. Sets are
-// searched from small to large, the best of each size being enlarged. Cost: size^3 per set, some ten thousand sets.
+// Sparse changes between two calibrations of many coefficients: the posterior probability of every small set of changes,
+// given the difference of the coefficients and how well it is known. Half of the prior is for no change; sets of k
+// changes share 1 / 2^(k+1), each by the product of the weights of its changes. What a set predicts of the difference is
+// its marginal likelihood (spike and slab: Mitchell and Beauchamp, "Bayesian variable selection in linear regression",
+// Journal of the American Statistical Association 83, 1988); the difference is Student's, since its covariance comes
+// from a limited number of sequences. Sets are searched from small to large, the best of each size being enlarged. Cost:
+// size^3 per set, some ten thousand sets.
 #pragma once
 
 #include <Eigen/Core>

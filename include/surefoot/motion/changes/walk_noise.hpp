@@ -11,7 +11,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/motion/any_motion_model.hpp"
 #include "surefoot/motion/changes/noise_change.hpp"
-#include "surefoot/motion/changes/sequence_spread.hpp"
+#include "surefoot/motion/changes/sequence_fit.hpp"
 #include "surefoot/motion/noise.hpp"
 #include "surefoot/motion/walk_sequence.hpp"
 

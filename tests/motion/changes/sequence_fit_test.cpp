@@ -1,4 +1,4 @@
-#include "surefoot/motion/changes/sequence_spread.hpp"
+#include "surefoot/motion/changes/sequence_fit.hpp"
 
 #include <doctest/doctest.h>
 
@@ -33,7 +33,7 @@ TEST_CASE("independent cycles spread by 1, an offset of each sequence by much mo
   auto walks = toys::walks(toys::paper_walk(), noise, 60, 4);
   const auto independent = fit(walks);
   const surefoot::SequenceFit* one[] = {&independent};
-  CHECK(surefoot::sequence_spread(one).trace() / 12 == doctest::Approx(1).epsilon(0.2));
+  CHECK(surefoot::covariance_inflation(one).trace() / 12 == doctest::Approx(1).epsilon(0.2));
   surefoot::Rng rng(8);
   for (auto& walk : walks) {
     auto robot = toys::paper_walk().parameters();
@@ -42,8 +42,8 @@ TEST_CASE("independent cycles spread by 1, an offset of each sequence by much mo
   }
   const auto drifting = fit(walks);
   const surefoot::SequenceFit* two[] = {&drifting};
-  const Eigen::MatrixXd spread = surefoot::sequence_spread(two);
-  const double honest = std::sqrt(drifting.covariance(spread)(4, 4));
+  const Eigen::MatrixXd inflation = surefoot::covariance_inflation(two);
+  const double honest = std::sqrt(drifting.covariance(inflation)(4, 4));
   CHECK(honest > 2 * std::sqrt(drifting.covariance(Eigen::MatrixXd::Identity(12, 12))(4, 4)));
   CHECK(honest < 2 * 0.008 / std::sqrt(60.0));
 }

@@ -1,4 +1,4 @@
-// Definitions of surefoot/motion/changes/sequence_spread.hpp.
+// Definitions of surefoot/motion/changes/sequence_fit.hpp.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/error.hpp"
-#include "surefoot/motion/changes/sequence_spread.hpp"
+#include "surefoot/motion/changes/sequence_fit.hpp"
 #include "surefoot/motion/monitor/cholesky.hpp"
 #include "surefoot/motion/monitor/recursive_update.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
@@ -92,7 +92,7 @@ SUREFOOT_INLINE LinearizedSequences converge(std::span<const WalkSequence> seque
 }
 
 /// What the residuals of a sequence would be if the fit had not followed them (CR2).
-SUREFOOT_INLINE Eigen::VectorXd unfitted_score(const Eigen::VectorXd& score, const Eigen::MatrixXd& leverage) {
+SUREFOOT_INLINE Eigen::VectorXd unfitted(const Eigen::VectorXd& score, const Eigen::MatrixXd& leverage) {
   constexpr double most = 0.999;  // of leverage: a direction that one sequence alone decides says nothing of spread
   return product(map_eigenvalues(leverage, [&](double l) { return 1 / std::sqrt(1 - std::clamp(l, 0.0, most)); }),
                  score);
@@ -118,7 +118,7 @@ SUREFOOT_INLINE SequenceFit fit_sequences(std::span<const WalkSequence> sequence
   for (const InformationUpdate& update : fitted.updates) {
     const Eigen::MatrixXd leverage = detail::sandwich(fit.root, detail::scaled(width, update.information));
     const Eigen::VectorXd score = detail::product(fit.root, Eigen::VectorXd(width.cwiseProduct(update.offset)));
-    fit.scores.push_back(detail::unfitted_score(score, leverage));
+    fit.contributions.push_back(detail::unfitted(score, leverage));
     fit.squares[next] = update.rest;
     fit.counts[next++] = static_cast<double>(update.count);
     fit.spent += leverage.trace();
@@ -126,30 +126,30 @@ SUREFOOT_INLINE SequenceFit fit_sequences(std::span<const WalkSequence> sequence
   return fit;
 }
 
-SUREFOOT_INLINE Eigen::MatrixXd SequenceFit::covariance(const Eigen::MatrixXd& spread) const {
+SUREFOOT_INLINE Eigen::MatrixXd SequenceFit::covariance(const Eigen::MatrixXd& inflation) const {
   const Eigen::MatrixXd seen = detail::map_eigenvalues(
       prior_share, [](double value) { return std::sqrt(std::clamp(1 - value, 0.0, 1.0)); });
-  const Eigen::MatrixXd whole = detail::sandwich(root, detail::sandwich(seen, spread) + prior_share);
+  const Eigen::MatrixXd whole = detail::sandwich(root, detail::sandwich(seen, inflation) + prior_share);
   return detail::scaled(detail::widths(model), whole);
 }
 
-SUREFOOT_INLINE Eigen::MatrixXd sequence_spread(std::span<const SequenceFit* const> fits) {
-  double sequences = 0, seen = 0, spread = 0;
+SUREFOOT_INLINE Eigen::MatrixXd covariance_inflation(std::span<const SequenceFit* const> fits) {
+  double sequences = 0, seen = 0;
   const Eigen::Index n = fits.front()->root.rows();
   Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(n, n);
   for (const SequenceFit* fit : fits) {
-    const auto count = static_cast<double>(fit->scores.size());
+    const auto count = static_cast<double>(fit->contributions.size());
     sequences += count;
-    for (const Eigen::VectorXd& score : fit->scores) mean += count * (score * score.transpose());
+    for (const Eigen::VectorXd& score : fit->contributions) mean += count * (score * score.transpose());
     seen += count * (static_cast<double>(n) - fit->prior_share.trace());
   }
   mean /= sequences;
-  spread = mean.trace() / std::max(seen / sequences, 1e-9);
-  const Eigen::MatrixXd target = spread * Eigen::MatrixXd::Identity(n, n);
+  const double average = mean.trace() / std::max(seen / sequences, 1e-9);
+  const Eigen::MatrixXd target = average * Eigen::MatrixXd::Identity(n, n);
   double chance = 0;  // squared error of the mean
   for (const SequenceFit* fit : fits) {
-    const auto count = static_cast<double>(fit->scores.size());
-    for (const Eigen::VectorXd& score : fit->scores) {
+    const auto count = static_cast<double>(fit->contributions.size());
+    for (const Eigen::VectorXd& score : fit->contributions) {
       chance += (count * (score * score.transpose()) - mean).squaredNorm();
     }
   }

@@ -29,13 +29,13 @@ struct SequenceFit {
   AnyMotionModel model;
   Eigen::MatrixXd root = {};                 // symmetric; its square is the covariance for independent cycles
   Eigen::MatrixXd prior_share = {};          // how much of that is the prior: from 0, not at all, to 1, all
-  std::vector<Eigen::VectorXd> scores = {};  // by sequence; the sum of their squares is 1 - prior_share if cycles are
+  std::vector<Eigen::VectorXd> contributions = {};  // by sequence; the sum of their squares is 1 - prior_share if cycles are
                                         // independent with the given noise
   Eigen::VectorXd squares = {}, counts = {};      // by sequence: sum of the squared whitened innovations, and how many there are
   double spent = 0;                     // how many of all of them the parameters took away
 
-  /// Covariance of the parameters, in their units, if whole sequences differ by `spread`.
-  Eigen::MatrixXd covariance(const Eigen::MatrixXd& spread) const;
+  /// Covariance of the parameters, in their units, if whole sequences differ by `inflation`.
+  Eigen::MatrixXd covariance(const Eigen::MatrixXd& inflation) const;
 };
 
 /// Fits from the mean of the prior on, or from `start`. Throws MotionError if a sequence cannot be used.
@@ -44,7 +44,7 @@ SequenceFit fit_sequences(std::span<const WalkSequence> sequences, const AnyMoti
 
 /// How much more, or less, whole sequences differ than independent cycles would make them: the matrix that is one for
 /// independent cycles, from all sequences of all fits.
-Eigen::MatrixXd sequence_spread(std::span<const SequenceFit* const> fits);
+Eigen::MatrixXd covariance_inflation(std::span<const SequenceFit* const> fits);
 
 namespace detail {
 
@@ -56,5 +56,5 @@ Eigen::MatrixXd map_eigenvalues(const Eigen::MatrixXd& a, const std::function<do
 }  // namespace surefoot
 
 #ifndef SUREFOOT_COMPILED
-#include "surefoot/motion/changes/sequence_spread.ipp"
+#include "surefoot/motion/changes/sequence_fit.ipp"
 #endif
