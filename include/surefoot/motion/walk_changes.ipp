@@ -180,12 +180,15 @@ SUREFOOT_INLINE ChangeSet likeliest_set(const ChangePosterior& posterior, const 
   return posterior.sets.front();
 }
 
+/// That it changed by itself, or with that of the other side or of the next cycle; a response that comes later moves all
+/// coefficients, and is a statement of its own.
 SUREFOOT_INLINE double probability_of_coefficient(const ChangePosterior& posterior, std::span<const WalkChange> changes,
                                                   Eigen::Index coefficient) {
   std::vector<int> that_move;
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const Eigen::VectorXd& direction = changes[i].direction;
-    if (direction.size() > 0 && direction[coefficient] != 0) that_move.push_back(static_cast<int>(i));
+    if (direction.size() == 0 || (direction.array() != 0).count() > 2) continue;
+    if (direction[coefficient] != 0) that_move.push_back(static_cast<int>(i));
   }
   return posterior.any_of(that_move);
 }
