@@ -15,6 +15,7 @@ void add_curve(CLI::App& program);
 void add_plan(CLI::App& program);
 void add_sheet(CLI::App& program);
 void add_update(CLI::App& program);
+void add_compare(CLI::App& program);
 void add_simulate(CLI::App& program);
 
 }  // namespace calibrate_program

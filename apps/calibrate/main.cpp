@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   calibrate_program::add_fit(program);
   calibrate_program::add_curve(program);
   calibrate_program::add_update(program);
+  calibrate_program::add_compare(program);
   calibrate_program::add_simulate(program);
   return example::run_program(program, argc, argv, "stopped; nothing was written");
 }

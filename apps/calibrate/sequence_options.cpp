@@ -11,8 +11,12 @@ namespace calibrate_program {
 using example::UsageError;
 
 void add_reading_options(CLI::App& command, SequenceOptions& options) {
-  ColumnNames& columns = options.load.columns;
   command.add_option("files", options.files, "recordings (CSV)")->required();
+  add_layout_options(command, options);
+}
+
+void add_layout_options(CLI::App& command, SequenceOptions& options) {
+  ColumnNames& columns = options.load.columns;
   command
       .add_option("--steps-per-cycle", options.load.steps_per_cycle,
                   "a perfect robot moves by this times its command in a cycle; default: what a first line "
@@ -41,6 +45,10 @@ void add_fitting_options(CLI::App& command, SequenceOptions& options) {
           "poses (CMA-ES)")
       ->check(CLI::IsMember({"likelihood", "published"}))
       ->capture_default_str();
+  add_accuracy_options(command, options);
+}
+
+void add_accuracy_options(CLI::App& command, SequenceOptions& options) {
   command.add_option("--position-accuracy", options.position_accuracy, "[m] of a measured position")
       ->check(CLI::Range(0.0, 10.0))
       ->capture_default_str();

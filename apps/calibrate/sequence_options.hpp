@@ -27,8 +27,14 @@ struct SequenceOptions {
 /// Everything about the files, and the files themselves.
 void add_reading_options(CLI::App& command, SequenceOptions& options);
 
+/// Everything about the files, but not the files.
+void add_layout_options(CLI::App& command, SequenceOptions& options);
+
 /// Accuracies and --method.
 void add_fitting_options(CLI::App& command, SequenceOptions& options);
+
+/// Accuracies alone.
+void add_accuracy_options(CLI::App& command, SequenceOptions& options);
 
 /// --seed and --threads.
 void add_work_options(CLI::App& command, SequenceOptions& options);

@@ -9,7 +9,7 @@ rooms; in forest and motion the face includes rooms and rooms the face, in any o
   diagnose   recording, simulator < effects < options, residual_model, diagnosis, text, screening < simulation
              < estimation < selection beside residual_tests, log_doctor < verdict < the rest of the face
   forest     evaluate < c, train < shrink
-  motion     fit < monitor < plan
+  motion     fit < monitor < changes < plan
 NAME.ipp is a part of NAME.hpp, which alone includes it, at its end and unless SUREFOOT_COMPILED is defined.
 The header of an area, surefoot/AREA.hpp, includes nothing but its face, all of it (itself, or through others of it; but
 for headers that stand ON_THEIR_OWN), and headers of areas that it may use; surefoot/surefoot.hpp those of all areas and
@@ -38,7 +38,7 @@ LAYERS = {
                  ["options.hpp", "residual_model.hpp", "diagnosis.hpp", "text.hpp", "screening.hpp"], ["simulation"],
                  ["estimation"], ["selection", "residual_tests", "log_doctor"], ["verdict"], ["face"]],
     "forest": [["evaluate"], ["c", "train"], ["shrink"]],
-    "motion": [["fit"], ["monitor"], ["plan"]],
+    "motion": [["fit"], ["monitor"], ["changes"], ["plan"]],
 }
 
 # Parts of the face that lie in a room, and headers of the folder that are no part of the face.
