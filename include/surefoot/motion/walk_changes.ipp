@@ -82,11 +82,12 @@ SUREFOOT_INLINE std::size_t best_fit(const std::vector<SequenceFit>& fits) {
 /// The delay of commands that the old walk was recorded with: none, unless another one is far more likely.
 SUREFOOT_INLINE int former_delay(std::span<const WalkSequence> recorded, const AnyMotionModel& start,
                                  const MotionNoise& noise, const WalkChangeOptions& options) {
+  if (!commands_vary(recorded)) return 0;
   const ParameterPrior prior{start.default_parameters(), prior_information(start, options.prior)};
   std::vector<SequenceFit> fits;
   for (int delay = 0; delay <= options.largest_delay; ++delay) {
-    fits.push_back(fit_sequences(delayed(recorded, delay, options.largest_delay + 1), start, noise, options.accuracy,
-                                 prior));
+    fits.push_back(
+        fit_sequences(delayed(recorded, delay, options.largest_delay + 1), start, noise, options.accuracy, prior));
   }
   const std::size_t best = best_fit(fits);
   const SequenceFit* const likeliest[] = {&fits[best]};
@@ -180,8 +181,8 @@ SUREFOOT_INLINE ChangeSet likeliest_set(const ChangePosterior& posterior, const 
   return posterior.sets.front();
 }
 
-/// That it changed by itself, or with that of the other side or of the next cycle; a response that comes later moves all
-/// coefficients, and is a statement of its own.
+/// That it changed by itself, or with that of the other side or of the next cycle; a response that comes later moves
+/// all coefficients, and is a statement of its own.
 SUREFOOT_INLINE double probability_of_coefficient(const ChangePosterior& posterior, std::span<const WalkChange> changes,
                                                   Eigen::Index coefficient) {
   std::vector<int> that_move;
@@ -258,7 +259,9 @@ SUREFOOT_INLINE WalkComparison compare_walks(const FormerWalk& before, std::span
   check(options);
   check(after);
   const detail::FittedFormerWalk former = detail::fit_former(before, options);
-  const std::vector<int> delays = detail::possible_delays(former.delay, options.largest_delay);
+  const bool visible =
+      detail::commands_vary(after) && (before.recorded.empty() || detail::commands_vary(before.recorded));
+  const std::vector<int> delays = detail::possible_delays(former.delay, visible ? options.largest_delay : -1);
   std::vector<std::vector<WalkSequence>> by_delay, common;
   for (const int delay : delays) {
     by_delay.push_back(detail::delayed(after, delay + former.delay));
@@ -284,16 +287,15 @@ SUREFOOT_INLINE WalkComparison compare_walks(const FormerWalk& before, std::span
     evidence.push_back(
         detail::difference_evidence(former.fit, fits[i], alike[i], delays[i], inflation, std::max(1.0, sequences - 2)));
   }
-  result.changes = detail::possible_changes(former.fit.model, options.jump_deviation, options.delay_deviation,
-                                            !recorded.empty());
+  result.changes =
+      detail::possible_changes(former.fit.model, options.jump_deviation, options.delay_deviation, !recorded.empty());
   SparseChangeOptions sets = options.sets;
   sets.delay_weight = static_cast<double>(result.changes.size()) / detail::other_kinds;
   detail::add_other_changes(falls, result);
   result.posterior = posterior_of_changes(evidence, result.changes, sets);
   result.found = detail::certain_changes(result.posterior, options.certainty);
   result.likeliest = detail::likeliest_set(result.posterior, result.found);
-  const auto chosen =
-      static_cast<std::size_t>(std::ranges::find(delays, result.likeliest.delay) - delays.begin());
+  const auto chosen = static_cast<std::size_t>(std::ranges::find(delays, result.likeliest.delay) - delays.begin());
   result.after = fits[chosen].model;
   result.sizes = change_sizes(evidence[chosen], result.changes, result.likeliest.members);
   result.alone = detail::sizes_alone(result, evidence[chosen]);

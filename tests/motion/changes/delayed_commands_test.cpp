@@ -24,3 +24,13 @@ TEST_CASE("delays are counted from that of the old walk") {
   CHECK(surefoot::detail::possible_delays(0, 2) == std::vector<int>{0, 1, 2});
   CHECK(surefoot::detail::possible_delays(1, 2) == std::vector<int>{0, -1, 1});
 }
+
+TEST_CASE("commands that stay the same within each sequence show no delay") {
+  auto walks = toys::walks(toys::paper_walk(), surefoot::MotionNoise(), 3, 5, 12);
+  for (std::size_t i = 0; i < walks.size(); ++i) {
+    for (Eigen::Index k = 0; k < 12; ++k) walks[i].commands.col(k) << 0.01 * static_cast<double>(i), 0, -0.02;
+  }
+  CHECK_FALSE(surefoot::detail::commands_vary(walks));
+  for (auto& walk : walks) walk.commands(0, 5) += 0.03;
+  CHECK(surefoot::detail::commands_vary(walks));
+}

@@ -17,6 +17,10 @@ WalkSequence without_first(const WalkSequence& sequence, Eigen::Index cycles);
 /// commands are not known then.
 std::vector<WalkSequence> delayed(std::span<const WalkSequence> sequences, int cycles, int first = 0);
 
+/// Whether commands change within sequences, and not only from one to the next: without that no delay can be seen, and
+/// the start of a walk passes for one.
+bool commands_vary(std::span<const WalkSequence> sequences);
+
 /// Delays [cycles] of the new walk against the old one, none first; commands come later by 0 to `largest` in both.
 std::vector<int> possible_delays(int former, int largest);
 

@@ -46,6 +46,23 @@ SUREFOOT_INLINE std::vector<WalkSequence> delayed(std::span<const WalkSequence> 
   return result;
 }
 
+SUREFOOT_INLINE bool commands_vary(std::span<const WalkSequence> sequences) {
+  constexpr double least_share = 0.1;  // of the variance of commands, that is within sequences
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    double sum = 0, squares = 0, within = 0, count = 0;
+    for (const WalkSequence& sequence : sequences) {
+      const auto row = sequence.commands.row(axis);
+      sum += row.sum();
+      squares += row.squaredNorm();
+      within += (row.array() - row.mean()).matrix().squaredNorm();
+      count += static_cast<double>(row.size());
+    }
+    const double whole = squares - sum * sum / std::max(count, 1.0);
+    if (within > 0 && within > least_share * whole) return true;
+  }
+  return false;
+}
+
 SUREFOOT_INLINE std::vector<int> possible_delays(int former, int largest) {
   std::vector<int> delays{0};
   for (int delay = 0; delay <= largest; ++delay) {
