@@ -135,6 +135,33 @@ void add_up(LinearModel& model) {
   }
 }
 
+namespace {
+
+using Places = std::vector<Eigen::Index>;
+
+Eigen::VectorXd picked(const Eigen::VectorXd& vector, const Places& places) {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(places.size()));
+  for (Eigen::Index i = 0; i < result.size(); ++i) result[i] = vector[places[static_cast<std::size_t>(i)]];
+  return result;
+}
+
+Eigen::MatrixXd picked_both_ways(const Eigen::MatrixXd& matrix, const Places& places) {
+  const auto count = static_cast<Eigen::Index>(places.size());
+  Eigen::MatrixXd result(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < count; ++j) {
+      result(i, j) = matrix(places[static_cast<std::size_t>(i)], places[static_cast<std::size_t>(j)]);
+    }
+  }
+  return result;
+}
+
+void put(const Eigen::VectorXd& values, const Places& places, Eigen::VectorXd& vector) {
+  for (Eigen::Index i = 0; i < values.size(); ++i) vector[places[static_cast<std::size_t>(i)]] = values[i];
+}
+
+}  // namespace
+
 LinearFit fit_linear(const LinearModel& model, const TermSet& set, int without_block) {
   const auto joints = model.sums.size();
   // Terms that can change: those of the set, and others that are not 0 yet.
@@ -150,7 +177,8 @@ LinearFit fit_linear(const LinearModel& model, const TermSet& set, int without_b
     by_joint.push_back(part(model, j, of, without_block));
     fit.square[static_cast<Eigen::Index>(j)] = by_joint[j].square;
   }
-  const Eigen::VectorXd theta = model.theta(of), low = model.low(of) - theta, high = model.high(of) - theta;
+  const Eigen::VectorXd theta = picked(model.theta, of);
+  const Eigen::VectorXd low = picked(model.low, of) - theta, high = picked(model.high, of) - theta;
   Eigen::VectorXd change;
   constexpr int reweightings = 3;  // weights follow what is left; they hardly change after that
   for (int again = 0; again < reweightings; ++again) {
@@ -158,17 +186,17 @@ LinearFit fit_linear(const LinearModel& model, const TermSet& set, int without_b
     Eigen::VectorXd c;
     normal_equations(model, by_joint, of, fit.square, q, c);
     change = -theta;
-    change(in).setZero();
+    put(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(in.size())), in, change);
     if (!in.empty()) {
-      const Eigen::VectorXd here = (c + q * change)(in);
-      change(in) = bounded_minimum(q(in, in), here, low(in), high(in));
+      const Eigen::VectorXd here = picked(c + q * change, in);
+      put(bounded_minimum(picked_both_ways(q, in), here, picked(low, in), picked(high, in)), in, change);
     }
     for (std::size_t j = 0; j < joints; ++j) {
       fit.square[static_cast<Eigen::Index>(j)] = std::max(smallest_square, square_after(by_joint[j], change));
     }
   }
   fit.change = Eigen::VectorXd::Zero(model.theta.size());
-  fit.change(of) = change;
+  put(change, of, fit.change);
   fit.criterion = model.independent.dot(pooled(model, by_joint, fit.square).array().log().matrix());
   for (const Eigen::Index t : members(set)) {
     const double share = (model.theta[t] + fit.change[t]) / model.prior[t];
