@@ -2,12 +2,12 @@
 
 #include <array>
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <vector>
 
+#include "../common/printed.hpp"
 #include "compare_words.hpp"
 
 namespace calibrate_program {
@@ -17,15 +17,6 @@ using Json = nlohmann::ordered_json;
 using surefoot::CoefficientComparison;
 
 constexpr double half_interval = 1.96;  // [standard errors] to either side: 95 %
-
-[[gnu::format(printf, 2, 3)]] void append(std::string& text, const char* format, ...) {
-  std::array<char, 300> line{};
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line.data(), line.size(), format, arguments);
-  va_end(arguments);
-  text += line.data();
-}
 
 const char* verdict(double probability, double certainty) {
   if (probability >= certainty) return "changed";
@@ -42,8 +33,8 @@ std::vector<std::string_view> changed_coefficients(const ComparedWalks& walks) {
 
 std::string coefficient_table(const ComparedWalks& walks) {
   std::string text;
-  append(text, "\n%-22s %10s %10s %10s %24s %12s  %s\n", "coefficient", "old", "new", "difference", "95 % interval",
-      "visible from", "changed?");
+  text += example::printed("\n%-22s %10s %10s %10s %24s %12s  %s\n", "coefficient", "old", "new", "difference",
+                           "95 % interval", "visible from", "changed?");
   for (const CoefficientComparison& one : walks.comparison.coefficients) {
     const std::string name =
         std::string(one.info.name) + (one.info.unit == "1" ? "" : " [" + std::string(one.info.unit) + "]");
@@ -51,8 +42,9 @@ std::string coefficient_table(const ComparedWalks& walks) {
     std::snprintf(range.data(), range.size(), "%.3g to %.3g", one.difference - half_interval * one.standard_error,
                   one.difference + half_interval * one.standard_error);
     if (std::isfinite(one.smallest)) std::snprintf(smallest.data(), smallest.size(), "%.2g", one.smallest);
-    append(text, "%-22s %10.4g %10.4g %10.3g %24s %12s  %s (%.2f)\n", name.c_str(), one.before, one.after, one.difference,
-        range.data(), smallest.data(), verdict(one.probability, walks.certainty), one.probability);
+    text += example::printed("%-22s %10.4g %10.4g %10.3g %24s %12s  %s (%.2f)\n", name.c_str(), one.before, one.after,
+                             one.difference, range.data(), smallest.data(), verdict(one.probability, walks.certainty),
+                             one.probability);
   }
   return text;
 }
@@ -65,8 +57,9 @@ std::string noise_table(const ComparedWalks& walks) {
     for (std::size_t i = 0; i < result.changes.size(); ++i) {
       if (result.changes[i].name == one.name) probability = result.posterior.inclusion[static_cast<Eigen::Index>(i)];
     }
-    append(text, "  %-16s %.2f (%.2f to %.2f)  %s (%.2f)\n", one.name.c_str(), std::sqrt(one.change.ratio),
-        std::sqrt(one.change.low), std::sqrt(one.change.high), verdict(probability, walks.certainty), probability);
+    text += example::printed("  %-16s %.2f (%.2f to %.2f)  %s (%.2f)\n", one.name.c_str(), std::sqrt(one.change.ratio),
+                             std::sqrt(one.change.low), std::sqrt(one.change.high),
+                             verdict(probability, walks.certainty), probability);
   }
   return text;
 }
@@ -130,23 +123,26 @@ Json noise_json(const surefoot::WalkComparison& result) {
 std::string compare_report(const ComparedWalks& walks) {
   const surefoot::WalkComparison& result = walks.comparison;
   std::string text;
-  append(text, "%zu new sequences, compared with %zu old ones.\n\n", walks.after, walks.before);
+  text += example::printed("%zu new sequences, compared with %zu old ones.\n\n", walks.after, walks.before);
   if (result.found.empty()) {
-    append(text,
+    text += example::printed(
         "Nothing changed that these sequences could show (probability that nothing changed: %.2f; something is said "
         "from %.2f against it on).\nThe column \"visible from\" tells what would have been found.\n",
         result.posterior.nothing, walks.certainty);
   }
   for (const std::string& sentence : change_sentences(result, walks.falls)) text += sentence + "\n";
   std::string names;
-  for (const std::string_view name : changed_coefficients(walks)) names += (names.empty() ? "" : ", ") + std::string(name);
+  for (const std::string_view name : changed_coefficients(walks))
+    names += (names.empty() ? "" : ", ") + std::string(name);
   if (!names.empty()) text += "Coefficients that changed: " + names + ".\n";
   if (result.former_delay > 0) {
-    append(text, "Already the old walk responded later than its commands, by %d cycles.\n", result.former_delay);
+    text += example::printed("Already the old walk responded later than its commands, by %d cycles.\n",
+                             result.former_delay);
   }
   text += coefficient_table(walks) + noise_table(walks);
   if (walks.falls && !result.falls) text += "\nNo sequence ended early.\n";
-  append(text, "\nWhole sequences differ %.2f times as much as independent cycles would (variance); it was counted with.\n",
+  text += example::printed(
+      "\nWhole sequences differ %.2f times as much as independent cycles would (variance); it was counted with.\n",
       result.inflation);
   return text;
 }

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <numbers>
 #include <string_view>
+
+#include "../common/printed.hpp"
 
 namespace calibrate_program {
 namespace {
@@ -16,15 +16,6 @@ using surefoot::WalkComparison;
 using surefoot::WalkFalls;
 
 constexpr double degree = std::numbers::pi / 180;
-
-[[gnu::format(printf, 1, 2)]] std::string phrase(const char* format, ...) {
-  std::array<char, 300> line{};
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line.data(), line.size(), format, arguments);
-  va_end(arguments);
-  return line.data();
-}
 
 double former_value(const WalkComparison& comparison, std::string_view name) {
   for (const auto& one : comparison.coefficients) {
@@ -40,8 +31,8 @@ struct SpokenAxis {
 };
 
 constexpr std::array<SpokenAxis, 3> spoken_axes{{{"dx", "forward", "backward", "mm", 1e3},
-                                               {"dy", "to the left", "to the right", "mm", 1e3},
-                                               {"dt", "to the left", "to the right", "degrees", 1 / degree}}};
+                                                 {"dy", "to the left", "to the right", "mm", 1e3},
+                                                 {"dt", "to the left", "to the right", "degrees", 1 / degree}}};
 
 const SpokenAxis* axis_named(std::string_view name) {
   const auto found = std::ranges::find(spoken_axes, name, &SpokenAxis::name);
@@ -51,9 +42,9 @@ const SpokenAxis* axis_named(std::string_view name) {
 /// "drifts to the left by 4 mm per cycle"
 std::string drift(const SpokenAxis& of, double size) {
   const bool turn = of.name == "dt";
-  return phrase("%s %s by %.2g %s per cycle more than before", turn ? "turns by itself" : "drifts",
-                 std::string(size > 0 ? of.positive : of.negative).c_str(), std::abs(size) * of.shown,
-                 std::string(of.unit).c_str());
+  return example::printed("%s %s by %.2g %s per cycle more than before", turn ? "turns by itself" : "drifts",
+                          std::string(size > 0 ? of.positive : of.negative).c_str(), std::abs(size) * of.shown,
+                          std::string(of.unit).c_str());
 }
 
 /// "walks shorter steps forward by 12 %"; `side` is empty for both.
@@ -61,38 +52,37 @@ std::string gain(std::string_view name, std::string side, double relative) {
   const double percent = 100 * std::abs(relative);
   if (name == "dx") {
     if (side.empty()) side = "forward and backward";
-    return phrase("walks %s steps %s by %.0f %%", relative < 0 ? "shorter" : "longer", side.c_str(), percent);
+    return example::printed("walks %s steps %s by %.0f %%", relative < 0 ? "shorter" : "longer", side.c_str(), percent);
   }
   if (name == "dy") {
     if (side.empty()) side = "to both sides";
-    return phrase("makes %s steps %s by %.0f %%", relative < 0 ? "weaker" : "larger", side.c_str(), percent);
+    return example::printed("makes %s steps %s by %.0f %%", relative < 0 ? "weaker" : "larger", side.c_str(), percent);
   }
   if (side.empty()) side = "to both sides";
-  return phrase("turns %s %s by %.0f %%", relative < 0 ? "less" : "more", side.c_str(), percent);
+  return example::printed("turns %s %s by %.0f %%", relative < 0 ? "less" : "more", side.c_str(), percent);
 }
 
 /// "a step of 10 cm forward takes it 8 mm more to the left"
 std::string coupling(const SpokenAxis& of, const SpokenAxis& per, double size, bool last) {
   const bool turn = per.name == "dt";
   const double command = turn ? 10 * degree : 0.1;
-  const std::string asked = phrase("a command of %s %s%s", turn ? "10 degrees" : "10 cm",
-                                    std::string(per.positive).c_str(), last ? " in the cycle before" : "");
-  return phrase("answers %s by %.2g %s more %s", asked.c_str(),
-                 std::abs(size) * command * of.shown, std::string(of.unit).c_str(),
-                 std::string(size > 0 ? of.positive : of.negative).c_str());
+  const std::string asked = example::printed("a command of %s %s%s", turn ? "10 degrees" : "10 cm",
+                                             std::string(per.positive).c_str(), last ? " in the cycle before" : "");
+  return example::printed("answers %s by %.2g %s more %s", asked.c_str(), std::abs(size) * command * of.shown,
+                          std::string(of.unit).c_str(), std::string(size > 0 ? of.positive : of.negative).c_str());
 }
 
 /// A change of a coefficient, or of a gain to one side, by `size`.
 std::string coefficient_sentence(const WalkComparison& comparison, const WalkChange& change, double size) {
   const std::string_view name = change.name;
   const SpokenAxis* of = axis_named(name.substr(0, 2));
-  if (of == nullptr) return phrase("%s changed by %.3g", change.name.c_str(), size);
+  if (of == nullptr) return example::printed("%s changed by %.3g", change.name.c_str(), size);
   if (name.ends_with("offset")) return drift(*of, size);
   if (name.find(" and ") != std::string_view::npos) return gain(of->name, "", size);  // a factor
   const bool last = name.find(" last ") != std::string_view::npos;
   const std::string_view rest = name.substr(last ? 12 : 7);
   const SpokenAxis* per = axis_named(rest.substr(0, 2));
-  if (per == nullptr) return phrase("%s changed by %.3g", change.name.c_str(), size);
+  if (per == nullptr) return example::printed("%s changed by %.3g", change.name.c_str(), size);
   if (of != per || last) return coupling(*of, *per, size, last);
   const std::string both = std::string(name.substr(0, 9));
   const std::string side = rest.size() > 3 ? std::string(rest.substr(3)) : "";
@@ -103,12 +93,13 @@ std::string coefficient_sentence(const WalkComparison& comparison, const WalkCha
 
 std::string noise_sentence(const surefoot::NoiseChange& noise) {
   const double factor = std::sqrt(noise.change.ratio);
-  std::string text = phrase("has %s %s, %.2f times as before (%.2f to %.2f)", factor > 1 ? "more" : "less",
-                             noise.name.c_str(), factor, std::sqrt(noise.change.low), std::sqrt(noise.change.high));
+  std::string text =
+      example::printed("has %s %s, %.2f times as before (%.2f to %.2f)", factor > 1 ? "more" : "less",
+                       noise.name.c_str(), factor, std::sqrt(noise.change.low), std::sqrt(noise.change.high));
   if (noise.name == "noise of turns") {
-    text += phrase(": %.2g degrees in a cycle, it was %.2g", noise.after / degree, noise.before / degree);
+    text += example::printed(": %.2g degrees in a cycle, it was %.2g", noise.after / degree, noise.before / degree);
   } else if (noise.name != "noise") {
-    text += phrase(": %.2g mm in a cycle, it was %.2g", 1e3 * noise.after, 1e3 * noise.before);
+    text += example::printed(": %.2g mm in a cycle, it was %.2g", 1e3 * noise.after, 1e3 * noise.before);
   }
   return text;
 }
@@ -116,14 +107,15 @@ std::string noise_sentence(const surefoot::NoiseChange& noise) {
 std::string fall_sentence(const WalkComparison& comparison, const WalkFalls& falls) {
   const double then = static_cast<double>(falls.before.fell) / falls.before.sequences,
                now = static_cast<double>(falls.after.fell) / falls.after.sequences;
-  return phrase("falls %s often: %d of %d sequences ended early or have no final position, before %d of %d (p = %.2g)",
-                 now > then ? "more" : "less", falls.after.fell, falls.after.sequences, falls.before.fell,
-                 falls.before.sequences, comparison.falls->p_value);
+  return example::printed(
+      "falls %s often: %d of %d sequences ended early or have no final position, before %d of %d (p = %.2g)",
+      now > then ? "more" : "less", falls.after.fell, falls.after.sequences, falls.before.fell, falls.before.sequences,
+      comparison.falls->p_value);
 }
 
 std::string delay_sentence(int delay) {
-  return phrase("responds %s by %d whole cycle%s", delay > 0 ? "later" : "earlier", std::abs(delay),
-                 std::abs(delay) == 1 ? "" : "s");
+  return example::printed("responds %s by %d whole cycle%s", delay > 0 ? "later" : "earlier", std::abs(delay),
+                          std::abs(delay) == 1 ? "" : "s");
 }
 
 /// What one change means, if it is it that happened and the likeliest set does not say otherwise.
@@ -132,7 +124,8 @@ std::string sentence(const WalkComparison& comparison, int index, const std::opt
     const auto& sets = comparison.posterior.sets;
     const auto late = std::ranges::find_if(sets, [](const auto& set) { return set.delay != 0; });
     return delay_sentence(comparison.likeliest.delay != 0 ? comparison.likeliest.delay
-                                                          : late == sets.end() ? 0 : late->delay);
+                          : late == sets.end()            ? 0
+                                                          : late->delay);
   }
   const WalkChange& change = comparison.changes[static_cast<std::size_t>(index)];
   for (const auto& noise : comparison.noise) {
@@ -141,7 +134,7 @@ std::string sentence(const WalkComparison& comparison, int index, const std::opt
   if (change.direction.size() == 0) return fall_sentence(comparison, *falls);
   const double size = comparison.size_of(index);
   if (change.name == "part of a cycle") {
-    return phrase("responds %s by %.2f of a cycle", size > 0 ? "later" : "earlier", std::abs(size));
+    return example::printed("responds %s by %.2f of a cycle", size > 0 ? "later" : "earlier", std::abs(size));
   }
   return coefficient_sentence(comparison, change, size);
 }
@@ -155,7 +148,7 @@ std::string name_of_change(const WalkComparison& comparison, int change) {
 std::vector<std::string> change_sentences(const WalkComparison& comparison, const std::optional<WalkFalls>& falls) {
   std::vector<std::string> result;
   for (const surefoot::FoundChange& found : comparison.found) {
-    const std::string certain = phrase(" (probability %.3f)", std::min(found.probability, 0.999));
+    const std::string certain = example::printed(" (probability %.3f)", std::min(found.probability, 0.999));
     if (found.any_of.size() == 1) {
       const int only = found.any_of.front();
       result.push_back("The robot " + sentence(comparison, only, falls) + ": " + name_of_change(comparison, only) +
@@ -165,7 +158,7 @@ std::vector<std::string> change_sentences(const WalkComparison& comparison, cons
     std::string text = "These cannot be told apart, at least one happened" + certain + ":";
     for (const int change : found.any_of) {
       text += "\n    it " + sentence(comparison, change, falls) + ": " + name_of_change(comparison, change) +
-              phrase(" (%.2f)", comparison.posterior.any_of(std::array{change}));
+              example::printed(" (%.2f)", comparison.posterior.any_of(std::array{change}));
     }
     result.push_back(text);
   }

@@ -1,35 +1,29 @@
 #include "fit_report.hpp"
 
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
 #include <numbers>
+
+#include "../common/printed.hpp"
 
 namespace calibrate_program {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-[[gnu::format(printf, 2, 3)]] void add(std::string& text, const char* format, ...) {
-  char line[400];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line, sizeof line, format, arguments);
-  va_end(arguments);
-  text += line;
-}
-
 std::string coefficients(const FittedWalk& fitted) {
   const MotionFile& file = fitted.file;
   const bool published = file.method == "published";
   std::string text;
-  add(text, "\n%-24s %12s %12s %12s\n", "coefficient", "value", "std. error", published ? "likelihood" : "published");
+  text += example::printed("\n%-24s %12s %12s %12s\n", "coefficient", "value", "std. error",
+                           published ? "likelihood" : "published");
   Eigen::Index i = 0;
   for (const surefoot::ModelParameter& info : default_model(file.kind).parameter_info()) {
     const std::string name = std::string(info.name) + (info.unit == "1" ? "" : " [" + std::string(info.unit) + "]");
-    add(text, "%-24s %12.4g %12.2g %12.4g%s\n", name.c_str(), file.parameters[i], std::sqrt(file.covariance(i, i)),
-        fitted.by_other_method[i],
-        fitted.determined[static_cast<std::size_t>(i)] ? "" : "  not determined by these commands");
+    text +=
+        example::printed("%-24s %12.4g %12.2g %12.4g%s\n", name.c_str(), file.parameters[i],
+                         std::sqrt(file.covariance(i, i)), fitted.by_other_method[i],
+                         fitted.determined[static_cast<std::size_t>(i)] ? "" : "  not determined by these commands");
     ++i;
   }
   return text;
@@ -40,7 +34,7 @@ std::string noise(const FittedWalk& fitted) {
   std::string text = "\nNoise of a cycle (standard deviations of forward [m], left [m], turn [degrees]):\n  ";
   const auto term = [&](const surefoot::Vec<3>& v) {
     const surefoot::Vec<3> shown = (v.array() > 1e-7).select(v, 0.0);
-    add(text, "%.3g, %.3g, %.3g", shown[0], shown[1], shown[2] / degree);
+    text += example::printed("%.3g, %.3g, %.3g", shown[0], shown[1], shown[2] / degree);
   };
   const auto& chosen = fitted.noise.candidates[fitted.noise.chosen];
   switch (chosen.growth) {
@@ -62,7 +56,7 @@ std::string noise(const FittedWalk& fitted) {
   }
   if (fitted.noise.shape_known) {
     const auto shape = surefoot::name_of(noise.shape);
-    add(text, "Its shape is %.*s.\n", static_cast<int>(shape.size()), shape.data());
+    text += example::printed("Its shape is %.*s.\n", static_cast<int>(shape.size()), shape.data());
   } else {
     text += "Its shape (uniform or gaussian) cannot be told from final poses: they add up too many cycles.\n";
   }
@@ -79,13 +73,13 @@ std::string noise(const FittedWalk& fitted) {
 
 std::string evaluation_table(const std::vector<EvaluatedModel>& models) {
   std::string text;
-  add(text, "%-34s %12s %22s %14s\n", "model", "coefficients", "final position [m]", "heading [deg]");
+  text += example::printed("%-34s %12s %22s %14s\n", "model", "coefficients", "final position [m]", "heading [deg]");
   for (const EvaluatedModel& model : models) {
     char heading[32] = "-", error[32] = "";
     if (std::isfinite(model.heading)) std::snprintf(heading, sizeof heading, "%.1f", model.heading / degree);
     if (std::isfinite(model.position_error)) std::snprintf(error, sizeof error, " +- %.3f", model.position_error);
-    add(text, "%-34.34s %12d %13.3f%s %14s%s\n", model.model.c_str(), model.parameters, model.position, error, heading,
-        model.chosen ? "  <- chosen" : "");
+    text += example::printed("%-34.34s %12d %13.3f%s %14s%s\n", model.model.c_str(), model.parameters, model.position,
+                             error, heading, model.chosen ? "  <- chosen" : "");
   }
   return text;
 }
@@ -93,7 +87,7 @@ std::string evaluation_table(const std::vector<EvaluatedModel>& models) {
 std::string fit_report(const FittedWalk& fitted) {
   const MotionFile& file = fitted.file;
   std::string text;
-  add(text, "%zu sequences. Root mean square errors on those held out of the fit:\n\n", file.sequences);
+  text += example::printed("%zu sequences. Root mean square errors on those held out of the fit:\n\n", file.sequences);
   text += evaluation_table(file.heldout);
   if (file.heldout.front().chosen) {
     text += "No model predicts better than the commands as they are.\n";
@@ -102,8 +96,8 @@ std::string fit_report(const FittedWalk& fitted) {
     text += "\nErrors on the held-out sequences, fitted to all others:\n\n" + evaluation_table(file.test);
   }
   const auto name = name_of(file.kind);
-  add(text, "\nFitted: the model %.*s, by the %s.\n", static_cast<int>(name.size()), name.data(),
-      file.method == "published" ? "published fitness (errors of final poses)" : "likelihood");
+  text += example::printed("\nFitted: the model %.*s, by the %s.\n", static_cast<int>(name.size()), name.data(),
+                           file.method == "published" ? "published fitness (errors of final poses)" : "likelihood");
   if (fitted.headings_of_clock) {
     text += "All headings are whole hours of a clock: errors of up to 15 degrees count as none.\n";
   }

@@ -83,33 +83,33 @@ class Planner {
     return at->second;
   }
 
-  int with(Operation::Code code, int a, int b, Block& block) { return result_of({code, 0, a, b, a}, block); }
+  int apply(Operation::Code code, int a, int b, Block& block) { return result_of({code, 0, a, b, a}, block); }
 
   int power(int base, const Node& exponent, int exponent_slot, Block& block) {
     constexpr double most_products = 4;
     const bool products = exponent.kind == Node::Kind::number && exponent.value >= 1 &&
                           exponent.value <= most_products && exponent.value == std::floor(exponent.value);
-    if (!products) return with(Operation::Code::power, base, exponent_slot, block);
+    if (!products) return apply(Operation::Code::power, base, exponent_slot, block);
     int result = base;
     for (int k = 1; k < static_cast<int>(exponent.value); ++k) {
-      result = with(Operation::Code::multiply, result, base, block);
+      result = apply(Operation::Code::multiply, result, base, block);
     }
     return result;
   }
 
-  // The slot of a node's value, which operations of `block` or of prepare compute.
-  int slot_of(const Expression& e, int i, Block& block) {
+  // Adds the operations of a node to `block` or to prepare; the slot of its value.
+  int compile(const Expression& e, int i, Block& block) {
     const Node& node = e[i];
     if (node.kind == Node::Kind::name) return slot_of_.at(node.text);
     if (node.kind == Node::Kind::number) return number_slot(node.value);
     std::vector<int> arguments;
-    for (const int argument : node.arguments) arguments.push_back(slot_of(e, argument, block));
+    for (const int argument : node.arguments) arguments.push_back(compile(e, argument, block));
     switch (node.kind) {
       case Node::Kind::negate:
-        return with(Operation::Code::negate, arguments[0], arguments[0], block);
+        return apply(Operation::Code::negate, arguments[0], arguments[0], block);
       case Node::Kind::binary:
         if (node.text == "^") return power(arguments[0], e[node.arguments[1]], arguments[1], block);
-        return with(code_of_operator(node.text), arguments[0], arguments[1], block);
+        return apply(code_of_operator(node.text), arguments[0], arguments[1], block);
       case Node::Kind::choice:
         return result_of({Operation::Code::choice, 0, arguments[0], arguments[1], arguments[2]}, block);
       default:
@@ -140,7 +140,7 @@ class Planner {
   void add_let(const ModelLet& let) {
     const Expression e = parse_expression(let.value.text);
     Block block;
-    const int value = slot_of(e, e.root, block);
+    const int value = compile(e, e.root, block);
     if (is_fixed(value)) {
       slot_of_[let.name] = value;
       return;
@@ -163,7 +163,7 @@ class Planner {
     for (const Formula& formula : formulas) {
       const Expression e = parse_expression(formula.text);
       for (const int slot : slots_in(e)) needed[static_cast<std::size_t>(slot)] = true;
-      result.results.push_back(slot_of(e, e.root, block));
+      result.results.push_back(compile(e, e.root, block));
     }
     result.operations = std::move(block.operations);
     for (std::size_t i = lets_.size(); i-- > 0;) {

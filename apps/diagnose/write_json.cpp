@@ -1,15 +1,14 @@
 #include "write_json.hpp"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
+
+#include "json_number.hpp"
 
 namespace diagnose_program {
 namespace {
 
 using Json = nlohmann::ordered_json;
 using surefoot::Diagnosis;
-
-Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json interval(const surefoot::FittedValue& fit) {
   return Json::array({finite_or_null(fit.low), finite_or_null(fit.high)});

@@ -7,17 +7,11 @@ namespace {
 
 [[noreturn]] void refuse() {
   throw surefoot::DiagnoseError(
-      "this program was built without MuJoCo and reads no robots; install libmujoco-dev or configure with -D "
-      "MUJOCO_DIR=FOLDER "
-      "and build it again");
+      "this program was built without MuJoCo and reads no robots; install libmujoco-dev or configure with "
+      "-D MUJOCO_DIR=FOLDER and build it again");
 }
 
 }  // namespace
-
-bool is_robot_model(const std::filesystem::path& model) {
-  const std::string ending = model.extension().string();
-  return ending == ".xml" || ending == ".urdf" || ending == ".mjcf";
-}
 
 int run_robot(const diagnose_program::CommandLine&) { refuse(); }
 int run_setup(int, const char* const*) { refuse(); }

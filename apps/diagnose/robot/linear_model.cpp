@@ -11,14 +11,37 @@ constexpr double fewest_independent = 4;   // errors of a joint, however slowly 
 constexpr double smallest_square = 1e-24;  // errors of nothing have no logarithm
 constexpr int bound_changes = 60;          // of the active set
 
+using Places = std::vector<Eigen::Index>;
+
+Eigen::VectorXd picked(const Eigen::VectorXd& vector, const Places& places) {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(places.size()));
+  for (Eigen::Index i = 0; i < result.size(); ++i) result[i] = vector[places[static_cast<std::size_t>(i)]];
+  return result;
+}
+
+Eigen::MatrixXd picked_both_ways(const Eigen::MatrixXd& matrix, const Places& places) {
+  const auto count = static_cast<Eigen::Index>(places.size());
+  Eigen::MatrixXd result(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < count; ++j) {
+      result(i, j) = matrix(places[static_cast<std::size_t>(i)], places[static_cast<std::size_t>(j)]);
+    }
+  }
+  return result;
+}
+
+void put(const Eigen::VectorXd& values, const Places& places, Eigen::VectorXd& vector) {
+  for (Eigen::Index i = 0; i < values.size(); ++i) vector[places[static_cast<std::size_t>(i)]] = values[i];
+}
+
 // Sums of the terms `of` alone, with or without a block.
 Sums part(const LinearModel& model, std::size_t joint, const std::vector<Eigen::Index>& of, int without_block) {
   const Sums& whole = model.whole[joint];
-  Sums sums{whole.gram(of, of), whole.slope(of), whole.square, whole.rows};
+  Sums sums{picked_both_ways(whole.gram, of), picked(whole.slope, of), whole.square, whole.rows};
   if (without_block < 0) return sums;
   const Sums& block = model.sums[joint][static_cast<std::size_t>(without_block)];
-  sums.gram -= block.gram(of, of);
-  sums.slope -= block.slope(of);
+  sums.gram -= picked_both_ways(block.gram, of);
+  sums.slope -= picked(block.slope, of);
   sums.square -= block.square;
   sums.rows -= block.rows;
   return sums;
@@ -91,7 +114,8 @@ Eigen::VectorXd bounded_minimum(const Eigen::MatrixXd& q, const Eigen::VectorXd&
     }
     const Eigen::VectorXd gradient = c + q * x;
     if (!free.empty()) {
-      const Eigen::VectorXd step = scaled(free, free).ldlt().solve(-(scale.cwiseProduct(gradient))(free));
+      const Eigen::VectorXd downhill = picked(-scale.cwiseProduct(gradient), free);
+      const Eigen::VectorXd step = picked_both_ways(scaled, free).ldlt().solve(downhill);
       for (std::size_t i = 0; i < free.size(); ++i) x[free[i]] = scale[free[i]] * step[static_cast<Eigen::Index>(i)];
     }
     Eigen::Index worst = -1;
@@ -134,33 +158,6 @@ void add_up(LinearModel& model) {
     model.whole.push_back(std::move(sum));
   }
 }
-
-namespace {
-
-using Places = std::vector<Eigen::Index>;
-
-Eigen::VectorXd picked(const Eigen::VectorXd& vector, const Places& places) {
-  Eigen::VectorXd result(static_cast<Eigen::Index>(places.size()));
-  for (Eigen::Index i = 0; i < result.size(); ++i) result[i] = vector[places[static_cast<std::size_t>(i)]];
-  return result;
-}
-
-Eigen::MatrixXd picked_both_ways(const Eigen::MatrixXd& matrix, const Places& places) {
-  const auto count = static_cast<Eigen::Index>(places.size());
-  Eigen::MatrixXd result(count, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    for (Eigen::Index j = 0; j < count; ++j) {
-      result(i, j) = matrix(places[static_cast<std::size_t>(i)], places[static_cast<std::size_t>(j)]);
-    }
-  }
-  return result;
-}
-
-void put(const Eigen::VectorXd& values, const Places& places, Eigen::VectorXd& vector) {
-  for (Eigen::Index i = 0; i < values.size(); ++i) vector[places[static_cast<std::size_t>(i)]] = values[i];
-}
-
-}  // namespace
 
 LinearFit fit_linear(const LinearModel& model, const TermSet& set, int without_block) {
   const auto joints = model.sums.size();

@@ -1,6 +1,6 @@
-#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "../json_number.hpp"
 #include "../write_json.hpp"
 #include "robot_files.hpp"
 
@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+using diagnose_program::finite_or_null;
 
 Json joints_json(const RobotDiagnosis& d) {
   Json list = Json::array();

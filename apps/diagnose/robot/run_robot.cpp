@@ -64,10 +64,6 @@ void evaluate_test(const diagnose_program::CommandLine& line, const Evidence& ev
   hold_out(test, d);
 }
 
-}  // namespace
-
-namespace {
-
 // Swapped columns, repaired in place if asked for.
 std::vector<surefoot::LogFault> swapped_columns(bool repair, Evidence& evidence) {
   std::vector<surefoot::LogFault> faults;
@@ -96,11 +92,6 @@ std::vector<surefoot::LogFault> swapped_columns(bool repair, Evidence& evidence)
 }
 
 }  // namespace
-
-bool is_robot_model(const std::filesystem::path& model) {
-  const std::string ending = model.extension().string();
-  return ending == ".xml" || ending == ".urdf" || ending == ".mjcf";
-}
 
 int run_robot(const diagnose_program::CommandLine& line) {
   const auto begin = std::chrono::steady_clock::now();

@@ -70,11 +70,11 @@ class LeastSquaresFit {
       if (linearised_) continue;
       if (!last && jacobian_holds_ && secant_steps_ < options_.secant_steps) {
         update_by_secant();
-      } else if (options_.covariance || !last) {
+      } else if (!last) {
         linearise();
       }
     }
-    if (options_.covariance && secant_steps_ > 0) linearise();
+    if (options_.covariance && (!linearised_ || secant_steps_ > 0)) linearise();
     LeastSquaresResult result{.x = x_,
                               .cost = cost_,
                               .residuals = residuals_,
@@ -221,9 +221,7 @@ class LeastSquaresFit {
                                    : std::numeric_limits<double>::infinity();
       if (next_cost < cost_) {
         const bool done = take_step(next, std::move(step), std::move(residuals), next_cost);
-        if (!done) return std::nullopt;
-        if (options_.covariance && secant_steps_ == 0) linearise();
-        return LeastSquaresStop::cost;
+        return done ? std::optional(LeastSquaresStop::cost) : std::nullopt;
       }
       if (secant_steps_ > 0) return LeastSquaresStop::step;  // an update may have led astray
       damping_ *= growth_;

@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <string>
@@ -110,68 +109,6 @@ TEST_CASE("a search in many recordings looks at some that differ, and fits to al
   CHECK(selection.fit.recordings.size() == 6);
   CHECK(selection.chosen.errors.mean_squares.rows() == 6);
   CHECK(selection.nominal.errors.mean_squares.rows() == 6);
-}
-
-// A structure with these mean squares in recordings of 100 cells.
-EvaluatedHypothesis made_up(const TankBench& bench, const std::vector<std::string>& names, double mean_square,
-                            double log_prior = 0) {
-  EvaluatedHypothesis one;
-  one.hypothesis = bench.start(names);
-  one.errors = {Eigen::MatrixXd::Constant(6, 1, mean_square), Eigen::MatrixXd::Constant(6, 1, 100),
-                Eigen::VectorXd::Ones(1)};
-  one.log_prior = log_prior;
-  return one;
-}
-
-TEST_CASE("the most probable structure is named if its odds against none are high enough") {
-  const TankBench bench({});
-  const SelectionCriteria& criteria = bench.problem.criteria;
-  const double needed = std::log(criteria.named_odds);
-  const auto chosen_with = [&](double log_prior) {
-    return ranked(bench.search(), {made_up(bench, {}, 1), made_up(bench, {"sensor_bias"}, 1, log_prior)});
-  };
-  const Selection named = chosen_with(needed + 0.1), unsure = chosen_with(needed - 0.1);
-  CHECK(names_in(named.chosen) == "sensor_bias");
-  CHECK(named.probability > criteria.named_odds / (1 + criteria.named_odds));
-  CHECK(names_in(unsure.chosen).empty());
-  CHECK(unsure.probability < 0.5);  // though it is less probable than the effect
-  REQUIRE(unsure.alternatives.size() == 1);
-  CHECK(names_in(unsure.alternatives[0]) == "sensor_bias");
-}
-
-TEST_CASE("all that was evaluated is ranked, whatever way led to it") {
-  const TankBench bench({});
-  const Selection selection = ranked(
-      bench.search(), {made_up(bench, {"sensor_bias"}, 2), made_up(bench, {}, 9),
-                       made_up(bench, {"constant_rate", "sensor_drift"}, 1), made_up(bench, {"sensor_drift"}, 3)});
-  CHECK(names_in(selection.nominal).empty());
-  CHECK(names_in(selection.chosen) == "constant_rate, sensor_drift");
-  REQUIRE(selection.alternatives.size() == 3);
-  CHECK(names_in(selection.alternatives[0]) == "sensor_bias");
-  CHECK(selection.candidates == 3);
-}
-
-TEST_CASE("a gain is the share of the error that goes, and its standard error that over recordings") {
-  ErrorSquares before{Eigen::MatrixXd::Constant(4, 1, 4), Eigen::MatrixXd::Constant(4, 1, 100),
-                      Eigen::VectorXd::Ones(1)};
-  ErrorSquares after = before;
-  after.mean_squares.setConstant(1);
-  const Comparison even = gain_of(before, after, 0);
-  CHECK(even.gain == doctest::Approx(0.5));
-  CHECK(even.stderr_ == doctest::Approx(0));
-  CHECK(even.p_value == doctest::Approx(0.5));
-  after.mean_squares.col(0) << 0.6, 1.4, 0.6, 1.4;
-  const Comparison uneven = gain_of(before, after, std::log(99));
-  CHECK(uneven.gain == doctest::Approx(0.5));
-  // ratio of the squares 1/4, with a standard error of sqrt(4) 100 * 0.4 / 1600; that of its root is the same, as 2 *
-  // 1/2
-  CHECK(uneven.stderr_ == doctest::Approx(0.05));
-  CHECK(uneven.t == doctest::Approx(10));
-  CHECK(uneven.p_value == doctest::Approx(0.01));
-  CHECK(gain_of(before, after, 1e9).p_value >= 0);
-  CHECK(gain_of(before, after, -1e9).p_value <= 1);
-  before.mean_squares.setZero();
-  CHECK(gain_of(before, after, 5).p_value == 1);  // there was nothing to gain
 }
 
 }  // namespace

@@ -44,8 +44,7 @@ SUREFOOT_INLINE std::vector<Hypothesis> scattered(const BoundSimulator& bound, c
 SUREFOOT_INLINE Fit scattered_fit(const BoundSimulator& bound, Fit best, const Hypothesis& around,
                                   const FitProblem& problem, std::size_t points, std::uint64_t seed,
                                   const Parallel& parallel) {
-  constexpr std::size_t fitted = 2;      // of the points, those with the lowest losses
-  constexpr double clearly_less = 0.98;  // of the loss; less of a difference is one of where iterations ended
+  constexpr std::size_t fitted = 2;  // of the points, those with the lowest losses
   const std::vector<Hypothesis> starts = scattered(bound, around, points, seed);
   std::vector<double> losses(starts.size());
   parallel(starts.size(), [&](std::size_t k) {

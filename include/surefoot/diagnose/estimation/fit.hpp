@@ -30,6 +30,9 @@ struct FitProblem {
   std::function<bool()> stopped = [] { return false; };  // asked before each iteration
 };
 
+/// Of the loss of another fit: less of a difference is one of where iterations ended.
+inline constexpr double clearly_less = 0.98;
+
 struct Fit {
   Hypothesis hypothesis;
   double loss = std::numeric_limits<double>::infinity();  // mean of the robust squared residuals

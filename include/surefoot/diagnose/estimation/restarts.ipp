@@ -39,7 +39,6 @@ SUREFOOT_INLINE std::vector<Hypothesis> moved_around(const BoundSimulator& bound
 SUREFOOT_INLINE Fit restarted_fit(const BoundSimulator& bound, const Fit& fitted, const FitProblem& problem,
                                   const FitProblem& quick, std::size_t points, std::uint64_t seed,
                                   const Parallel& parallel) {
-  constexpr double clearly_less = 0.98;  // of the loss; less of a difference is one of where iterations ended
   const std::vector<Hypothesis> places = moved_around(bound, fitted.hypothesis, points, seed);
   std::vector<Fit> fits(places.size());
   parallel(places.size(), [&](std::size_t k) {

@@ -12,19 +12,9 @@
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
 #include "surefoot/diagnose/selection/children.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
+#include "surefoot/diagnose/selection/ranking.hpp"
 
 namespace surefoot::diagnosis {
-
-struct Selection {
-  EvaluatedHypothesis nominal;  // without effects
-  EvaluatedHypothesis chosen;
-  double probability = 1;                         // posterior, of the chosen structure
-  std::vector<Comparison> evidence;               // by chosen effect: against the choice without it
-  std::vector<EvaluatedHypothesis> alternatives;  // all other structures that were evaluated, the most probable first
-  std::vector<double> alternative_probabilities;  // of these
-  std::size_t candidates = 0;                     // how many effects and places were tried
-  FitProblem fit;                                 // as the choice was fitted in the end
-};
 
 /// Puts a hypothesis into the pool, in the place of one of the same structure if it is better; true if it went in.
 bool keep_best_form(std::vector<EvaluatedHypothesis>& pool, const EvaluatedHypothesis& one,
@@ -53,12 +43,6 @@ void refit_best(const Search& search, std::vector<EvaluatedHypothesis>& pool);
 
 /// Takes each effect of the best structure away, and puts others in its place.
 void swap_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool);
-
-/// What the errors gain, with its standard error over recordings; the p-value is that of the odds.
-Comparison gain_of(const ErrorSquares& before, const ErrorSquares& after, double log_odds);
-
-/// The most probable structure, if it is to be named, and all others in their order.
-Selection ranked(const Search& search, const std::vector<EvaluatedHypothesis>& pool);
 
 /// Recordings that the search looks at: of many only some, which differ in how far the calibrated model misses them.
 std::vector<std::size_t> informative(const BoundSimulator& bound, const Hypothesis& calibrated,

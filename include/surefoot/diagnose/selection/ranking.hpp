@@ -1,0 +1,38 @@
+// Ranking of all structures that a search has evaluated: which is chosen, how probable it is, what its effects gain.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "surefoot/diagnose/estimation/cross_validation.hpp"
+#include "surefoot/diagnose/selection/children.hpp"
+
+namespace surefoot::diagnosis {
+
+struct Selection {
+  EvaluatedHypothesis nominal;  // without effects
+  EvaluatedHypothesis chosen;
+  double probability = 1;                         // posterior, of the chosen structure
+  std::vector<Comparison> evidence;               // by chosen effect: against the choice without it
+  std::vector<EvaluatedHypothesis> alternatives;  // all other structures that were evaluated, the most probable first
+  std::vector<double> alternative_probabilities;  // of these
+  std::size_t candidates = 0;                     // how many effects and places were tried
+  FitProblem fit;                                 // as the choice was fitted in the end
+};
+
+/// What the errors gain, with its standard error over recordings; the p-value is that of the odds.
+Comparison gain_of(const ErrorSquares& before, const ErrorSquares& after, double log_odds);
+
+/// Of the structures that cannot be told apart from the most probable one, `best`, and have no more parameters than it,
+/// the closest: what counts as an error of form between structures still says which of them to start with.
+std::size_t closest_of_tie(const Search& search, const std::vector<EvaluatedHypothesis>& pool,
+                           const std::vector<double>& share, std::size_t best);
+
+/// The most probable structure, if it is to be named, and all others in their order.
+Selection ranked(const Search& search, const std::vector<EvaluatedHypothesis>& pool);
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/selection/ranking.ipp"
+#endif

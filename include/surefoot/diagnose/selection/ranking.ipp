@@ -1,0 +1,84 @@
+// Definitions of surefoot/diagnose/selection/ranking.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/sort_items.hpp"
+#include "surefoot/diagnose/selection/criterion.hpp"
+#include "surefoot/diagnose/selection/ranking.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE Comparison gain_of(const ErrorSquares& before, const ErrorSquares& after, double log_odds) {
+  constexpr double least_ratio = 1e-6;  // of errors: below, the second one is exact
+  constexpr double largest_odds = 700;  // [nat]: exp would overflow
+  Comparison result;
+  const double a = before.rms(), b = after.rms();
+  if (!(a > 0)) return result;
+  result.gain = 1 - b / a;
+  double squares = 0;
+  for (Eigen::Index r = 0; r < before.counts.rows(); ++r) {
+    double off = 0;
+    for (Eigen::Index k = 0; k < before.counts.cols(); ++k) {
+      off += before.counts(r, k) * (after.mean_squares(r, k) - b * b / (a * a) * before.mean_squares(r, k));
+    }
+    squares += off * off;
+  }
+  double cells = 0;
+  for (Eigen::Index i = 0; i < before.counts.size(); ++i) cells += before.counts.data()[i];
+  result.stderr_ = std::sqrt(squares) / (cells * a * a) / (2 * std::max(b / a, least_ratio));
+  result.t = result.stderr_ > 0 ? result.gain / result.stderr_ : 0;
+  result.p_value = 1 / (1 + std::exp(std::clamp(log_odds, -largest_odds, largest_odds)));
+  return result;
+}
+
+SUREFOOT_INLINE std::size_t closest_of_tie(const Search& search, const std::vector<EvaluatedHypothesis>& pool,
+                                           const std::vector<double>& share, std::size_t best) {
+  const SelectionCriteria& criteria = search.problem.criteria;
+  const auto as_it_is = [&](std::size_t i) {
+    EvaluatedHypothesis one = pool[i];
+    one.errors.least.resize(0);
+    return one;
+  };
+  std::size_t closest = best;
+  for (std::size_t i = 0; i < pool.size(); ++i) {
+    if (share[i] * criteria.tie_odds < share[best] || search.effects(pool[i]) == 0) continue;
+    if (pool[i].parameter_count() > pool[best].parameter_count()) continue;
+    if (log_odds(as_it_is(i), as_it_is(closest), criteria) > 0) closest = i;
+  }
+  return closest;
+}
+
+SUREFOOT_INLINE Selection ranked(const Search& search, const std::vector<EvaluatedHypothesis>& pool) {
+  const SelectionCriteria& criteria = search.problem.criteria;
+  const std::vector<double> share = probabilities(pool, criteria);
+  std::vector<std::size_t> order(pool.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  sort_items(order, [&](std::size_t a, std::size_t b) { return share[a] > share[b]; });
+  Selection selection;
+  selection.candidates = search.problem.candidates;
+  double without = 0;
+  for (std::size_t i = 0; i < pool.size(); ++i) {
+    if (search.effects(pool[i]) > 0) continue;
+    selection.nominal = pool[i];
+    without = share[i];
+  }
+  const bool something = 1 - without > criteria.named_odds * without;
+  const bool named = something && search.effects(pool[order.front()]) > 0;
+  const std::size_t first = closest_of_tie(search, pool, share, order.front());
+  selection.chosen = named ? pool[first] : selection.nominal;
+  selection.probability = named ? share[first] : without;
+  for (const std::size_t i : order) {
+    if (same_structure(pool[i].hypothesis, selection.chosen.hypothesis)) continue;
+    selection.alternatives.push_back(pool[i]);
+    selection.alternative_probabilities.push_back(share[i]);
+  }
+  return selection;
+}
+
+}  // namespace surefoot::diagnosis
