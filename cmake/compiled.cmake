@@ -23,6 +23,9 @@ set_target_properties(surefoot_compiled PROPERTIES OUTPUT_NAME surefoot EXPORT_N
 target_link_libraries(surefoot_compiled PUBLIC surefoot)
 # The library and a program with other -march flags agree on how memory is aligned.
 target_compile_definitions(surefoot_compiled PUBLIC SUREFOOT_COMPILED EIGEN_MAX_ALIGN_BYTES=16)
+# Tests spend their time in the library: the more it is optimised, the sooner they end, although they are not.
+set(SUREFOOT_COMPILED_OPTIONS "" CACHE STRING "Further options to compile surefoot::compiled with")
+target_compile_options(surefoot_compiled PRIVATE ${SUREFOOT_COMPILED_OPTIONS})
 # No contraction to fused multiply-add: the same results on every machine.
 target_compile_options(surefoot_compiled PRIVATE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off>)
 

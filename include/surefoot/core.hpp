@@ -1,6 +1,7 @@
 // The face of surefoot/core: problems, policies, executors, random numbers, rollouts.
 #pragma once
 
+#include "surefoot/core/any_executor.hpp"
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/box.hpp"
 #include "surefoot/core/error.hpp"

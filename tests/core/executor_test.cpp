@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "surefoot/core/any_executor.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot {
@@ -20,8 +21,12 @@ struct FixedThreads : Threads {
   FixedThreads() : Threads(N) {}
 };
 
+struct AnyThreads : AnyExecutor {
+  AnyThreads() : AnyExecutor(std::make_unique<Threads>(3)) {}
+};
+
 // What every executor must do: a new one joins this list.
-#define EXECUTORS Serial, FixedThreads<1>, FixedThreads<2>, FixedThreads<4>, Threads
+#define EXECUTORS Serial, FixedThreads<1>, FixedThreads<2>, FixedThreads<4>, Threads, AnyThreads
 
 TEST_CASE_TEMPLATE("an executor runs every job exactly once", E, EXECUTORS) {
   static_assert(Executor<E>);
@@ -50,9 +55,12 @@ TEST_CASE_TEMPLATE("nothing runs when the stop was requested before", E, EXECUTO
   std::stop_source source;
   source.request_stop();
   std::atomic<int> runs = 0;
-  CHECK_FALSE(E().run(100, [&](std::size_t) { ++runs; }, source.get_token()));
+  CHECK_FALSE(E().run(
+      100, [&](std::size_t) { ++runs; }, source.get_token()));
   CHECK(runs == 0);
-  CHECK_THROWS_AS(map(E(), 100, [](std::size_t i) { return i; }, source.get_token()), CoreError);
+  CHECK_THROWS_AS(map(
+                      E(), 100, [](std::size_t i) { return i; }, source.get_token()),
+                  CoreError);
 }
 
 TEST_CASE_TEMPLATE("after a stop in mid-run only the jobs at work are finished", E, EXECUTORS) {
@@ -70,7 +78,8 @@ TEST_CASE_TEMPLATE("after a stop in mid-run only the jobs at work are finished",
 
 TEST_CASE_TEMPLATE("a stop requested by the last job comes too late to matter", E, EXECUTORS) {
   std::stop_source source;
-  CHECK(E().run(1, [&](std::size_t) { source.request_stop(); }, source.get_token()));
+  CHECK(E().run(
+      1, [&](std::size_t) { source.request_stop(); }, source.get_token()));
 }
 
 TEST_CASE_TEMPLATE("an exception of a job stops the others and reaches the caller", E, EXECUTORS) {

@@ -16,7 +16,7 @@ using robot_test::write_text;
 namespace {
 
 template <class Work>
-std::string refusal(const Work& work) {
+std::string refusal_of(const Work& work) {
   try {
     work();
   } catch (const surefoot::Error& error) {
@@ -37,10 +37,10 @@ TEST_CASE("a model that MuJoCo cannot load is refused in one sentence") {
   for (const std::string text :
        {"<mujoco><worldbody><body></mujoco>", "nothing", "<mujoco><worldbody><body><joint/></body></worldbody>"}) {
     write_text(folder.file("robot.xml"), text);
-    CHECK(contains(refusal([&] { load_robot(folder.file("robot.xml")); }), "robot.xml"));
+    CHECK(contains(refusal_of([&] { load_robot(folder.file("robot.xml")); }), "robot.xml"));
   }
   write_text(folder.file("robot.xml"), "<mujoco><worldbody/></mujoco>");
-  CHECK(contains(refusal([&] { load_robot(folder.file("robot.xml")); }), "no hinge"));
+  CHECK(contains(refusal_of([&] { load_robot(folder.file("robot.xml")); }), "no hinge"));
 }
 
 TEST_CASE("meshes that are missing are left out") {
@@ -61,18 +61,18 @@ TEST_CASE("a floating base, joints without columns, degrees and contacts are sai
   const RobotSetup all = setup;
   setup.joints.pop_back();
   setup.groups.pop_back();
-  CHECK(contains(refusal([&] { bind_robot(load_robot(folder.file("robot.xml")), setup); }), "'lower'") == false);
-  CHECK(contains(refusal([&] { bind_robot(load_robot(folder.file("robot.xml")), setup); }), "lower"));
+  CHECK(contains(refusal_of([&] { bind_robot(load_robot(folder.file("robot.xml")), setup); }), "'lower'") == false);
+  CHECK(contains(refusal_of([&] { bind_robot(load_robot(folder.file("robot.xml")), setup); }), "lower"));
   setup = all;
   setup.joints[0].name = "uper";
-  CHECK(contains(refusal([&] { bind_robot(load_robot(folder.file("robot.xml")), setup); }), "did you mean 'upper'"));
+  CHECK(contains(refusal_of([&] { bind_robot(load_robot(folder.file("robot.xml")), setup); }), "did you mean 'upper'"));
   const std::string base =
       "<worldbody>\n<body name=\"base\"><freejoint/><inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/>";
   std::string floating = xml;
   floating.replace(floating.find("<worldbody>"), 11, base);
   floating.replace(floating.find("</worldbody>"), 12, "</body></worldbody>");
   write_text(folder.file("floating.xml"), floating);
-  CHECK(contains(refusal([&] { bind_robot(load_robot(folder.file("floating.xml")), all); }), "base = \"held\""));
+  CHECK(contains(refusal_of([&] { bind_robot(load_robot(folder.file("floating.xml")), all); }), "base = \"held\""));
   RobotSetup held = all;
   held.base_held = true;
   CHECK(bind_robot(load_robot(folder.file("floating.xml")), held).joints.size() == 2);
@@ -84,7 +84,7 @@ TEST_CASE("a floating base, joints without columns, degrees and contacts are sai
   RobotRecording recording = read_recording(diagnose_program::read_csv(folder.file("rec_1.csv")), all, 500);
   CHECK(check_recording(robot, recording).empty());
   recording.angle *= 57.3;
-  CHECK(contains(refusal([&] { check_recording(robot, recording); }), "unit = \"deg\""));
+  CHECK(contains(refusal_of([&] { check_recording(robot, recording); }), "unit = \"deg\""));
 
   std::string floor = xml;
   floor.replace(floor.find("<worldbody>"), 11, "<worldbody><geom type=\"plane\" size=\"1 1 1\" pos=\"0 0 -0.3\"/>");
@@ -92,7 +92,7 @@ TEST_CASE("a floating base, joints without columns, degrees and contacts are sai
                 "<geom type=\"sphere\" size=\"0.1\" pos=\"0 0 -0.25\"/>\n<site");
   write_text(folder.file("floor.xml"), floor);
   recording.angle /= 57.3;
-  CHECK(contains(refusal([&] { check_recording(bind_robot(load_robot(folder.file("floor.xml")), all), recording); }),
+  CHECK(contains(refusal_of([&] { check_recording(bind_robot(load_robot(folder.file("floor.xml")), all), recording); }),
                  "contacts"));
 }
 

@@ -1,14 +1,12 @@
 // Chains of masses that slide or turn, with springs and dampers between them, under a force, a motor or a controller.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "circle.hpp"
 #include "grammar.hpp"
 
 namespace machines {
 namespace {
-
-constexpr double circle = 2 * std::numbers::pi;
 
 // Names of positions, speeds and commands, so that nothing can be told from a name.
 struct Words {

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "circle.hpp"
 #include "law_table.hpp"
 
 namespace machines {
 namespace {
-
-constexpr double circle = 2 * std::numbers::pi;
 
 double graded(Random& random, double low, double high) { return random.log_uniform(low / 3, high); }
 

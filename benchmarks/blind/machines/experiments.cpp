@@ -5,45 +5,45 @@
 #include <numbers>
 
 #include "../plants/excitation.hpp"
+#include "circle.hpp"
 #include "grammar.hpp"
 
 namespace machines {
 namespace {
 
-constexpr double circle = 2 * std::numbers::pi;
 constexpr double least_rows = 4000, most_rows = 7000;  // of all recordings of a case together
 
-enum class Kind { steps, sine, sines, chirp, ramps, binary, pulses };
+enum class Waveform { steps, sine, sines, chirp, ramps, binary, pulses };
 
 // From -1 to 1, or from 0 to 1 for pulses; `pace` [s]: time of a typical change.
-Column shape(Random& random, const Column& times, Kind kind, double pace) {
+Column shape(Random& random, const Column& times, Waveform form, double pace) {
   Column values;
   const double direction = random.sign(), phase = random.uniform(0, circle), other = random.uniform(0, circle);
   double level = 0, next = 0.3 * pace;
   for (double t : times) {
     if (t >= next) {
       const double before = level;
-      level = kind == Kind::binary ? random.sign() : random.uniform(kind == Kind::pulses ? 0 : -1, 1);
-      if (kind == Kind::pulses && before > 0) level = 0;
-      next = t + pace * random.uniform(kind == Kind::binary ? 0.2 : 0.5, 1.5);
+      level = form == Waveform::binary ? random.sign() : random.uniform(form == Waveform::pulses ? 0 : -1, 1);
+      if (form == Waveform::pulses && before > 0) level = 0;
+      next = t + pace * random.uniform(form == Waveform::binary ? 0.2 : 0.5, 1.5);
     }
-    switch (kind) {
-      case Kind::steps:
-      case Kind::binary:
-      case Kind::pulses:
+    switch (form) {
+      case Waveform::steps:
+      case Waveform::binary:
+      case Waveform::pulses:
         values.push_back(level);
         break;
-      case Kind::sine:
+      case Waveform::sine:
         values.push_back(direction * std::sin(circle * t / (1.5 * pace)));
         break;
-      case Kind::sines:
+      case Waveform::sines:
         values.push_back(0.5 * (std::sin(circle * t / pace + phase) - std::sin(phase)) +
                          0.5 * (std::sin(circle * t / (3.1 * pace) + other) - std::sin(other)));
         break;
-      case Kind::chirp:
+      case Waveform::chirp:
         values.push_back(direction * std::sin(circle / pace * (0.2 * t + 0.04 * t * t / pace)));
         break;
-      case Kind::ramps:
+      case Waveform::ramps:
         values.push_back(direction * std::asin(std::sin(circle * t / (3 * pace))) * 2 / std::numbers::pi);
         break;
     }
@@ -52,8 +52,8 @@ Column shape(Random& random, const Column& times, Kind kind, double pace) {
 }
 
 Column command(Random& random, const Column& times, const Input& input, double middle, double swing, double pace) {
-  static const std::vector<Kind> kinds{Kind::steps, Kind::sine,   Kind::sines, Kind::chirp,
-                                       Kind::ramps, Kind::binary, Kind::pulses};
+  static const std::vector<Waveform> kinds{Waveform::steps, Waveform::sine,   Waveform::sines, Waveform::chirp,
+                                           Waveform::ramps, Waveform::binary, Waveform::pulses};
   const double amplitude = swing * random.uniform(0.35, 1);
   Column values = shape(random, times, random.choice(kinds), pace * random.uniform(0.6, 2));
   const double step = std::pow(10, std::floor(std::log10(swing)) - 3);

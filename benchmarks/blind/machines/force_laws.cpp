@@ -2,12 +2,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "circle.hpp"
 #include "laws.hpp"
 
 namespace machines {
 namespace {
 
-constexpr double circle = 2 * std::numbers::pi;
 // Natural frequencies on the machine's own inertia, in radians per row: stiff enough to be hidden between two rows, or
 // soft enough to be seen.
 constexpr double stiff_bristles = 1.5, soft_bristles = 0.5, stiff_contact = 0.9;

@@ -1,13 +1,11 @@
 // Effects on other states, on inputs and signals, on parameters and in sensors.
 #include <cmath>
-#include <numbers>
 
+#include "circle.hpp"
 #include "laws.hpp"
 
 namespace machines {
 namespace {
-
-constexpr double circle = 2 * std::numbers::pi;
 
 // Means over the steps of what was asked a delay earlier, so that a change within a step has its exact effect.
 void delay_input(double delay, const Column& times, Column& values) {

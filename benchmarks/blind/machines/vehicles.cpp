@@ -1,14 +1,13 @@
 // Drives of first-order speed, vertical lifts and wheeled rovers.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "circle.hpp"
 #include "grammar.hpp"
 
 namespace machines {
 namespace {
 
-constexpr double circle = 2 * std::numbers::pi;
 constexpr double gravity = 9.81;  // [m/s^2]
 
 void state(Machine& machine, const std::string& name, const std::string& rate, const std::string& unit,

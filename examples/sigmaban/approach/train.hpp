@@ -18,6 +18,7 @@
 #include "motion.hpp"
 #include "results.hpp"
 #include "seed_states.hpp"
+#include "surefoot/core/any_executor.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/solve/forest_policy.hpp"
 #include "surefoot/solve/rfpi.hpp"
@@ -68,8 +69,8 @@ nlohmann::ordered_json training_record(const TrainOptions& options, const surefo
   return json;
 }
 
-template <class Problem, surefoot::Executor E>
-void train(const Problem& problem, const TrainOptions& options, const E& executor) {
+template <class Problem>
+void train(const Problem& problem, const TrainOptions& options, const surefoot::AnyExecutor& executor) {
   surefoot::once(executor, [&] { example::prepare_output(options.out); });
   const example::Interrupt interrupt;
   const auto interrupted = [&] { return surefoot::in_any_process(executor, interrupt.requested()); };
@@ -100,7 +101,12 @@ void train(const Problem& problem, const TrainOptions& options, const E& executo
   if (interrupted()) throw Interrupted{};
 }
 
-/// Adds the subcommand; it trains on the executor that make_executor(options) gives. `threads`: the default.
+// In files of their own: each instantiates all of RFPI.
+extern template void train(const Approach&, const TrainOptions&, const surefoot::AnyExecutor&);
+extern template void train(const CalibratedApproach&, const TrainOptions&, const surefoot::AnyExecutor&);
+
+/// Adds the subcommand; it trains on the executor that make_executor(options) gives, as a std::unique_ptr. `threads`:
+/// the default.
 template <class MakeExecutor>
 void add_train_on(CLI::App& program, std::size_t threads, MakeExecutor make_executor) {
   auto options = std::make_shared<TrainOptions>();
@@ -126,8 +132,7 @@ void add_train_on(CLI::App& program, std::size_t threads, MakeExecutor make_exec
   command->add_flag("--resume", options->resume, "go on from FILE.checkpoint, if it is there");
   command->callback([options, make_executor] {
     with_problem(options->problem, options->motion, [&](const auto& problem) {
-      const auto executor = make_executor(*options);
-      train(problem, *options, executor);
+      train(problem, *options, surefoot::AnyExecutor(make_executor(*options)));
     });
   });
 }

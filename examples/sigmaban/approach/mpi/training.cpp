@@ -1,16 +1,13 @@
 #include "training.hpp"
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "../train.hpp"
 #include "surefoot/mpi/mpi_executor.hpp"
 
 namespace sigmaban {
-
-// In files of their own: each instantiates all of RFPI.
-extern template void train(const Approach&, const TrainOptions&, const surefoot::MpiExecutor&);
-extern template void train(const CalibratedApproach&, const TrainOptions&, const surefoot::MpiExecutor&);
 
 void add_training(CLI::App& program, surefoot::MpiSession& session) {
   const auto make_executor = [&session](const TrainOptions& options) {
@@ -20,7 +17,7 @@ void add_training(CLI::App& program, surefoot::MpiSession& session) {
              (saved ? "the same command with --resume goes on from " + checkpoint.string()
                     : "there was no " + checkpoint.string() + " yet, start again");
     });
-    return surefoot::MpiExecutor(MPI_COMM_WORLD, options.threads);
+    return std::make_unique<surefoot::MpiExecutor>(MPI_COMM_WORLD, options.threads);
   };
   add_train_on(program, 1, make_executor);
 }

@@ -1,0 +1,8 @@
+// Training with the calibrated walk.
+#include "train.hpp"
+
+namespace sigmaban {
+
+template void train(const CalibratedApproach&, const TrainOptions&, const surefoot::AnyExecutor&);
+
+}  // namespace sigmaban
