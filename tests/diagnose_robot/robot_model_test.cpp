@@ -43,6 +43,14 @@ TEST_CASE("a model that MuJoCo cannot load is refused in one sentence") {
   CHECK(contains(refusal_of([&] { load_robot(folder.file("robot.xml")); }), "no hinge"));
 }
 
+TEST_CASE("a model that MuJoCo's own reader fails on is refused in one sentence") {
+  const ScratchFolder folder;
+  write_text(folder.file("robot.urdf"),
+             R"(<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="r>volute">
+    <parent link="a"/><child link="b"/><limit effort="1" lower="-2" upper="2" velocity="5"/></joint></robot>)");
+  CHECK(contains(refusal_of([&] { load_robot(folder.file("robot.urdf")); }), "MuJoCo cannot load it"));
+}
+
 TEST_CASE("meshes that are missing are left out") {
   const ScratchFolder folder;
   write_text(folder.file("robot.xml"), R"(<mujoco><asset><mesh name="m" file="not_there.stl"/></asset><worldbody><body>

@@ -1,8 +1,13 @@
 #include "robot_model.hpp"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <functional>
 #include <regex>
 
 #include "../names.hpp"
@@ -25,6 +30,22 @@ std::string one_line(std::string text) {
   }
   while (!text.empty() && text.back() == ' ') text.pop_back();
   return text;
+}
+
+// MuJoCo's reader (2.2) fails on some damaged files, such as a URDF with a letter in a number: a child process tries
+// first. What it died of, or nothing.
+std::string what_ends_it(const std::function<void()>& load) {
+  constexpr unsigned longest = 60;  // [s]; meshes of a large robot take a few
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(longest);
+    load();
+    _exit(0);
+  }
+  int status = 0;
+  if (child < 0 || waitpid(child, &status, 0) != child || !WIFSIGNALED(status)) return "";
+  return "its reader fails on this file (" + std::string(strsignal(WTERMSIG(status))) +
+         "); look for numbers and elements that are damaged";
 }
 
 std::string name_of(const mjModel* m, int type, int id) {
@@ -111,7 +132,18 @@ ModelPointer compile_model(const std::string& text, const std::filesystem::path&
     std::error_code none;
     const auto before = std::filesystem::current_path(none);
     if (!folder.empty()) std::filesystem::current_path(folder, none);
-    model.reset(mj_loadXML(name, files.get(), error.data(), static_cast<int>(error.size())));
+    const auto load = [&] { return mj_loadXML(name, files.get(), error.data(), static_cast<int>(error.size())); };
+    const std::string failure = what_ends_it([&] {
+      try {
+        mj_deleteModel(load());
+      } catch (const DiagnoseError&) {  // said when it is loaded here
+      }
+    });
+    if (failure.empty()) {
+      model.reset(load());
+    } else {
+      std::ranges::copy(failure, error.begin());
+    }
     std::filesystem::current_path(before, none);
   }
   mj_deleteVFS(files.get());
