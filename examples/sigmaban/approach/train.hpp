@@ -21,22 +21,9 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/solve/forest_policy.hpp"
 #include "surefoot/solve/rfpi.hpp"
+#include "train_options.hpp"
 
 namespace sigmaban {
-
-struct TrainOptions {
-  std::string problem, motion;
-  std::string preset = "default";
-  double budget = 300;                                    // [s] of one nominal core
-  double wall = std::numeric_limits<double>::infinity();  // [s]
-  std::uint64_t seed = 1;
-  std::size_t threads = 0;
-  std::filesystem::path out;
-  double checkpoint_seconds = 10;
-  bool resume = false;
-
-  std::filesystem::path checkpoint() const { return out.string() + ".checkpoint"; }
-};
 
 inline void print_progress(const surefoot::RfpiProgress& p) {
   const double left = p.share > 0 ? p.seconds * std::max(0.0, 1 - p.share) / p.share : 0;
@@ -100,9 +87,18 @@ void train(const Problem& problem, const TrainOptions& options, const E& executo
   if (interrupted()) throw Interrupted{};
 }
 
-/// Adds the subcommand; it trains on the executor that make_executor(options) gives. `threads`: the default.
+/// Trains on the executor that make_executor(options) gives.
 template <class MakeExecutor>
-void add_train_on(CLI::App& program, std::size_t threads, MakeExecutor make_executor) {
+void train_on(const TrainOptions& options, MakeExecutor&& make_executor) {
+  with_problem(options.problem, options.motion, [&](const auto& problem) {
+    const auto executor = make_executor(options);
+    train(problem, options, executor);
+  });
+}
+
+/// Adds the subcommand; `work(options)` trains. `threads`: the default.
+template <class Work>
+void add_train_by(CLI::App& program, std::size_t threads, Work work) {
   auto options = std::make_shared<TrainOptions>();
   options->threads = threads;
   CLI::App* command = program.add_subcommand("train", "Train a policy by RFPI; Ctrl-C ends early and keeps the best");
@@ -124,12 +120,7 @@ void add_train_on(CLI::App& program, std::size_t threads, MakeExecutor make_exec
       ->check(CLI::Range(0.0, 1e7))
       ->capture_default_str();
   command->add_flag("--resume", options->resume, "go on from FILE.checkpoint, if it is there");
-  command->callback([options, make_executor] {
-    with_problem(options->problem, options->motion, [&](const auto& problem) {
-      const auto executor = make_executor(*options);
-      train(problem, *options, executor);
-    });
-  });
+  command->callback([options, work] { work(*options); });
 }
 
 }  // namespace sigmaban
