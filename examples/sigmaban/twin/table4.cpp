@@ -26,7 +26,7 @@ std::array<BallView, 12> table4_starts() {
 
 std::string to_csv(const Table4Row& row) {
   std::array<char, 160> line{};
-  std::snprintf(line.data(), line.size(), "%s,%s,%d,%d,%.3f,%d,%d,%d\n", row.problem.c_str(), row.policy.c_str(),
+  std::snprintf(line.data(), line.size(), "%s,%s,%d,%d,%.17g,%d,%d,%d\n", row.problem.c_str(), row.policy.c_str(),
                 row.start, row.run, row.approach.seconds, row.approach.reached ? 1 : 0, row.approach.fell ? 1 : 0,
                 row.approach.lost ? 1 : 0);
   return line.data();

@@ -82,8 +82,8 @@ KickApproach walk(const Contest& contest, const Table4Row& row, const Table4Opti
       contest.policies[policy]);
 }
 
-/// Appends each approach to the file as it ends; adds them to `done`.
-void walk_missing(const Table4Options& options, const std::filesystem::path& file, Table4Approaches& all) {
+/// Appends each approach to the file as it ends.
+void walk_missing(const Table4Options& options, const std::filesystem::path& file, const Table4Approaches& all) {
   const Contest ha = load_contest("ha", options.work), anha = load_contest("anha", options.work);
   std::string text = table4_header;
   for (const Table4Row& row : all.done) text += to_csv(row);
@@ -98,7 +98,6 @@ void walk_missing(const Table4Options& options, const std::filesystem::path& fil
       row.approach = walk(row.problem == "ha" ? ha : anha, row, options);
       const std::scoped_lock lock(one_at_a_time);
       out << to_csv(row) << std::flush;
-      all.done.push_back(row);
       progress(++count);
     });
   });
@@ -147,11 +146,13 @@ void run(const Table4Options& options) {
   keep_settings(options);
   make_table4_policies(options.work);
   const auto file = options.work.folder / "approaches.csv";
-  Table4Approaches all = table4_approaches(exists(file) ? example::read_text(file) : "", options.runs);
+  const auto in_file = [&] { return table4_approaches(exists(file) ? example::read_text(file) : "", options.runs); };
+  Table4Approaches all = in_file();
   if (!all.missing.empty()) {
     std::printf("== walking, %zu approaches\n", all.missing.size());
     std::fflush(stdout);
     walk_missing(options, file, all);
+    all = in_file();  // in the same order as if nothing had ever been stopped
   }
   print(all.done, options);
   example::write_text(options.work.folder / "table4.json", to_json(all.done, options).dump(2) + "\n");
