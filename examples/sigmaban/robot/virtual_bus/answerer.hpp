@@ -163,7 +163,8 @@ class Answerer {
       if constexpr (Protocol::version == 2) {
         std::array<std::uint8_t, 7> head;
         static_cast<void>(servo.read(0, head));
-        const std::array<std::uint8_t, 3> data{head[0], head[1], head[6]};  // model number, firmware
+        const std::uint8_t firmware = head[servo.model().find("firmware_version")->address];
+        const std::array<std::uint8_t, 3> data{head[0], head[1], firmware};
         answer(servo, {id, servo.error_bits(Refusal::none), false, data});  // a broadcast one too, in turn
       } else if (answers) {
         answer(servo, {id, servo.error_bits(Refusal::none), false, {}});

@@ -94,14 +94,14 @@ class VirtualServo {
     if (voltage_v < least_supply_v) reboot(now);
     if (overheated()) set(known_.torque_enable, 0);
     look_at_watchdog(now);
-    const MotorInputs inputs{torque_on(),
-                             goal_rad(),
-                             p_gain(),
-                             voltage_v,
-                             load_nm,
-                             load_inertia,
-                             value(model_->protocol == 1 ? known_.torque_limit : known_.pwm_limit) /
-                                 (model_->protocol == 1 ? 1023.0 : 885.0)};
+    const MotorInputs inputs{
+        torque_on(),
+        goal_rad(),
+        p_gain(),
+        voltage_v,
+        load_nm,
+        load_inertia,
+        known_.pwm_limit != nullptr ? value(known_.pwm_limit) / 885.0 : value(known_.torque_limit) / 1023.0};
     for (; now - moved_to_ >= step_time; moved_to_ += step_time) state_ = step(motor_, state_, inputs, 1e-3);
     show();
   }
@@ -206,8 +206,9 @@ class VirtualServo {
   }
 
   bool beyond_limits(std::uint32_t goal) const {
-    const double low = value(model_->protocol == 1 ? known_.cw_angle_limit : known_.min_position_limit);
-    const double high = value(model_->protocol == 1 ? known_.ccw_angle_limit : known_.max_position_limit);
+    const bool angles = known_.cw_angle_limit != nullptr;
+    const double low = value(angles ? known_.cw_angle_limit : known_.min_position_limit);
+    const double high = value(angles ? known_.ccw_angle_limit : known_.max_position_limit);
     const double ticks = static_cast<std::int32_t>(goal);
     return ticks < low || ticks > high;
   }
@@ -216,9 +217,11 @@ class VirtualServo {
   double goal_rad() const {
     return (static_cast<std::int32_t>(value(known_.goal_position)) - model_->center) * model_->tick_rad;
   }
-  /// In counts of Protocol 1.0, whose law has a factor of 1/8 where 2.0 has 1/128 on other units: 850 is like 32.
+  /// In counts of Protocol 1.0, whose law has a factor of 1/8 where 2.0 has 1/128 on other units: 850 is like 32. AX-12
+  /// has no gain but compliances.
   double p_gain() const {
-    return model_->protocol == 1 ? value(known_.p_gain) : value(known_.position_p_gain) * 32.0 / 850.0;
+    if (known_.position_p_gain != nullptr) return value(known_.position_p_gain) * 32.0 / 850.0;
+    return known_.p_gain != nullptr ? value(known_.p_gain) : 32.0;
   }
 
   void show() {
