@@ -12,6 +12,7 @@
 #include "../common/files.hpp"
 #include "commands.hpp"
 #include "curve_files.hpp"
+#include "curve_splits.hpp"
 #include "sequence_options.hpp"
 #include "surefoot/motion/compare.hpp"
 #include "surefoot/motion/plan.hpp"
@@ -26,14 +27,18 @@ struct CurveOptions {
   std::filesystem::path out;
 };
 
-/// With a line of progress about every two seconds.
-surefoot::LearningCurve curve_of(const surefoot::AnyMotionModel& model,
-                                 const std::vector<surefoot::WalkSequence>& sequences,
+/// With a line of progress about every two seconds. Goes on with the splits that the folder holds.
+surefoot::LearningCurve curve_of(ModelKind kind, const std::vector<surefoot::WalkSequence>& sequences,
                                  surefoot::LearningCurveOptions options, const StoppableThreads& executor,
-                                 std::uint64_t seed) {
+                                 std::uint64_t seed, const std::filesystem::path& folder) {
+  const surefoot::AnyMotionModel model = default_model(kind);
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   double shown = 0;  // [s]
+  CurveSplits splits(folder / ("splits_" + std::string(file_name_of(kind)) + ".csv"),
+                     curve_fingerprint(model, sequences, options, seed), options.counts);
+  options.known = [&](std::size_t repetition) { return splits.known(repetition); };
+  options.on_split = [&](std::size_t repetition, const auto& result) { splits.add(repetition, result); };
   options.on_progress = [&](std::size_t done) {
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     if (seconds < shown + 2 && done < options.repetitions) return;
@@ -77,6 +82,7 @@ void run(const CurveOptions& options) {
   example::prepare_output(options.out / "curve.json");
   surefoot::LearningCurveOptions work;
   work.predictor = predictor_options(loaded.sequences, fit_settings(options.read));
+  work.predictor.published.steps_where_determined = true;
   work.validation = options.validation;
   work.repetitions = options.repetitions;
   work.counts = options.counts;
@@ -88,7 +94,7 @@ void run(const CurveOptions& options) {
   std::vector<CountedCurve> curves;
   until_interrupted(options.read.threads, [&](const StoppableThreads& executor) {
     for (const ModelKind kind : all_models) {
-      auto curve = curve_of(default_model(kind), loaded.sequences, work, executor, options.read.seed);
+      auto curve = curve_of(kind, loaded.sequences, work, executor, options.read.seed, options.out);
       const auto more = surefoot::more_sequences(curve, loaded.sequences.size());
       curves.push_back({kind, std::move(curve), more});
     }
@@ -106,7 +112,9 @@ void add_curve(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("curve", "Show how many sequences each model needs, and how many more are worth walking");
   command->footer(
-      "Reads the same files as `fit`. Writes curve.csv, curve.json, curve and coefficients as .svg and .png.");
+      "Reads the same files as `fit`. Writes curve.csv, curve.json, curve and coefficients as .svg and .png, and what "
+      "goes\n"
+      "into them as splits_MODEL.csv: Ctrl-C stops, the same command goes on.");
   add_reading_options(*command, options->read);
   command->add_option("--counts", options->counts, "of sequences to fit to, N,N,...; default: about fifteen of them")
       ->delimiter(',')

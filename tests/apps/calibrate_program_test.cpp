@@ -172,6 +172,15 @@ TEST_CASE("a learning curve is written and says what to do") {
   CHECK(contains(curve.output, "With these 14 sequences use the model "));
   CHECK(contains(text_of(folder.file("curve/curve.csv")), "full,9,"));
   CHECK(std::filesystem::exists(folder.file("curve/coefficients.png")));
+
+  const std::string splits = text_of(folder.file("curve/splits_full.csv")),
+                    csv = text_of(folder.file("curve/curve.csv"));
+  std::ofstream(folder.file("curve/splits_full.csv")) << splits.substr(0, splits.size() / 2);  // killed while it wrote
+  const Outcome again =
+      calibrate("curve --repetitions 6 --counts 3,9 --out " + folder.file("curve") + " " + folder.file("walks.csv"));
+  REQUIRE_MESSAGE(again.code == 0, again.output);
+  CHECK(text_of(folder.file("curve/curve.csv")) == csv);
+  CHECK(text_of(folder.file("curve/splits_full.csv")).size() == splits.size());
 }
 
 TEST_CASE("wrong options and files end with 2 and one sentence") {

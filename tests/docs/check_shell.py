@@ -95,7 +95,7 @@ def wrong_options(block, folder):
             if not os.access(script, os.X_OK):
                 yield f"there is no script {name}"
         elif program.exists() and options:
-            subcommand = words[1:2] if re.fullmatch(r"[a-z]+", words[1]) else []
+            subcommand = words[1:2] if re.fullmatch(r"[a-z][a-z0-9]*", words[1]) else []
             known = help_of(str(program), *subcommand)
         else:
             continue

@@ -6,13 +6,12 @@
 #include <vector>
 
 #include "examples/sigmaban/robot/dynamixel/control_tables.hpp"
+#include "examples/sigmaban/robot/dynamixel/servo_models.hpp"
 #include "examples/sigmaban/robot/dynamixel/units.hpp"
 
 using namespace dynamixel;
 
 namespace {
-
-const std::array models{&mx_28_protocol_1, &mx_64_protocol_1, &mx_28_protocol_2, &mx_64_protocol_2};
 
 const Register& at(const ServoModel& model, std::string_view name) {
   const Register* found = model.find(name);
@@ -23,17 +22,17 @@ const Register& at(const ServoModel& model, std::string_view name) {
 }  // namespace
 
 TEST_CASE("registers are sorted, do not overlap and have sizes of the protocol") {
-  for (const ServoModel* model : models) {
-    CAPTURE(model->name);
+  for (const ServoModel& model : servo_models) {
+    CAPTURE(model.name);
     std::size_t end = 0;
-    for (const Register& r : model->registers) {
+    for (const Register& r : model.registers) {
       CAPTURE(r.name);
       CHECK(r.address >= end);
       end = r.end();
       CHECK((r.size == 1 || r.size == 2 || r.size == 4));
       CHECK(r.factor > 0);
-      CHECK(&at(*model, r.name) == &r);  // no name twice
-      if (model->protocol == 1) CHECK(r.end() <= 256);
+      CHECK(&at(model, r.name) == &r);  // no name twice
+      if (model.protocol == 1) CHECK(r.end() <= 256);
     }
   }
   CHECK(mx_64_protocol_1.find("goal_current") == nullptr);
@@ -86,8 +85,8 @@ TEST_CASE("worked values of the e-Manual come out") {
 }
 
 TEST_CASE("values become bits and bits become the same values") {
-  for (const ServoModel* model : models) {
-    for (const Register& r : model->registers) {
+  for (const ServoModel& model : servo_models) {
+    for (const Register& r : model.registers) {
       CAPTURE(r.name);
       for (const std::uint32_t bits : {0U, 1U, 100U, 127U}) {
         CHECK(bits_from_value(r, value_from_bits(r, bits)) == bits);
@@ -136,4 +135,34 @@ TEST_CASE("baud rates have the values of the e-Manual") {
   CHECK(baud2_from_bits_per_s(1'000'000) == 3);
   CHECK(baud2_from_bits_per_s(3'000'000) == 5);
   CHECK_FALSE(baud2_from_bits_per_s(123));
+}
+
+TEST_CASE("models are found by number and by name; their registers are where the e-Manual says") {
+  for (const ServoModel& model : servo_models) {
+    CHECK(find_model(model.model_number) == &model);
+    CHECK(find_model(model.name) == &model);
+    CHECK(at(model, "model_number").address == 0);
+    CHECK(at(model, "torque_enable").address == model.first_ram_address);
+    const std::uint8_t baud_rate = model.factory.baud_rate;
+    const std::uint32_t new_speed = model.name == "AX-12" || model.name == "XL-320" ? 1'000'000 : 57'600;
+    CHECK(bits_per_s_of(model, baud_rate).value() / static_cast<double>(new_speed) == doctest::Approx(1).epsilon(0.01));
+    CHECK(baud_rate_of(model, new_speed) == baud_rate);
+  }
+  CHECK(find_model(9999U) == nullptr);
+  CHECK(find_model("AX-18") == nullptr);
+  CHECK(at(*find_model("MX-106"), "drive_mode").address == 10);
+  CHECK(find_model("XL430-W250")->find("present_current") == nullptr);
+  CHECK(at(*find_model("XL430-W250"), "present_load").address == 126);
+  CHECK(find_model("XM430-W350")->find("acceleration_limit") == nullptr);
+  CHECK(value_from_bits(at(*find_model("XM540-W270"), "present_current"), 1000) == doctest::Approx(2.69));
+  CHECK(at(*find_model("XH540-W150"), "external_port_data_3").address == 156);
+  CHECK(value_from_bits(at(*find_model("XL330-M288"), "goal_current"), 1750) == doctest::Approx(1.75));
+  CHECK(at(*find_model("XL330-M288"), "indirect_data_1").end() == 228);
+  CHECK(at(*find_model("XL-320"), "present_position").address == 37);
+  CHECK(at(*find_model("AX-12"), "ccw_compliance_slope").address == 29);
+  CHECK(value_from_bits(at(*find_model("AX-12"), "goal_position"), 512) == doctest::Approx(150 * degree_rad));
+  CHECK_FALSE(baud_rate_of(*find_model("XL330-M288"), 4'500'000));
+  CHECK_FALSE(baud_rate_of(*find_model("XL-320"), 2'000'000));
+  CHECK_FALSE(baud_rate_of(*find_model("AX-12"), 3'000'000));
+  CHECK(baud_rate_of(*find_model("MX-28"), 3'000'000) == 252);
 }

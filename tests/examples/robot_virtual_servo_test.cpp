@@ -74,6 +74,23 @@ TEST_CASE("half the step hardly changes the path") {
   }
 }
 
+TEST_CASE("a servo of every model goes to its goal and says that it is there, in its own ticks") {
+  for (const ServoModel& model : servo_models) {
+    CAPTURE(model.name);
+    VirtualServo servo(model, 1);
+    const Register& goal = *model.find("goal_position");
+    const int ticks = model.center + static_cast<int>(0.5 / model.tick_rad);
+    std::array<std::uint8_t, 4> bytes{static_cast<std::uint8_t>(ticks), static_cast<std::uint8_t>(ticks >> 8)};
+    CHECK(servo.write(goal.address, Bytes(bytes).first(goal.size)) == Refusal::none);
+    servo.set("torque_enable", 1);
+    for (int i = 0; i < 300; ++i) servo.advance(from_seconds(0.01 * i));
+    CHECK(servo.state().position_rad == doctest::Approx(0.5).epsilon(0.05));
+    const Register& present = *model.find("present_position");
+    CHECK(servo.read(present.address, Buffer(bytes).first(present.size)) == Refusal::none);
+    CHECK(std::abs(bytes[0] + 256 * bytes[1] - ticks) <= 0.025 / model.tick_rad);
+  }
+}
+
 TEST_CASE("registers show what the motor does") {
   VirtualServo servo(mx_64_protocol_2, 7, 0.5);
   std::array<std::uint8_t, 4> bytes{};

@@ -68,7 +68,7 @@ TEST_CASE("a sitting robot has its knees bent and its feet flat under the hips")
 }
 
 TEST_CASE("a ball beyond the area is brought to its edge, and lost after many sightings without coming closer") {
-  FarBall far({.most_sightings = 4});
+  FarBall far({.most_cycles = 4});
   const BallView near = far.within({0.5, 0.2, 1}, 1);
   CHECK(near.x == 0.5);
   const BallView edge = far.within({1.5, 2, 1}, 1);

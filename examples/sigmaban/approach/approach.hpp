@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "surefoot/core/box.hpp"
+#include "surefoot/core/pose2.hpp"
 #include "surefoot/core/problem.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/motion/linear_correction.hpp"
 #include "surefoot/motion/motion_model.hpp"
 #include "surefoot/motion/noise.hpp"
-#include "surefoot/core/pose2.hpp"
 
 namespace sigmaban {
 
@@ -122,6 +122,22 @@ struct ApproachWith {
     const surefoot::Vec<3> orders = constants.steps_per_cycle * speed, previous = constants.steps_per_cycle * before;
     const surefoot::Vec<3> noise_here = noise.sample(orders, previous, rng);
     return seen_after_turn(surefoot::Pose2::from_vec(cycle_displacement(walk, orders, previous).vec() + noise_here));
+  }
+
+  /// The same without its noise.
+  surefoot::Pose2 expected_walk_cycle(const surefoot::Vec<3>& speed, const surefoot::Vec<3>& before) const {
+    const double steps = constants.steps_per_cycle;
+    return seen_after_turn(cycle_displacement(walk, surefoot::Vec<3>(steps * speed), surefoot::Vec<3>(steps * before)));
+  }
+
+  /// Standard deviations of its noise [m, m, rad].
+  surefoot::Vec<3> walk_deviation(const surefoot::Vec<3>& speed, const surefoot::Vec<3>& before) const {
+    const surefoot::Vec<3> orders = constants.steps_per_cycle * speed, previous = constants.steps_per_cycle * before;
+    if constexpr (requires { noise.as_motion_noise(); }) {
+      return noise.as_motion_noise().deviation(orders, previous);
+    } else {
+      return noise.deviation(orders, previous);
+    }
   }
 
   /// The state, reward and end of arriving with the ball at (x, y) [m] and the kick target in direction `kick` [rad].

@@ -7,9 +7,10 @@
 
 namespace sigmaban {
 
-void add_train(CLI::App& program) {
-  add_train_on(program, 0,
-               [](const TrainOptions& options) { return std::make_unique<surefoot::Threads>(options.threads); });
+void train_on_threads(const TrainOptions& options) {
+  train_on(options, [](const TrainOptions& o) { return std::make_unique<surefoot::Threads>(o.threads); });
 }
+
+void add_train(CLI::App& program) { add_train_by(program, 0, train_on_threads); }
 
 }  // namespace sigmaban

@@ -22,22 +22,9 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/solve/forest_policy.hpp"
 #include "surefoot/solve/rfpi.hpp"
+#include "train_options.hpp"
 
 namespace sigmaban {
-
-struct TrainOptions {
-  std::string problem, motion;
-  std::string preset = "default";
-  double budget = 300;                                    // [s] of one nominal core
-  double wall = std::numeric_limits<double>::infinity();  // [s]
-  std::uint64_t seed = 1;
-  std::size_t threads = 0;
-  std::filesystem::path out;
-  double checkpoint_seconds = 10;
-  bool resume = false;
-
-  std::filesystem::path checkpoint() const { return out.string() + ".checkpoint"; }
-};
 
 inline void print_progress(const surefoot::RfpiProgress& p) {
   const double left = p.share > 0 ? p.seconds * std::max(0.0, 1 - p.share) / p.share : 0;
@@ -105,10 +92,17 @@ void train(const Problem& problem, const TrainOptions& options, const surefoot::
 extern template void train(const Approach&, const TrainOptions&, const surefoot::AnyExecutor&);
 extern template void train(const CalibratedApproach&, const TrainOptions&, const surefoot::AnyExecutor&);
 
-/// Adds the subcommand; it trains on the executor that make_executor(options) gives, as a std::unique_ptr. `threads`:
-/// the default.
+/// Trains on the executor that make_executor(options) gives, as a std::unique_ptr.
 template <class MakeExecutor>
-void add_train_on(CLI::App& program, std::size_t threads, MakeExecutor make_executor) {
+void train_on(const TrainOptions& options, MakeExecutor&& make_executor) {
+  with_problem(options.problem, options.motion, [&](const auto& problem) {
+    train(problem, options, surefoot::AnyExecutor(make_executor(options)));
+  });
+}
+
+/// Adds the subcommand; `work(options)` trains. `threads`: the default.
+template <class Work>
+void add_train_by(CLI::App& program, std::size_t threads, Work work) {
   auto options = std::make_shared<TrainOptions>();
   options->threads = threads;
   CLI::App* command = program.add_subcommand("train", "Train a policy by RFPI; Ctrl-C ends early and keeps the best");
@@ -130,11 +124,7 @@ void add_train_on(CLI::App& program, std::size_t threads, MakeExecutor make_exec
       ->check(CLI::Range(0.0, 1e7))
       ->capture_default_str();
   command->add_flag("--resume", options->resume, "go on from FILE.checkpoint, if it is there");
-  command->callback([options, make_executor] {
-    with_problem(options->problem, options->motion, [&](const auto& problem) {
-      train(problem, *options, surefoot::AnyExecutor(make_executor(*options)));
-    });
-  });
+  command->callback([options, work] { work(*options); });
 }
 
 }  // namespace sigmaban

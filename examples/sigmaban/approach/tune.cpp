@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -17,6 +16,7 @@
 #include "parameter_file.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/solve/policy_search.hpp"
+#include "tune_options.hpp"
 #include "winner2016.hpp"
 
 namespace sigmaban {
@@ -25,15 +25,6 @@ namespace {
 using example::Interrupt;
 using example::prepare_output;
 using example::write_text;
-
-struct TuneOptions {
-  std::string problem, motion;
-  double budget = 50;                                     // [s] of one nominal core
-  double wall = std::numeric_limits<double>::infinity();  // [s]
-  std::uint64_t seed = 1;
-  std::size_t threads = 0;
-  std::filesystem::path out;
-};
 
 constexpr double run_seconds = 5.5e-6;  // nominal price of a simulated run
 
@@ -93,6 +84,10 @@ void run(const Problem& problem, const TuneOptions& options) {
 
 }  // namespace
 
+void tune_winner2016(const TuneOptions& options) {
+  with_problem(options.problem, options.motion, [&](const auto& problem) { run(problem, options); });
+}
+
 void add_tune(CLI::App& program) {
   auto options = std::make_shared<TuneOptions>();
   CLI::App* command = program.add_subcommand("tune", "Tune Winner2016 by CMA-ES; Ctrl-C ends early and keeps the best");
@@ -107,9 +102,7 @@ void add_tune(CLI::App& program) {
   command->add_option("--seed", options->seed, "same seed, same parameters")->capture_default_str();
   add_threads_option(*command, options->threads);
   command->add_option("--out", options->out, "parameter file (JSON)")->required();
-  command->callback([options] {
-    with_problem(options->problem, options->motion, [&](const auto& problem) { run(problem, *options); });
-  });
+  command->callback([options] { tune_winner2016(*options); });
 }
 
 }  // namespace sigmaban

@@ -16,6 +16,7 @@ void add_record(CLI::App& program);
 void add_gains(CLI::App& program);
 void add_play(CLI::App& program);
 void add_picture(CLI::App& program);
+void add_table4(CLI::App& program);
 
 /// Which twin, and how it is run.
 struct TwinOptions {

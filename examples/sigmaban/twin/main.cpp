@@ -22,5 +22,6 @@ int main(int argc, char** argv) {
   sigmaban::add_gains(program);
   sigmaban::add_play(program);
   sigmaban::add_picture(program);
+  sigmaban::add_table4(program);
   return example::run_program(program, argc, argv, "stopped; what was done until then is kept");
 }

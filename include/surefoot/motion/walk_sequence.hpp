@@ -74,6 +74,13 @@ struct FinalPoseError {
   double heading = 0;
 };
 
+namespace detail {
+
+/// The pose after all displacements (column = cycle), from the origin.
+Pose2 compose(const Eigen::Matrix3Xd& displacements);
+
+}  // namespace detail
+
 /// Distances of angles below `heading_tolerance` [rad] count as none.
 FinalPoseError final_pose_error(const AnyMotionModel& model, std::span<const WalkSequence> sequences,
                                 double heading_tolerance = 0);

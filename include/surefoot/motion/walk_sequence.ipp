@@ -52,7 +52,6 @@ SUREFOOT_INLINE void check(const PoseAccuracy& accuracy) {
 
 namespace detail {
 
-/// The pose after all displacements (column = cycle), from the origin.
 SUREFOOT_INLINE Pose2 compose(const Eigen::Matrix3Xd& displacements) {
   Pose2 pose;
   for (Eigen::Index i = 0; i < displacements.cols(); ++i) pose = pose * Pose2::from_vec(displacements.col(i));

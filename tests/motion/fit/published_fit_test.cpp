@@ -28,3 +28,19 @@ TEST_CASE("the published fit and the likelihood agree within their errors on cle
   CHECK(published.error.position <=
         final_pose_error(likelihood.model, std::span<const surefoot::WalkSequence>(walks)).position);
 }
+
+TEST_CASE("Gauss-Newton steps end where CMA-ES does, where the readings determine the model") {
+  const auto walks = toys::final_poses(toys::walks(toys::paper_walk(), toys::paper_noise(), 40, 3));
+  const std::span<const surefoot::WalkSequence> all(walks), few = all.first(4);
+  for (const double tolerance : {0.0, 0.1}) {
+    surefoot::PublishedFitOptions options{.heading_tolerance = tolerance};
+    const auto search = surefoot::published_fit<FullLinearCorrection>(all, options, surefoot::Serial{}, 1);
+    options.steps_where_determined = true;
+    const auto steps = surefoot::published_fit<FullLinearCorrection>(all, options, surefoot::Serial{}, 1);
+    CHECK(steps.fitness == doctest::Approx(search.fitness).epsilon(2e-3));
+    CHECK(steps.fitness == doctest::Approx(published_fitness(steps.model, all, options)));
+    CHECK(steps.evaluations < 100);
+  }
+  const surefoot::PublishedFitOptions options{.steps_where_determined = true};  // 12 readings, 12 parameters
+  CHECK(surefoot::published_fit<FullLinearCorrection>(few, options, surefoot::Serial{}, 1).evaluations > 500);
+}

@@ -3,6 +3,9 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <map>
+#include <optional>
+#include <vector>
 
 #include "surefoot/motion/linear_correction.hpp"
 #include "tests/support/walks.hpp"
@@ -35,6 +38,27 @@ TEST_CASE("a curve does not depend on the number of threads") {
   const auto three = surefoot::learning_curve<SimpleLinearCorrection>(all, options, surefoot::Threads(3), 1);
   CHECK((one.position == three.position).all());
   CHECK(one.coefficients == three.coefficients);
+}
+
+TEST_CASE("a curve whose splits are partly known computes the others alone, to the same result") {
+  const auto walks = toys::final_poses(toys::walks(toys::paper_walk(), toys::paper_noise(), 10, 2));
+  surefoot::LearningCurveOptions options{.counts = {2, 4}, .repetitions = 4};
+  std::map<std::size_t, std::vector<surefoot::SplitResult>> kept;
+  options.on_split = [&](std::size_t repetition, const auto& split) { kept[repetition] = split; };
+  const std::span<const WalkSequence> all(walks);
+  const auto whole = surefoot::learning_curve<SimpleLinearCorrection>(all, options, surefoot::Threads(2), 1);
+  REQUIRE(kept.size() == 4);
+  const auto before = kept;
+  kept.clear();
+  options.known = [&](std::size_t repetition) -> std::optional<std::vector<surefoot::SplitResult>> {
+    if (repetition == 1) return std::nullopt;
+    return before.at(repetition);
+  };
+  const auto resumed = surefoot::learning_curve<SimpleLinearCorrection>(all, options, surefoot::Threads(2), 1);
+  CHECK((whole.position == resumed.position).all());
+  CHECK(whole.coefficients == resumed.coefficients);
+  REQUIRE(kept.size() == 1);
+  CHECK(kept.begin()->first == 1);
 }
 
 TEST_CASE("a curve that is asked for no counts has them all, and reports its repetitions") {

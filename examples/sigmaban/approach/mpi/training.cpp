@@ -19,7 +19,7 @@ void add_training(CLI::App& program, surefoot::MpiSession& session) {
     });
     return std::make_unique<surefoot::MpiExecutor>(MPI_COMM_WORLD, options.threads);
   };
-  add_train_on(program, 1, make_executor);
+  add_train_by(program, 1, [make_executor](const TrainOptions& options) { train_on(options, make_executor); });
 }
 
 }  // namespace sigmaban

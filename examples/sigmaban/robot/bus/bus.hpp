@@ -114,6 +114,9 @@ class Bus {
     options_.latency_s = latency_s;
   }
 
+  /// Address behind the last byte that may be read from now on, of servos of another model.
+  void set_table_end(std::uint16_t address) { options_.table_end = address; }
+
  private:
   static constexpr std::size_t marks = 10;  // lengths that reads take turns with
 

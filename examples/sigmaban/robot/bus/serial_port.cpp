@@ -54,12 +54,6 @@ bool configure(int file, std::uint32_t bits_per_s) {
   return ioctl(file, TCSETS2, &settings) == 0;
 }
 
-/// The speed the driver chose; 0 if it does not tell.
-std::uint32_t speed_of(int file) {
-  termios2 settings{};
-  return ioctl(file, TCGETS2, &settings) == 0 ? settings.c_ospeed : 0;
-}
-
 /// Bytes are handed on as they come, not every 16 ms. Pseudo-terminals and some adapters have no such setting.
 void ask_for_low_latency(int file) {
   serial_struct settings{};
@@ -70,6 +64,11 @@ void ask_for_low_latency(int file) {
 
 }  // namespace
 
+std::uint32_t terminal_speed(int file) {
+  termios2 settings{};
+  return ioctl(file, TCGETS2, &settings) == 0 ? settings.c_ospeed : 0;
+}
+
 SerialPort::SerialPort(const std::string& path, std::uint32_t bits_per_s) : path_(path), bits_per_s_(bits_per_s) {
   if (bits_per_s == 0) fail(path, "a speed of 0 bit/s was asked for; give the servos' one, for example 1000000");
   file_ = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
@@ -79,11 +78,11 @@ SerialPort::SerialPort(const std::string& path, std::uint32_t bits_per_s) : path
     fail(path, what);
   };
   if (flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) close_and_fail(why_not_opened(EBUSY));
-  if (speed_of(file_) == 0 && errno == ENOTTY) close_and_fail("is no serial port");
+  if (terminal_speed(file_) == 0 && errno == ENOTTY) close_and_fail("is no serial port");
   if (!configure(file_, bits_per_s)) {
     close_and_fail("refuses " + std::to_string(bits_per_s) + " bit/s: " + std::strerror(errno));
   }
-  const double speed = speed_of(file_);
+  const double speed = terminal_speed(file_);
   if (speed < 0.97 * bits_per_s || speed > 1.03 * bits_per_s) {
     close_and_fail("cannot do " + std::to_string(bits_per_s) + " bit/s, only " +
                    std::to_string(static_cast<long>(speed)));

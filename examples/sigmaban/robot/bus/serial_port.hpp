@@ -9,6 +9,9 @@
 
 namespace dynamixel {
 
+/// Of an open terminal [bit/s]; 0 if it does not tell.
+std::uint32_t terminal_speed(int file);
+
 /// Raw bytes, 8N1, no flow control. Also takes a pseudo-terminal. Only one program has a port at a time.
 class SerialPort {
  public:

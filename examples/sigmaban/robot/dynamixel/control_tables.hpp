@@ -50,6 +50,17 @@ struct Register {
   constexpr std::size_t end() const { return std::size_t{address} + std::size_t{size} * repeats; }
 };
 
+/// What Baud Rate counts: 2 Mbit/s divided by one more, and three above; or one of eight speeds from 9600 bit/s on.
+enum class BaudTable : std::uint8_t { divisor, list };
+
+/// Of a servo out of its box [counts], but for its id 1 and a Return Delay Time of 250.
+struct FactorySettings {
+  std::uint8_t baud_rate = 1;
+  std::uint16_t min_voltage_limit = 95, max_voltage_limit = 160;
+  std::uint8_t temperature_limit = 80;
+  std::uint16_t p_gain = 850;  // of the position
+};
+
 /// A kind of servo with one of its firmwares. Registers are sorted by address.
 struct ServoModel {
   std::string_view name;
@@ -57,6 +68,11 @@ struct ServoModel {
   int protocol = 0;                     // 1 or 2
   std::uint16_t first_ram_address = 0;  // registers below keep their value without power
   std::span<const Register> registers;
+  FactorySettings factory{};
+  BaudTable bauds = BaudTable::list;
+  std::uint8_t largest_baud_rate = 7;  // [counts]
+  int center = center_ticks;           // where a joint is straight [ticks]
+  double tick_rad = position_rad;      // [rad]
 
   /// Null if there is none of that name.
   constexpr const Register* find(std::string_view register_name) const {
@@ -230,8 +246,18 @@ inline constexpr std::array mx_64_protocol_2 = with_more(
 
 }  // namespace control_table_detail
 
-inline constexpr ServoModel mx_28_protocol_1{"MX-28", 29, 1, 24, control_table_detail::mx_28_protocol_1};
-inline constexpr ServoModel mx_64_protocol_1{"MX-64", 310, 1, 24, control_table_detail::mx_64_protocol_1};
+namespace control_table_detail {
+
+inline constexpr FactorySettings mx_factory_1{34, 60, 160, 80, 32};
+
+}  // namespace control_table_detail
+
+inline constexpr ServoModel mx_28_protocol_1{
+    "MX-28", 29, 1, 24, control_table_detail::mx_28_protocol_1, control_table_detail::mx_factory_1, BaudTable::divisor,
+    252};
+inline constexpr ServoModel mx_64_protocol_1{
+    "MX-64", 310, 1, 24, control_table_detail::mx_64_protocol_1, control_table_detail::mx_factory_1, BaudTable::divisor,
+    252};
 inline constexpr ServoModel mx_28_protocol_2{"MX-28(2.0)", 30, 2, 64, control_table_detail::mx_28_protocol_2};
 inline constexpr ServoModel mx_64_protocol_2{"MX-64(2.0)", 311, 2, 64, control_table_detail::mx_64_protocol_2};
 

@@ -76,11 +76,12 @@ constexpr std::optional<std::uint8_t> baud1_from_bits_per_s(std::uint32_t bits_p
   if (value > 249 || error > 0.03 || error < -0.03) return std::nullopt;
   return static_cast<std::uint8_t>(value);
 }
+/// Of the values of Baud Rate, Protocol 2.0 [bit/s].
+inline constexpr std::array<std::uint32_t, 8> baud2_rates{9'600,     57'600,    115'200,   1'000'000,
+                                                          2'000'000, 3'000'000, 4'000'000, 4'500'000};
 constexpr std::optional<std::uint8_t> baud2_from_bits_per_s(std::uint32_t bits_per_s) {
-  constexpr std::array<std::uint32_t, 8> rates{9'600,     57'600,    115'200,   1'000'000,
-                                               2'000'000, 3'000'000, 4'000'000, 4'500'000};
-  for (std::size_t i = 0; i < rates.size(); ++i) {
-    if (rates[i] == bits_per_s) return static_cast<std::uint8_t>(i);
+  for (std::size_t i = 0; i < baud2_rates.size(); ++i) {
+    if (baud2_rates[i] == bits_per_s) return static_cast<std::uint8_t>(i);
   }
   return std::nullopt;
 }

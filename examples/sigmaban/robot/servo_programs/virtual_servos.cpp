@@ -1,4 +1,4 @@
-// virtual_servos: MX-64 servos behind a pseudo-terminal, for programs that want some. Runs until Ctrl-C.
+// virtual_servos: servos behind a pseudo-terminal, for programs that want some. Runs until Ctrl-C.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdint>
@@ -22,6 +22,8 @@ struct Options {
   std::string link;
   std::string ids = "1-20";
   int protocol = 2;
+  std::vector<std::string> models;
+  bool new_ones = false;
   std::string silent;
   double silent_from_s = 0, silent_to_s = 1e9;
   std::string hot;
@@ -69,7 +71,7 @@ void set_up(Answerer<Protocol>& answerer, const Options& options) {
   each(options.hot, [&](std::uint8_t id) { answerer.servo(id).temperature_celsius = 90; });
   each(options.ids, [&](std::uint8_t id) {
     const double counts = options.return_delay_us * 1e-6 / return_delay_s;
-    answerer.servo(id).set("return_delay_time", static_cast<std::int64_t>(counts));
+    answerer.servo(id).set("return_delay_time", options.new_ones ? 250 : static_cast<std::int64_t>(counts));
     answerer.servo(id).set("status_return_level", options.status_return_level);
   });
 }
@@ -101,12 +103,24 @@ void print_counts(const Answerer<Protocol>& answerer) {
             << " of them stopped by their bus watchdog\n";
 }
 
+/// Of the servo with that number among all.
+const ServoModel& model_of(const Options& options, std::size_t number) {
+  if (options.models.empty()) return options.protocol == 1 ? mx_64_protocol_1 : mx_64_protocol_2;
+  const std::string& name = options.models[number % options.models.size()];
+  const ServoModel* model = find_model(name);
+  if (model == nullptr || model->protocol != options.protocol) {
+    throw example::UsageError("--model " + name + ": there is none of that name with this --protocol");
+  }
+  return *model;
+}
+
 template <class Protocol>
-void serve(const Options& options, const ServoModel& model) {
+void serve(const Options& options) {
   sigmaban::StopSignals signals;
   signals.no_more_deadlines();
   std::vector<VirtualServo> servos;
-  for (const std::uint8_t id : example::parse_ids(options.ids)) servos.emplace_back(model, id);
+  for (const std::uint8_t id : example::parse_ids(options.ids))
+    servos.emplace_back(model_of(options, servos.size()), id);
   ask_for_realtime();
   VirtualBus<Protocol> bus{Answerer<Protocol>(servos, options.answerer)};
   const PortLink link(options.link, bus.path());
@@ -130,12 +144,15 @@ void serve(const Options& options, const ServoModel& model) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program{"MX-64 servos behind a pseudo-terminal, until Ctrl-C; prints its name", "virtual_servos"};
+  CLI::App program{"Servos behind a pseudo-terminal, until Ctrl-C; prints its name", "virtual_servos"};
   Options options;
   Faults& faults = options.answerer.faults;
   program.add_option("--port-link", options.link, "also make this symbolic link to it");
   program.add_option("--servos", options.ids, "their ids")->capture_default_str();
   program.add_option("--protocol", options.protocol)->check(CLI::IsMember({1, 2}))->capture_default_str();
+  program.add_option("--model", options.models, "such as XM430-W350, by turns where there are several; else MX-64")
+      ->delimiter(',');
+  program.add_flag("--new", options.new_ones, "as from the factory: their own speed, answers after 500 us");
   program.add_option("--baud", options.answerer.bits_per_s, "[bit/s]")
       ->check(CLI::Range(1'200, 4'500'000))
       ->capture_default_str();
@@ -178,8 +195,9 @@ int main(int argc, char** argv) {
     if (faults.lost + faults.corrupted + faults.late + faults.duplicated + faults.wrong_id > 1) {
       throw example::UsageError("the shares of faults add up to more than 1; an answer has at most one");
     }
-    if (options.protocol == 1) serve<Protocol1>(options, mx_64_protocol_1);
-    if (options.protocol == 2) serve<Protocol2>(options, mx_64_protocol_2);
+    options.answerer.own_speeds = options.new_ones;
+    if (options.protocol == 1) serve<Protocol1>(options);
+    if (options.protocol == 2) serve<Protocol2>(options);
   });
   return example::run_program(program, argc, argv);
 }

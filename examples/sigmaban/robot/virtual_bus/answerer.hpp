@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -27,6 +28,9 @@ class Answerer {
       : servos_(std::move(servos)), options_(options), rng_(options.seed), per_servo_(servos_.size()) {}
 
   std::uint32_t bits_per_s() const { return options_.bits_per_s; }
+  bool own_speeds() const { return options_.own_speeds; }
+  /// The host has set its port to that speed.
+  void set_speed(std::uint32_t bits_per_s) { options_.bits_per_s = bits_per_s; }
   Faults& faults() { return options_.faults; }
   void set_latency_timer(double seconds) { options_.latency_timer_s = seconds; }
   const FaultCounts& counts() const { return counts_; }
@@ -107,6 +111,12 @@ class Answerer {
     return std::nullopt;
   }
 
+  /// Serial ports agree where their speeds differ by less than 3 %.
+  bool hears(const VirtualServo& servo) const {
+    const double speed = options_.own_speeds ? servo.bits_per_s() : options_.bits_per_s;
+    return servo.hears(line_free_) && std::abs(speed / options_.bits_per_s - 1) < 0.03;
+  }
+
   /// An address, a count: one or two bytes, taken from the front. Too few count as none.
   static std::optional<std::size_t> take_number(Bytes& parameters) {
     if (parameters.size() < Protocol::number_size) return std::nullopt;
@@ -132,7 +142,7 @@ class Answerer {
         return obey_bulk_read(rest);
       case Instruction::action:
         for (VirtualServo& each : servos_) {
-          if ((packet.id == broadcast_id || packet.id == each.id()) && each.hears(line_free_)) each.act();
+          if ((packet.id == broadcast_id || packet.id == each.id()) && hears(each)) each.act();
         }
         if (packet.id != broadcast_id) acknowledge(packet.id, Refusal::none);
         return;
@@ -146,15 +156,16 @@ class Answerer {
 
   void obey_single(std::uint8_t id, const Packet& packet, bool answers) {
     VirtualServo& servo = servos_[place(id)];
-    if (!servo.hears(line_free_)) return;
+    if (!hears(servo)) return;
     Bytes rest = packet.parameters;
     const auto code = static_cast<Instruction>(packet.code);
     if (code == Instruction::ping) {
       if constexpr (Protocol::version == 2) {
         std::array<std::uint8_t, 7> head;
         static_cast<void>(servo.read(0, head));
-        const std::array<std::uint8_t, 3> data{head[0], head[1], head[6]};  // model number, firmware
-        if (answers) answer(servo, {id, servo.error_bits(Refusal::none), false, data});
+        const std::uint8_t firmware = head[servo.model().find("firmware_version")->address];
+        const std::array<std::uint8_t, 3> data{head[0], head[1], firmware};
+        answer(servo, {id, servo.error_bits(Refusal::none), false, data});  // a broadcast one too, in turn
       } else if (answers) {
         answer(servo, {id, servo.error_bits(Refusal::none), false, {}});
       }
@@ -180,8 +191,7 @@ class Answerer {
     if (!address || !count || *count == 0) return;
     for (; rest.size() > *count; rest = rest.subspan(1 + *count)) {
       const auto at = find(rest[0]);
-      if (at && servos_[*at].hears(line_free_))
-        static_cast<void>(servos_[*at].write(*address, rest.subspan(1, *count)));
+      if (at && hears(servos_[*at])) static_cast<void>(servos_[*at].write(*address, rest.subspan(1, *count)));
     }
   }
 
@@ -243,7 +253,7 @@ class Answerer {
   /// Puts a status packet on the line, with what happens to it. False where the servo sends nothing in its turn.
   bool answer(VirtualServo& servo, Status status) {
     PerServo& its = per_servo_[place(servo.id())];
-    if (its.silent || !servo.hears(line_free_)) return count(its, &FaultCounts::silent), false;
+    if (its.silent || !hears(servo)) return count(its, &FaultCounts::silent), false;
     const Fault fault = draw_fault(options_.faults, rng_);
     if (fault == Fault::lost) return count(its, &FaultCounts::lost), false;
     if (fault == Fault::wrong_id && servos_.size() > 1) {

@@ -15,6 +15,8 @@
 #include <ctime>
 #include <utility>
 
+#include "../bus/serial_port.hpp"
+
 namespace dynamixel {
 
 PseudoTerminal::PseudoTerminal() {
@@ -68,6 +70,8 @@ std::size_t PseudoTerminal::read(Buffer bytes, Time deadline) {
 }
 
 void PseudoTerminal::write(Bytes bytes) { static_cast<void>(!::write(ours_, bytes.data(), bytes.size())); }
+
+std::uint32_t PseudoTerminal::bits_per_s() const { return terminal_speed(theirs_); }
 
 void PseudoTerminal::wake() {
   const std::uint64_t one = 1;

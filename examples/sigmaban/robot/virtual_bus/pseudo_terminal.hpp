@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "../bus/transport.hpp"
@@ -28,6 +29,9 @@ class PseudoTerminal {
   void hang_up();
   /// Ends a read() of another thread.
   void wake();
+
+  /// As the program at the other end has set it; 0 where nobody has.
+  std::uint32_t bits_per_s() const;
 
   /// Of the monotonic clock.
   static Time now() { return std::chrono::steady_clock::now().time_since_epoch(); }

@@ -55,6 +55,7 @@ class VirtualBus {
       const std::size_t count = terminal_.read(bytes, deadline);
       with([&](auto& answerer) {
         const Time now = PseudoTerminal::now();
+        if (count > 0 && answerer.own_speeds()) answerer.set_speed(terminal_.bits_per_s());
         count > 0 ? answerer.receive(Bytes(bytes).first(count), now) : answerer.advance(now);
       });
       const auto take = [&](auto& answerer) { return answerer.take(PseudoTerminal::now(), bytes); };

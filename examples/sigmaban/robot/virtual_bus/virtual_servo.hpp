@@ -10,7 +10,7 @@
 
 #include "../bus/protocols.hpp"
 #include "../bus/transport.hpp"
-#include "../dynamixel/control_tables.hpp"
+#include "../dynamixel/servo_models.hpp"
 #include "servo_motor.hpp"
 #include "virtual_servo_registers.hpp"
 
@@ -34,16 +34,17 @@ class VirtualServo {
     set("id", id);
     set("return_delay_time", 0);
     set("status_return_level", 2);
-    set("temperature_limit", 80);
-    set("min_voltage_limit", 95);
-    set("max_voltage_limit", 160);
+    set("baud_rate", model.factory.baud_rate);
+    set("temperature_limit", model.factory.temperature_limit);
+    set("min_voltage_limit", model.factory.min_voltage_limit);
+    set("max_voltage_limit", model.factory.max_voltage_limit);
     set("max_torque", 1023);
     set("torque_limit", 1023);
     set("pwm_limit", 885);
-    set("p_gain", 32);
-    set("position_p_gain", 850);
-    set("ccw_angle_limit", max_ticks);
-    set("max_position_limit", max_ticks);
+    set("p_gain", model.factory.p_gain);
+    set("position_p_gain", model.factory.p_gain);
+    set("ccw_angle_limit", 2 * model.center - 1);
+    set("max_position_limit", 2 * model.center - 1);
     set("goal_position", ticks());
     show();
     as_new_ = bytes_;
@@ -93,14 +94,14 @@ class VirtualServo {
     if (voltage_v < least_supply_v) reboot(now);
     if (overheated()) set(known_.torque_enable, 0);
     look_at_watchdog(now);
-    const MotorInputs inputs{torque_on(),
-                             goal_rad(),
-                             p_gain(),
-                             voltage_v,
-                             load_nm,
-                             load_inertia,
-                             value(model_->protocol == 1 ? known_.torque_limit : known_.pwm_limit) /
-                                 (model_->protocol == 1 ? 1023.0 : 885.0)};
+    const MotorInputs inputs{
+        torque_on(),
+        goal_rad(),
+        p_gain(),
+        voltage_v,
+        load_nm,
+        load_inertia,
+        known_.pwm_limit != nullptr ? value(known_.pwm_limit) / 885.0 : value(known_.torque_limit) / 1023.0};
     for (; now - moved_to_ >= step_time; moved_to_ += step_time) state_ = step(motor_, state_, inputs, 1e-3);
     show();
   }
@@ -169,6 +170,11 @@ class VirtualServo {
     return static_cast<std::uint8_t>(bits);
   }
 
+  /// Of its Baud Rate [bit/s].
+  std::uint32_t bits_per_s() const {
+    return bits_per_s_of(*model_, static_cast<unsigned>(value(known_.baud_rate))).value_or(0);
+  }
+  const ServoModel& model() const { return *model_; }
   double return_delay() const { return value(known_.return_delay_time) * return_delay_s; }  // [s]
   /// Without effect where the model has no such register.
   void set(std::string_view name, std::int64_t bits) { set(model_->find(name), bits); }
@@ -200,17 +206,22 @@ class VirtualServo {
   }
 
   bool beyond_limits(std::uint32_t goal) const {
-    const double low = value(model_->protocol == 1 ? known_.cw_angle_limit : known_.min_position_limit);
-    const double high = value(model_->protocol == 1 ? known_.ccw_angle_limit : known_.max_position_limit);
+    const bool angles = known_.cw_angle_limit != nullptr;
+    const double low = value(angles ? known_.cw_angle_limit : known_.min_position_limit);
+    const double high = value(angles ? known_.ccw_angle_limit : known_.max_position_limit);
     const double ticks = static_cast<std::int32_t>(goal);
     return ticks < low || ticks > high;
   }
 
-  std::int64_t ticks() const { return std::lround(state_.position_rad / position_rad) + center_ticks; }
-  double goal_rad() const { return radians_from_ticks(static_cast<std::int32_t>(value(known_.goal_position))); }
-  /// In counts of Protocol 1.0, whose law has a factor of 1/8 where 2.0 has 1/128 on other units: 850 is like 32.
+  std::int64_t ticks() const { return std::lround(state_.position_rad / model_->tick_rad) + model_->center; }
+  double goal_rad() const {
+    return (static_cast<std::int32_t>(value(known_.goal_position)) - model_->center) * model_->tick_rad;
+  }
+  /// In counts of Protocol 1.0, whose law has a factor of 1/8 where 2.0 has 1/128 on other units: 850 is like 32. AX-12
+  /// has no gain but compliances.
   double p_gain() const {
-    return model_->protocol == 1 ? value(known_.p_gain) : value(known_.position_p_gain) * 32.0 / 850.0;
+    if (known_.position_p_gain != nullptr) return value(known_.position_p_gain) * 32.0 / 850.0;
+    return known_.p_gain != nullptr ? value(known_.p_gain) : 32.0;
   }
 
   void show() {
@@ -221,7 +232,9 @@ class VirtualServo {
     const long speed1 = std::min(1023L, counts(std::abs(speed) / speed1_rad_per_s));
     set(known_.present_speed, speed < 0 ? 0x400 | speed1 : speed1);
     set(known_.position_trajectory, static_cast<std::int64_t>(value(known_.goal_position)));
-    if (model_->name == "MX-64(2.0)") set(known_.present_current, counts(state_.current_a / current2_a));
+    if (known_.present_current != nullptr) {
+      set(known_.present_current, counts(state_.current_a / known_.present_current->factor));
+    }
     set(known_.current, 2048 + counts(state_.current_a / current1_a));
     set(known_.present_voltage, counts(voltage_v / 0.1));
     set(known_.present_input_voltage, counts(voltage_v / 0.1));

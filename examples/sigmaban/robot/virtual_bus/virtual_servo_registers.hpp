@@ -9,6 +9,7 @@ namespace dynamixel {
 struct VirtualServoRegisters {
   explicit VirtualServoRegisters(const ServoModel& model)
       : id(model.find("id")),
+        baud_rate(model.find("baud_rate")),
         goal_position(model.find("goal_position")),
         torque_enable(model.find("torque_enable")),
         torque_limit(model.find("torque_limit")),
@@ -37,10 +38,10 @@ struct VirtualServoRegisters {
         min_position_limit(model.find("min_position_limit")),
         ccw_angle_limit(model.find("ccw_angle_limit")),
         max_position_limit(model.find("max_position_limit")) {}
-  const Register *id, *goal_position, *torque_enable, *torque_limit, *status_return_level, *temperature_limit,
-      *min_voltage_limit, *max_voltage_limit, *return_delay_time, *bus_watchdog, *p_gain, *position_p_gain,
-      *present_position, *present_velocity, *present_speed, *position_trajectory, *present_current, *current,
-      *present_voltage, *present_input_voltage, *present_temperature, *hardware_error_status, *realtime_tick,
+  const Register *id, *baud_rate, *goal_position, *torque_enable, *torque_limit, *status_return_level,
+      *temperature_limit, *min_voltage_limit, *max_voltage_limit, *return_delay_time, *bus_watchdog, *p_gain,
+      *position_p_gain, *present_position, *present_velocity, *present_speed, *position_trajectory, *present_current,
+      *current, *present_voltage, *present_input_voltage, *present_temperature, *hardware_error_status, *realtime_tick,
       *registered, *pwm_limit, *cw_angle_limit, *min_position_limit, *ccw_angle_limit, *max_position_limit;
 };
 

@@ -17,11 +17,12 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "../../../../apps/common/usage_error.hpp"
+#include "surefoot/core/pose2.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
-#include "surefoot/core/pose2.hpp"
 
 namespace sigmaban {
 
@@ -29,7 +30,7 @@ namespace sigmaban {
 using BallView = surefoot::Pose2;
 
 /// `see` is asked where a walk cycle begins, with the speeds of the cycle that ended and of the one before it
-/// [m/step, m/step, rad/step]; nothing where the ball is not seen. It must not wait.
+/// [m/step, m/step, rad/step]; nothing where there is no new sighting. It must not wait.
 ///
 ///   struct Penalty {
 ///     std::optional<BallView> see(const surefoot::Vec<3>&, const surefoot::Vec<3>&) { return BallView{0.5, 0, 0}; }
@@ -64,11 +65,11 @@ class SimulatedBall {
 };
 
 /// Read from a file, a named pipe or "-" (standard input), one line per sight: x y kick [m, m, rad]. The newest counts,
-/// for `valid_s`. A line that is none is ignored and counted.
+/// once, unless it is older than `valid_s`. A line that is none is ignored and counted.
 class BallReader {
  public:
   /// Throws UsageError if the file cannot be opened.
-  explicit BallReader(const std::string& path, double valid_s = 1) : valid_s_(valid_s) {
+  explicit BallReader(const std::string& path, double valid_s = 0.6) : valid_s_(valid_s) {
     file_ = path == "-" ? dup(STDIN_FILENO) : open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file_ < 0) throw example::UsageError(path + ": cannot be read (" + std::strerror(errno) + ")");
     thread_ = std::thread([this] { run(); });
@@ -85,8 +86,8 @@ class BallReader {
   std::optional<BallView> see(const surefoot::Vec<3>& /*speed*/, const surefoot::Vec<3>& /*before*/) {
     const std::lock_guard lock(mutex_);
     const std::chrono::duration<double> age = std::chrono::steady_clock::now() - time_;
-    if (!newest_ || age.count() > valid_s_) return std::nullopt;
-    return newest_;
+    const std::optional<BallView> seen = std::exchange(newest_, std::nullopt);
+    return age.count() > valid_s_ ? std::nullopt : seen;
   }
 
   std::uint64_t ignored() const { return ignored_; }

@@ -8,31 +8,31 @@
 namespace sigmaban {
 
 struct FarBallCriteria {
-  int most_sightings = 12;  // in a row without coming closer; to turn round takes eight walk cycles
+  int most_cycles = 12;  // in a row without coming closer; to turn round takes eight
 };
 
 class FarBall {
  public:
   explicit FarBall(const FarBallCriteria& criteria = {}) : criteria_(criteria) {}
 
-  /// The ball in its direction, at most `distance` [m] away.
+  /// Once a walk cycle: the ball in its direction, at most `distance` [m] away.
   BallView within(const BallView& seen, double distance) {
     const double far = std::hypot(seen.x, seen.y);
     if (!(far > distance)) {
-      sightings_ = 0;
+      cycles_ = 0;
       return seen;
     }
-    if (sightings_ == 0 || far < closest_) sightings_ = 0, closest_ = far;
-    ++sightings_;
+    if (cycles_ == 0 || far < closest_) cycles_ = 0, closest_ = far;
+    ++cycles_;
     const double scale = 0.999 * distance / far;  // inside, however it is rounded
     return {scale * seen.x, scale * seen.y, seen.angle};
   }
 
-  bool lost() const { return sightings_ > criteria_.most_sightings; }
+  bool lost() const { return cycles_ > criteria_.most_cycles; }
 
  private:
   FarBallCriteria criteria_;
-  int sightings_ = 0;   // beyond the distance, since the closest of them
+  int cycles_ = 0;      // beyond the distance, since the closest of them
   double closest_ = 0;  // [m]
 };
 

@@ -27,7 +27,7 @@ struct LogRow {
   std::array<double, 3> orders{};      // [m/step, m/step, rad/step]
   double enabled = 0;                  // 0 stands, 1 walks
   double phase = 0;                    // of the walk
-  std::array<double, 3> ball{};        // x, y, kick direction as last seen [m, m, rad]
+  std::array<double, 3> ball{};        // x, y, kick direction, as believed [m, m, rad]
   std::array<double, 12> goals{};      // as sent [rad], as the next
   std::array<double, 12> positions{};  // measured
   std::array<double, 12> voltages{};   // [V]

@@ -12,9 +12,9 @@
 #include "../bus/transport.hpp"
 #include "../servos/servo_group.hpp"
 #include "../walk_engine/walk_engine.hpp"
+#include "approach_pilot.hpp"
 #include "ball.hpp"
 #include "durations.hpp"
-#include "far_ball.hpp"
 #include "gait.hpp"
 #include "stop_signals.hpp"
 #include "surefoot/core/policy.hpp"
@@ -29,6 +29,7 @@ struct WalkLoopOptions {
   bool hold = false;  // a walk that ends as it should keeps the torque on and stands; others never do
   GaitOptions gait;
   FarBallCriteria far_ball;
+  BallFilterCriteria ball = {};
 };
 
 /// Why a walk ended.
@@ -73,15 +74,13 @@ class Walk {
  public:
   Walk(const Problem& problem, Acting& acting, Ball& ball, Engine engine, Group& group, const WalkLoopOptions& options,
        WalkReport& report)
-      : problem_(&problem),
-        acting_(&acting),
-        ball_(&ball),
+      : ball_(&ball),
+        pilot_(problem, acting, options.ball, options.far_ball),
         engine_(std::move(engine)),
         group_(&group),
         options_(options),
         report_(&report),
-        gait_(options.gait),
-        far_(options.far_ball) {
+        gait_(options.gait) {
     for (std::size_t i = 0; i < goals_.size(); ++i) goals_[i] = group.states()[i].position_rad;
     report.events.reserve(100);
   }
@@ -162,34 +161,28 @@ class Walk {
 
   void begin_cycle() {
     const surefoot::Vec<3> speed = gait_.speed();
-    view_ = ball_->see(speed, before_);
-    surefoot::Vec<3> wanted = problem_->speed_after(speed, -speed);  // where nothing is seen: towards a halt
+    pilot_.walked(speed, before_);
+    if (const auto seen = ball_->see(speed, before_)) pilot_.sighted(*seen);
+    view_ = pilot_.ball();
+    surefoot::Vec<3> wanted = speed;
     if (gait_.walking()) {
-      if (view_) wanted = problem_->speed_after(speed, approach(speed));
+      const PilotDecision decision = pilot_.decide(speed);
+      wanted = decision.speed;
+      if (decision.may_kick) end(WalkEnd::kick);
+      if (decision.lost) end(WalkEnd::lost);
       ++report_->walk_cycles;
     }
     gait_.begin_cycle(wanted);
     before_ = speed;
   }
 
-  /// What the policy does about the ball in view, or ends the walk for.
-  auto approach(const surefoot::Vec<3>& speed) {
-    const BallView near = far_.within(*view_, problem_->constants.max_distance);
-    const auto seen = problem_->arrive(near.x, near.y, near.angle, speed);
-    if (seen.reward == 0) end(WalkEnd::kick);
-    if (far_.lost()) end(WalkEnd::lost);
-    return (*acting_)(seen.next);
-  }
-
-  const Problem* problem_;
-  Acting* acting_;
   Ball* ball_;
+  ApproachPilot<Problem, Acting> pilot_;
   Engine engine_;
   Group* group_;
   WalkLoopOptions options_;
   WalkReport* report_;
   Gait gait_;
-  FarBall far_;
   surefoot::Vec<3> before_ = surefoot::Vec<3>::Zero();  // speed of the cycle before
   std::optional<BallView> view_;
   std::array<double, 12> goals_ = {};

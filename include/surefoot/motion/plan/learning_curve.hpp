@@ -25,6 +25,13 @@
 
 namespace surefoot {
 
+/// Of one random split and one count of sequences fitted to.
+struct SplitResult {
+  double position = 0;         // root mean square error on the held-out sequences [m]
+  Eigen::VectorXd parameters;  // of the fitted model
+  static constexpr auto fields = std::tuple(&SplitResult::position, &SplitResult::parameters);
+};
+
 struct LearningCurveOptions {
   PredictorOptions predictor = {};
   std::vector<std::size_t> counts = {};   // of sequences to fit to, rising; empty: 1, 2, ... all but the held-out ones
@@ -33,6 +40,10 @@ struct LearningCurveOptions {
   std::optional<MotionNoise> noise = {};  // that weighs the likelihood; none: calibrated from all sequences
   // After each repetition of this process, from any thread, one at a time.
   std::function<void(std::size_t done)> on_progress = {};
+  // To go on with work that was stopped: a repetition's results by count, if they are known (from any thread); and
+  // results that are new, one call at a time.
+  std::function<std::optional<std::vector<SplitResult>>(std::size_t repetition)> known = {};
+  std::function<void(std::size_t repetition, const std::vector<SplitResult>&)> on_split = {};
 };
 
 /// Throws MotionError, naming the field.
@@ -48,12 +59,6 @@ struct LearningCurve {
 };
 
 namespace detail {
-
-struct SplitResult {
-  double position = 0;
-  Eigen::VectorXd parameters;
-  static constexpr auto fields = std::tuple(&SplitResult::position, &SplitResult::parameters);
-};
 
 /// The random splits, as independent jobs.
 class LearningCurveSplits {
@@ -87,11 +92,12 @@ LearningCurve learning_curve(const AnyMotionModel& start, std::span<const WalkSe
   std::mutex reporting;
   std::size_t done = 0;
   const auto job = [&](std::size_t repetition) {
-    std::vector<detail::SplitResult> result = splits.run(repetition);
-    if (options.on_progress) {
-      const std::scoped_lock lock(reporting);
-      options.on_progress(++done);
-    }
+    std::optional<std::vector<SplitResult>> known;
+    if (options.known) known = options.known(repetition);
+    std::vector<SplitResult> result = known ? *std::move(known) : splits.run(repetition);
+    const std::scoped_lock lock(reporting);
+    if (options.on_split && !known) options.on_split(repetition, result);
+    if (options.on_progress) options.on_progress(++done);
     return result;
   };
   return splits.curve(map(executor, options.repetitions, job, std::move(stop)));
