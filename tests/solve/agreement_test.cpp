@@ -21,6 +21,16 @@ TEST_CASE("of two opinions the larger one counts, and never the middle") {
   CHECK(action[1] == doctest::Approx(-1));
 }
 
+TEST_CASE("rounding does not decide a tied vote") {
+  std::vector<double> proposals{1, 1, -1, 1, 1, 1, -1, 1};  // of four trees
+  const Vec<2> action = agreed_action<2>(proposals, reach);
+  CHECK(action == Vec<2>(1, 1));
+  for (double& number : proposals) {
+    number *= 1 + 1e-15;
+    CHECK(agreed_action<2>(proposals, reach).isApprox(action, 1e-14));
+  }
+}
+
 TEST_CASE("an outlier is left out") {
   const Vec<1> action = agreed_action<1>(std::vector<double>{0.1, 0.2, -1, 0.3}, Vec<1>(0.5));
   CHECK(action[0] == doctest::Approx(0.2));

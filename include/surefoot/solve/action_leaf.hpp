@@ -15,8 +15,8 @@
 
 namespace surefoot {
 
-/// Outputs are actions in half widths of the action box. A leaf whose samples lie around its affine fit is that fit. Else
-/// it is fitted anew to the largest group of samples whose distances from the first fit are of one opinion.
+/// Outputs are actions in half widths of the action box. A leaf whose samples lie around its affine fit is that fit.
+/// Else it is fitted anew to the largest group of samples whose distances from the first fit are of one opinion.
 /// Cost: that of two fits, and of `most_centres` comparisons per sample.
 struct ActionLeaf : LinearLeaf {
   static constexpr std::size_t most_centres = 32;  // samples tried as the centre of a group
@@ -69,7 +69,8 @@ struct ActionLeaf : LinearLeaf {
 
   static void fit_group(const LeafSamples& samples, const LeafOptions& options, std::span<float> parameters,
                         const std::vector<float>& off, std::size_t centre) {
-    const auto inputs = static_cast<std::size_t>(samples.inputs()), outputs = static_cast<std::size_t>(samples.outputs());
+    const auto inputs = static_cast<std::size_t>(samples.inputs());
+    const auto outputs = static_cast<std::size_t>(samples.outputs());
     const std::size_t stride = inputs + outputs + 1;
     std::vector<float> records;
     std::size_t count = 0;

@@ -17,9 +17,14 @@ namespace surefoot {
 /// of the way from the middle to a bound, so that full left, nothing and full right are three opinions.
 constexpr double same_opinion = 0.5;
 
+/// Distances that differ by less are equal [share]: votes that tie are common (four trees for full left, four for full
+/// right), and rounding, other on another machine, must not decide them.
+constexpr double tied_distances = 1e-6;
+
 /// The mean of the proposals that agree with the medoid (the one with the least distances to all others, the sum over
-/// dimensions of the differences in half widths). `proposals`: one action of Dims numbers after the other; `reach`:
-/// same_opinion in the unit of each dimension. Cost: as a mean where all agree, else O(count^2 Dims).
+/// dimensions of the differences in half widths; of tied ones the first). `proposals`: one action of Dims numbers after
+/// the other; `reach`: same_opinion in the unit of each dimension. Cost: as a mean where all agree, else
+/// O(count^2 Dims).
 template <int Dims>
 Vec<Dims> agreed_action(std::span<const double> proposals, const Vec<Dims>& reach) {
   constexpr auto dims = static_cast<std::size_t>(Dims);
@@ -48,7 +53,7 @@ Vec<Dims> agreed_action(std::span<const double> proposals, const Vec<Dims>& reac
         distances += span > 0 ? difference(i, j, d) / span : 0;
       }
     }
-    if (i == 0 || distances < least) {
+    if (i == 0 || distances < least * (1 - tied_distances)) {
       medoid = i;
       least = distances;
     }

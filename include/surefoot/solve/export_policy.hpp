@@ -11,8 +11,8 @@ namespace surefoot {
 
 /// One C99 file with `void FUNCTION(const double in[], double out[])`: `in` are the features of the state (the state
 /// itself where the problem has no `features`; else the robot computes them as that member does), `out` is the action
-/// inside the action box, the policy's to the last bit. `options.low`, `options.high` and `options.agreement` are set here. Throws as
-/// export_c does.
+/// inside the action box, the policy's to the last bit: the vote of its trees included, which the C file of its forest
+/// alone does not have. `options.low`, `options.high` and `options.agreement` are set here. Throws as export_c does.
 template <Problem P>
 std::string export_c(const ForestPolicy<P>& policy, ExportCOptions options = {}) {
   const auto box = policy.problem().action_box();

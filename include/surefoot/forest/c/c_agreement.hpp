@@ -40,7 +40,7 @@ inline std::string c_agreement(const std::vector<double>& reach, std::size_t tre
             if (reach[o] > 0) distances += (difference < 0 ? -difference : difference) / reach[o];
           }
         }
-        if (a == 0 || distances < least) {
+        if (a == 0 || distances < least * (1 - 1e-6)) {
           medoid = a;
           least = distances;
         }
