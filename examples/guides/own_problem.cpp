@@ -65,6 +65,7 @@ int main() {
       .horizon = 100,                    // transitions of a simulated run, here 5 s
       .on_progress = tell};              // left out: silence
   const auto result = rfpi(cart, options, threads, /*seed*/ 1);
+  for (const std::string& hint : result.hints) std::printf("hint: %s\n", hint.c_str());
   const Estimate learnt = evaluate(cart, result.policy, trials, threads, /*seed*/ 1);
   std::printf("cost: %.1f without control, %.2f by hand, %.2f learnt (+- %.2f)\n", -without.mean, -tuned.mean,
               -learnt.mean, learnt.half_width());

@@ -17,6 +17,7 @@
 #include "surefoot/forest/c/c_fixed_point.hpp"
 #include "surefoot/forest/c/c_tables.hpp"
 #include "surefoot/forest/extra_trees.hpp"
+#include "surefoot/solve/agreement.hpp"
 #include "tests/forest/samples.hpp"
 
 namespace surefoot {
@@ -38,7 +39,8 @@ bool have_c_compiler() {
 // Compiles the C code and calls its `name` for every input; if that takes whole numbers (of type `whole`), through its
 // own conversion.
 std::vector<double> run_c(const std::string& code, const std::string& name, const std::vector<double>& inputs,
-                          std::size_t width_in, std::size_t width_out, const std::string& whole = "") {
+                          std::size_t width_in, std::size_t width_out, const std::string& whole = "",
+                          const std::string& flags = "") {
   const Folder folder;
   const std::string in = std::to_string(width_in);
   const std::string out = std::to_string(width_out);
@@ -53,7 +55,7 @@ std::vector<double> run_c(const std::string& code, const std::string& name, cons
   write_file_atomically(folder.path / "main.c", main);
   write_file_atomically(folder.path / "in.bin", std::as_bytes(std::span(inputs)));
   const std::string at = "cd '" + folder.path.string() + "' && ";
-  REQUIRE(std::system((at + "cc -O2 -std=c99 -Wall -Wextra -pedantic -Werror -c forest.c").c_str()) == 0);
+  REQUIRE(std::system((at + "cc -O2 -std=c99 -Wall -Wextra -pedantic -Werror -c forest.c " + flags).c_str()) == 0);
   REQUIRE(std::system((at + "cc -O2 -std=c99 main.c forest.o -o run -lm && ./run < in.bin > out.bin").c_str()) == 0);
   const Bytes bytes = read_file(folder.path / "out.bin");
   std::vector<double> outputs(bytes.size() / sizeof(double));
@@ -94,6 +96,39 @@ TEST_CASE("the C file of a forest gives the library's bits") {
     check_same(train_extra_trees<LinearLeaf>(toy::sample(toy::ClippedLaws{}, 600, 1), {.trees = 1}, Serial{}, 1),
                options);
   }
+}
+
+TEST_CASE("trees of several opinions give the bits of the agreed action in C") {
+  if (!have_c_compiler()) return;
+  const auto forest = train_extra_trees<LinearLeaf>(toy::sample(toy::ClippedLaws{}, 600, 1), {.trees = 5}, Serial{}, 1);
+  const auto in = static_cast<std::size_t>(forest.inputs());
+  constexpr int outputs = toy::ClippedLaws::outputs;
+  Vec<outputs> reach;
+  for (int o = 0; o < outputs; ++o) reach[o] = 0.05 * (o + 1);
+  ExportCOptions options{.function = "agreed"};
+  options.agreement.assign(reach.begin(), reach.end());
+  Rng rng(3);
+  std::vector<double> inputs(500 * in);
+  for (double& x : inputs) x = rng.uniform(-1.5, 1.5);
+  // A controller's compiler may fuse products and sums.
+  const std::vector<double> found =
+      run_c(export_c(forest, options), "agreed", inputs, in, outputs, "", "-march=native -ffp-contract=fast");
+  REQUIRE(found.size() == 500 * outputs);
+  int apart = 0, differences = 0;
+  std::vector<float> row(in);
+  std::vector<double> proposals(forest.trees() * outputs);
+  for (std::size_t i = 0; i < 500; ++i) {
+    for (std::size_t k = 0; k < in; ++k) row[k] = static_cast<float>(inputs[i * in + k]);
+    forest.predict_trees(row.data(), 1, proposals.data());
+    const Vec<outputs> expected = agreed_action<outputs>(proposals, reach);
+    const auto mean = forest.predict(Eigen::Map<const Eigen::VectorXd>(&inputs[i * in], forest.inputs()));
+    apart += mean != expected ? 1 : 0;
+    for (int o = 0; o < outputs; ++o) {
+      differences += found[i * outputs + static_cast<std::size_t>(o)] != expected[o] ? 1 : 0;
+    }
+  }
+  CHECK(apart > 50);
+  CHECK(differences == 0);
 }
 
 TEST_CASE("nested ifs give the library's bits as well") {

@@ -89,6 +89,30 @@ TEST_CASE("a policy in C keeps its action inside the action box") {
   CHECK(export_c(policy, named) != export_c(policy.forest(), named));
 }
 
+TEST_CASE("a policy of several opinions acts alike one by one, in a batch, from a file and in C") {
+  const Pendulum problem;
+  const auto states = random_states(problem, 300, 3);
+  const ForestPolicy<Pendulum> policy(problem, wild_policy(problem).forest(), 0.1);
+  const ForestPolicy<Pendulum> mean(problem, policy.forest());
+  const toy::TemporaryFile file("agreeing");
+  save_policy(file.path.string(), policy);
+  const auto loaded = load_policy(problem, file.path.string());
+  CHECK(loaded.agreement() == 0.1);
+  const auto batch = policy.act(states);
+  int others = 0;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    CHECK(policy(states[i]) == batch[i]);
+    CHECK(loaded(states[i]) == batch[i]);
+    others += mean(states[i]) != batch[i] ? 1 : 0;
+  }
+  CHECK(others > 0);
+  ExportCOptions agreeing{.function = "torque"};
+  agreeing.low = {-2};
+  agreeing.high = {2};
+  agreeing.agreement = {0.1 * 2};
+  CHECK(export_c(policy, {.function = "torque"}) == export_c(policy.forest(), agreeing));
+}
+
 TEST_CASE("an action costs no allocation") {
   long before = allocations;
   const auto policy = wild_policy(Pendulum{});

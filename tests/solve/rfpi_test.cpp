@@ -308,6 +308,9 @@ TEST_CASE("a checkpoint of another run is refused in words") {
       [](RfpiOptions& o) { o.policy_forest.max_leaves = 7; },
       [](RfpiOptions& o) { o.reuse_previous_samples = false; },
       [](RfpiOptions& o) { o.value_method = ValueMethod::rollouts; },
+      [](RfpiOptions& o) { o.agreement = 0.6; },
+      [](RfpiOptions& o) { o.adapt = false; },
+      [](RfpiOptions& o) { o.lookahead.hold = 2; },
       [](RfpiOptions& o) { o.evaluation_runs = 21; }};
   for (const auto& change : changes) {
     RfpiOptions changed = options;
@@ -418,7 +421,7 @@ TEST_CASE("every bad option is refused in a sentence that names it") {
       {"budget.counted_seconds", [](RfpiOptions& o) { o.budget.counted_seconds = nan; }},
       {"max_seconds", [](RfpiOptions& o) { o.max_seconds = -1; }},
       {"budget.step_ns", [](RfpiOptions& o) { o.budget.step_ns = -1; }},
-      {"discount", [](RfpiOptions& o) { o.discount = 0; }},
+      {"discount", [](RfpiOptions& o) { o.discount = -0.1; }},
       {"discount", [](RfpiOptions& o) { o.discount = 1.01; }},
       {"horizon", [](RfpiOptions& o) { o.horizon = 0; }},
       {"max_iterations", [](RfpiOptions& o) { o.max_iterations = -1; }},
@@ -441,6 +444,8 @@ TEST_CASE("every bad option is refused in a sentence that names it") {
       {"lookahead.softness", [](RfpiOptions& o) { o.lookahead.softness = nan; }},
       {"lookahead.step", [](RfpiOptions& o) { o.lookahead.step = -1; }},
       {"lookahead.radius", [](RfpiOptions& o) { o.lookahead.radius = -1; }},
+      {"lookahead.hold", [](RfpiOptions& o) { o.lookahead.hold = 0; }},
+      {"agreement", [](RfpiOptions& o) { o.agreement = 0; }},
       {"evaluation_runs", [](RfpiOptions& o) { o.evaluation_runs = 1; }},
       {"resume", [](RfpiOptions& o) { o.resume = true; }},
       {"min_leaf", [](RfpiOptions& o) { o.value_forest.min_leaf = 0; }},

@@ -12,7 +12,7 @@
 #include "motion.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rollout.hpp"
-#include "surefoot/forest/export_c.hpp"
+#include "surefoot/solve/export_policy.hpp"
 #include "surefoot/solve/forest_policy.hpp"
 
 namespace sigmaban {
@@ -60,7 +60,7 @@ Eigen::Matrix<double, 3, 4> steady_walk(const surefoot::PreviousCommandCorrectio
   return result;
 }
 
-/// The same sums in C, in the same order, as Approach::features and ForestPolicy make.
+/// The same sums in C, in the same order, as Approach::features makes.
 template <class Problem>
 std::string wrapper(const Problem& problem) {
   const ApproachConstants& c = problem.constants;
@@ -81,8 +81,6 @@ std::string wrapper(const Problem& problem) {
    per walk cycle, in the same units. */
 void surefoot_policy(const double state[6], double action[3]);
 void surefoot_policy(const double state[6], double action[3]) {
-  static const double limit[3] = )" +
-         braces(c.max_acceleration) + R"(;
   static const double walk[3][4] = {)" +
          walk + R"(};
   const double steps = )" +
@@ -112,10 +110,6 @@ void surefoot_policy(const double state[6], double action[3]) {
   if (features[7] >= pi) features[7] -= 2 * pi;
   for (i = 0; i < 3; ++i) features[8 + i] = state[3 + i];
   surefoot_forest(features, action);
-  for (i = 0; i < 3; ++i) {
-    if (action[i] < -limit[i]) action[i] = -limit[i];
-    if (action[i] > limit[i]) action[i] = limit[i];
-  }
 }
 )";
 }
@@ -123,7 +117,7 @@ static_assert(Approach::feature_dim == 11, "wrapper() must write the features of
 
 template <class Problem>
 std::string c_file(const surefoot::ForestPolicy<Problem>& policy) {
-  return surefoot::export_c(policy.forest(), {.table = surefoot::CTable::text, .wrapper = wrapper(policy.problem())});
+  return surefoot::export_c(policy, {.table = surefoot::CTable::text, .wrapper = wrapper(policy.problem())});
 }
 
 double kilobytes(const std::string& text) { return static_cast<double>(text.size()) / 1000; }

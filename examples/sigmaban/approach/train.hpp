@@ -80,6 +80,7 @@ void train(const Problem& problem, const TrainOptions& options, const surefoot::
       example::write_text(record_of(options.out), training_record(options, result).dump(1) + "\n");
       std::printf("%s: cost %.2f +- %.2f (95 %%); %s\n", options.out.c_str(), result.cost.mean,
                   result.cost.half_width(), surefoot::explain(result.stop).c_str());
+      for (const std::string& hint : result.hints) std::printf("hint: %s\n", hint.c_str());
     });
   } catch (const surefoot::SolveError& error) {
     if (!interrupted()) throw;

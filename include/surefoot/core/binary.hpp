@@ -207,6 +207,9 @@ void write_format(ByteWriter& out, const FileFormat& format);
 /// Throws a CoreError unless the next bytes are those of write_format().
 void expect_format(ByteReader& in, const FileFormat& format);
 
+/// Whether it starts so; `in` stays where it is.
+bool has_format(ByteReader in, const FileFormat& format);
+
 /// Writes the file aside (path + ".part"), flushes it to the disk and renames it, so that `path` holds the old bytes or
 /// the new ones, never half, whether the program dies or the power goes. Waits for the disk, some milliseconds.
 void write_file_atomically(const std::string& path, std::span<const std::byte> bytes);

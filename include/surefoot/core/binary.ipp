@@ -65,6 +65,12 @@ SUREFOOT_INLINE void write_format(ByteWriter& out, const FileFormat& format) {
   out.u32(format.version);
 }
 
+SUREFOOT_INLINE bool has_format(ByteReader in, const FileFormat& format) {
+  if (in.remaining() < format.magic.size() + 4) return false;
+  const auto magic = in.raw(format.magic.size());
+  return std::memcmp(magic.data(), format.magic.data(), magic.size()) == 0 && in.u32() == format.version;
+}
+
 SUREFOOT_INLINE void expect_format(ByteReader& in, const FileFormat& format) {
   const auto magic = in.raw(format.magic.size());
   if (std::memcmp(magic.data(), format.magic.data(), magic.size()) != 0) {

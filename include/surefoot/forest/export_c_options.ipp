@@ -25,6 +25,9 @@ SUREFOOT_INLINE void check(const ExportCOptions& options, int outputs) {
   for (std::size_t i = 0; right && i < options.low.size(); ++i) {
     right = std::isfinite(options.low[i]) && std::isfinite(options.high[i]) && options.low[i] <= options.high[i];
   }
+  if (!options.agreement.empty() && options.agreement.size() != count) {
+    throw ForestError("ExportCOptions: agreement must be empty or hold " + std::to_string(count) + " numbers, one per output");
+  }
   if (!right) {
     throw ForestError("ExportCOptions: low and high must be empty or hold " + std::to_string(count) +
                       " finite numbers each, one per output, low not above high");

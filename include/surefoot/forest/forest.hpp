@@ -150,11 +150,36 @@ class Forest {
       if (samples < few) {
         for (std::size_t i = 0; i < samples; ++i) add_one(inputs + i * stride, out + i * width);
       } else {
-        add_block(inputs, samples, out);
+        add_block(inputs, samples, out, width, 0);
       }
       for (std::size_t i = 0; i < samples * width; ++i) out[i] *= scale();
       inputs += samples * stride;
       out += samples * width;
+      count -= samples;
+    }
+  }
+
+  /// As above, but what each tree says by itself: trees() * outputs() numbers per input, tree after tree.
+  void predict_trees(const float* inputs, std::size_t count, double* out) const {
+    const std::size_t width = static_cast<std::size_t>(this->outputs()), stride = static_cast<std::size_t>(this->inputs());
+    std::fill_n(out, count * width * trees(), 0.0);
+    while (count > 0) {
+      const std::size_t samples = std::min(count, block_size());
+      if (samples < few) {
+        for (std::size_t i = 0; i < samples; ++i) {
+          double* to = out + i * trees() * width;
+          visit_leaves(inputs + i * stride, [&](std::span<const std::uint32_t> payloads) {
+            for (const std::uint32_t payload : payloads) {
+              add_leaf(payload, inputs + i * stride, to);
+              to += width;
+            }
+          });
+        }
+      } else {
+        add_block(inputs, samples, out, trees() * width, width);
+      }
+      inputs += samples * stride;
+      out += samples * width * trees();
       count -= samples;
     }
   }
@@ -245,7 +270,9 @@ class Forest {
     visit_leaves(x, [&](std::span<const std::uint32_t> payloads) { add_leaves(payloads, x, sum); });
   }
 
-  void add_block(const float* x, std::size_t count, double* sum) const {
+  /// What a tree says of an input is added to sum + input * input_stride + tree * tree_stride.
+  void add_block(const float* x, std::size_t count, double* sum, std::size_t input_stride,
+                 std::size_t tree_stride) const {
     std::array<std::uint64_t, key_room> rows;
     std::array<std::int32_t, key_room> columns;
     std::array<std::uint64_t, input_room + 1> low;
@@ -253,7 +280,6 @@ class Forest {
     std::array<const Node*, tree_block> partings;
     std::array<std::uint32_t, detail::max_batch> payloads;
     const auto in = static_cast<std::size_t>(inputs());
-    const auto out = static_cast<std::size_t>(outputs());
     const detail::BatchKeys keys{rows.data(), in + 1, columns.data(), block_size()};
     const std::size_t padded = (count + detail::lanes - 1) / detail::lanes * detail::lanes;
     low[in] = high[in] = 0;
@@ -280,7 +306,8 @@ class Forest {
       detail::find_parting(trees_.nodes.data(), roots, low.data(), high.data(), partings.data());
       for (std::size_t t = 0; t < roots.size(); ++t) {
         detail::find_leaves_of_batch<fixed_stride>(partings[t], keys, count, payloads.data());
-        for (std::size_t i = 0; i < count; ++i) add_leaf(payloads[i], x + i * in, sum + i * out);
+        double* to = sum + (first + t) * tree_stride;
+        for (std::size_t i = 0; i < count; ++i) add_leaf(payloads[i], x + i * in, to + i * input_stride);
       }
     }
   }

@@ -50,6 +50,11 @@ class Lookahead {
 
   /// Simulated transitions of one call.
   std::size_t transitions() const {
+    return static_cast<std::size_t>(options_.hold) * values();
+  }
+
+  /// Values looked up in one call.
+  std::size_t values() const {
     return static_cast<std::size_t>(options_.candidates) * static_cast<std::size_t>(options_.samples) +
            static_cast<std::size_t>(options_.refined) * static_cast<std::size_t>(options_.refined_samples);
   }
@@ -128,6 +133,7 @@ class Lookahead {
         noise_.push_back(rng.stream(m).with_draws(std::span(draws_).subspan(m * noise_dims, noise_dims)));
       }
     }
+    const double last_discount = std::pow(discount_, options_.hold);
     rows_.resize(candidates_.size() * count * width);
     values_.resize(candidates_.size() * count);
     rewards_.resize(values_.size());
@@ -137,8 +143,15 @@ class Lookahead {
       const Action action = to_action(candidates_[c]);
       for (std::size_t m = 0; m < count; ++m) {
         Rng noise = options_.common_noise ? noise_[m] : rng.stream(c * count + m);
-        const Step<State> step = problem_.step(state, action, noise);
-        rewards_[c * count + m] = step.reward;
+        Step<State> step = problem_.step(state, action, noise);
+        double sum = step.reward;
+        double weight = discount_;
+        for (int held = 1; held < options_.hold && !step.terminal; ++held) {
+          step = problem_.step(State(step.next), action, noise);
+          sum += weight * step.reward;
+          weight *= discount_;
+        }
+        rewards_[c * count + m] = sum;
         if (step.terminal) continue;
         Eigen::Map<Eigen::Matrix<float, width, 1>>(rows_.data() + living * width) =
             features(problem_, step.next).template cast<float>();
@@ -151,7 +164,7 @@ class Lookahead {
     } else {
       value_.predict(rows_.data(), living, values_.data());
     }
-    for (std::size_t i = 0; i < living; ++i) rewards_[living_[i]] += discount_ * values_[i];
+    for (std::size_t i = 0; i < living; ++i) rewards_[living_[i]] += last_discount * values_[i];
     q_.resize(candidates_.size());
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
       q_[c] = std::accumulate(rewards_.begin() + static_cast<std::ptrdiff_t>(c * count),

@@ -14,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,7 +23,9 @@
 #include "surefoot/core/problem.hpp"
 #include "surefoot/core/rollout.hpp"
 #include "surefoot/solve/forest_policy.hpp"
+#include "surefoot/solve/rfpi_adapt.hpp"
 #include "surefoot/solve/rfpi_backup.hpp"
+#include "surefoot/solve/rfpi_hints.hpp"
 #include "surefoot/solve/rfpi_options.hpp"
 #include "surefoot/solve/rfpi_rollouts.hpp"
 #include "surefoot/solve/rfpi_state.hpp"
@@ -36,6 +39,7 @@ struct RfpiResult {
   Estimate cost;                      // minus its mean return, on runs used for nothing else
   std::vector<RfpiProgress> history;  // one entry per iteration
   RfpiStop stop = RfpiStop::budget;
+  std::vector<std::string> hints;  // what speaks against discount, horizon or exploration, in plain words; see hints()
 };
 
 namespace detail {
@@ -57,6 +61,7 @@ std::uint64_t rfpi_fingerprint(const P& problem, const RfpiOptions& o, std::uint
     number(f->trees, f->candidates, f->min_leaf, f->max_depth, f->max_leaves, f->bootstrap, f->threshold_rule,
            f->model_score, f->ridge, f->clamp);
   }
+  if (o.adapt || std::isfinite(o.agreement) || l.hold != 1) number(o.adapt, o.agreement, l.hold);  // not in version 0.1
   for (const auto& state : seed_states) all.words(std::span<const double>(state.data(), P::state_dim));
   all.list(feature_probe(problem));
   Rng rng(seed, 0);
@@ -76,16 +81,16 @@ class RfpiRun {
  public:
   using States = std::span<const typename P::State>;
 
-  RfpiRun(const P& problem, const RfpiOptions& options, const E& executor, std::uint64_t seed, States seed_states,
+  RfpiRun(const P& problem, RfpiOptions options, const E& executor, std::uint64_t seed, States seed_states,
           std::stop_token stop)
       : problem_(problem),
-        options_(options),
+        options_(std::move(options)),
         executor_(executor),
         seed_(seed),
         seed_states_(seed_states),
-        fingerprint_(rfpi_fingerprint(problem, options, seed, seed_states)),
+        fingerprint_(rfpi_fingerprint(problem, options_, seed, seed_states)),
         resumed_(resume()),
-        limit_(std::move(stop), options.max_seconds - resumed_.seconds) {}
+        limit_(std::move(stop), options_.max_seconds - resumed_.seconds) {}
 
   RfpiResult<P> work() {
     RfpiStop reason = RfpiStop::budget;
@@ -114,6 +119,16 @@ class RfpiRun {
   }
 
  private:
+  static constexpr int patience = 5;  // iterations in a row that may be clearly worse before it goes back to the best
+                                      // policy: values that come from far away make some worse on the way
+  static constexpr double clearly_worse = 0.1;  // of the best policy's cost
+
+  /// Whether what was learnt is being forgotten.
+  bool forgets(const RfpiState<P>& next) const {
+    return next.iteration > options_.initial_iterations &&
+           next.cost > next.best_cost + clearly_worse * std::abs(next.best_cost);
+  }
+
   using Clock = std::chrono::steady_clock;
   using ActionForest = typename ForestPolicy<P>::ActionForest;
 
@@ -138,27 +153,26 @@ class RfpiRun {
     const Rng rng(seed_, 1, static_cast<std::uint64_t>(state_.iteration));
     try {
       if (options_.value_method == ValueMethod::rollouts) {
-        return improve_by_rollouts(problem_, options_, state_, seed_states_, executor_, rng, limit_.token());
+        return improve_by_rollouts(problem_, options_, state_, seed_states_, executor_, rng, evaluation_seed(2),
+                                   limit_.token());
       }
       const int grown = std::max(0, state_.iteration - options_.fixed_size_iterations);
       double count = std::min<double>(options_.max_states, options_.first_states * std::pow(options_.growth, grown));
       // The last iteration takes what is left.
       if (grown > 0 && last_work_ > 0) count *= std::clamp(left / (last_work_ * options_.growth), 0.1, 1.0);
       return improve_by_backup(problem_, options_, state_, static_cast<std::size_t>(count), seed_states_, executor_,
-                               rng, limit_.token());
+                               rng, evaluation_seed(2), limit_.token());
     } catch (const Error&) {  // work that a stop left incomplete
       if (!stopped()) throw;
     }
     return {};
   }
 
+  std::uint64_t evaluation_seed(std::uint64_t stream) const { return Rng(seed_, stream).bits(); }
+
   /// Minus the mean return over `runs` runs from random numbers of `stream`.
   Estimate cost_of(const ActionForest& forest, int runs, std::uint64_t stream) const {
-    const RolloutOptions rollouts{.runs = runs, .horizon = options_.horizon};
-    Estimate cost =
-        evaluate(problem_, ForestPolicy<P>(problem_, forest), rollouts, executor_, Rng(seed_, stream).bits(), {});
-    cost.mean = -cost.mean;
-    return cost;
+    return policy_cost(problem_, forest, options_, runs, executor_, evaluation_seed(stream)).cost;
   }
 
   void accept(RfpiState<P> next) {
@@ -167,14 +181,15 @@ class RfpiRun {
     progress.iteration = next.iteration;
     progress.states = next.samples.size();
     progress.leaves = next.policy.leaves();
-    progress.cost = cost_of(next.policy, options_.evaluation_runs, 2).mean;
-    const std::uint64_t steps =
-        static_cast<std::uint64_t>(options_.evaluation_runs) * static_cast<std::uint64_t>(options_.horizon);
-    next.work.steps += steps;
-    next.work.lookups += steps * next.policy.trees();
+    progress.cost = next.cost;
     const bool better = next.history.empty() || progress.cost <= state_.best_cost;
     next.best_cost = progress.best_cost = better ? progress.cost : state_.best_cost;
     next.best_policy = better ? next.policy : std::move(state_.best_policy);
+    next.worse = forgets(next) ? state_.worse + 1 : 0;
+    if (next.worse >= patience) {
+      next.policy = next.best_policy;
+      next.worse = 0;
+    }
     progress.counted_seconds = next.work.seconds(options_.budget);
     progress.share = progress.counted_seconds / options_.budget.counted_seconds;
     progress.seconds = resumed_.seconds + std::chrono::duration<double>(Clock::now() - wall_start_).count();
@@ -202,15 +217,17 @@ class RfpiRun {
     if (state_.best_policy.empty()) {
       throw SolveError("rfpi: stopped before there was a first policy: give it more time");
     }
-    const int runs = 4 * options_.evaluation_runs;
+    const int runs = 4 * evaluation_runs(options_);
     const bool newest = cost_of(state_.policy, runs, 3).mean <= cost_of(state_.best_policy, runs, 3).mean;
     auto& chosen = newest ? state_.policy : state_.best_policy;
     const Estimate cost = cost_of(chosen, runs, 4);
-    return {ForestPolicy<P>(problem_, std::move(chosen)), cost, std::move(state_.history), reason};
+    ForestPolicy<P> policy(problem_, std::move(chosen), options_.agreement);
+    const LearningSigns signs = learning_signs(problem_, policy, options_.horizon, evaluation_seed(6));
+    return {std::move(policy), cost, std::move(state_.history), reason, hints(signs, options_)};
   }
 
   const P& problem_;
-  const RfpiOptions& options_;
+  RfpiOptions options_;
   const E& executor_;
   std::uint64_t seed_;
   States seed_states_;
@@ -235,7 +252,12 @@ template <Problem P, Executor E>
 RfpiResult<P> rfpi(const P& problem, const RfpiOptions& options, const E& executor, std::uint64_t seed,
                    std::span<const typename P::State> seed_states = {}, std::stop_token stop = {}) {
   check(options);
-  return detail::RfpiRun<P, E>(problem, options, executor, seed, seed_states, std::move(stop)).work();
+  RfpiOptions adapted = resolved(options);
+  if (options.adapt && options.value_method == ValueMethod::backup &&
+      detail::is_deterministic(problem, options.horizon, Rng(seed, 5))) {
+    adapted = detail::without_noise(std::move(adapted));
+  }
+  return detail::RfpiRun<P, E>(problem, std::move(adapted), executor, seed, seed_states, std::move(stop)).work();
 }
 
 /// For a type that is not a Problem: one compile error that names the missing member.

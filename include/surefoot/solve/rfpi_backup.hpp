@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 #include <stop_token>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -18,8 +19,11 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/forest/dataset.hpp"
 #include "surefoot/forest/extra_trees.hpp"
+#include "surefoot/solve/action_leaf.hpp"
 #include "surefoot/solve/forest_policy.hpp"
 #include "surefoot/solve/lookahead.hpp"
+#include "surefoot/solve/rfpi_adapt.hpp"
+#include "surefoot/solve/rfpi_hold.hpp"
 #include "surefoot/solve/rfpi_options.hpp"
 #include "surefoot/solve/rfpi_state.hpp"
 #include "surefoot/solve/visited_states.hpp"
@@ -46,17 +50,24 @@ std::vector<typename P::State> choose_states(const P& problem, const RfpiOptions
   const bool initial = before.iteration < options.initial_iterations;
   Rng choice = rng.stream(0);
   if (before.iteration == 0) states = random_subset(std::vector(seed_states.begin(), seed_states.end()), count, choice);
-  if (!initial) {
-    const auto wanted = static_cast<std::size_t>(options.visited_share * static_cast<double>(count));
+  const auto wanted = static_cast<std::size_t>(options.visited_share * static_cast<double>(count));
+  const auto visit = [&](auto acting, double exploration) {
     const std::size_t runs = wanted / static_cast<std::size_t>(options.horizon) + 1;
-    const ForestPolicy<P> policy(problem, before.policy);
-    states = visited_states(
-        problem, [&](auto some) { return policy.act(some); }, runs, options.horizon, options.exploration, executor,
-        rng.stream(1), std::move(stop));
+    return visited_states(problem, acting, runs, options.horizon, exploration, executor, rng.stream(1), stop);
+  };
+  if (!initial) {
+    const ForestPolicy<P> policy(problem, before.policy, options.agreement);
+    states = visit([&](auto some) { return policy.act(some); }, options.exploration);
     work.steps += states.size();
     work.lookups += states.size() * before.policy.trees();
+  } else {
+    // Every action is random, held for some steps.
+    const auto visited = visit([&](auto some) { return std::vector<typename P::Action>(some.size()); }, 1.0);
+    work.steps += visited.size();
+    const auto some = random_subset(visited, std::min(wanted, count - std::min(count, states.size())), choice);
+    states.insert(states.end(), some.begin(), some.end());
   }
-  const std::size_t from_box = initial ? count - std::min(count, seed_states.size())
+  const std::size_t from_box = initial ? count - std::min(count, states.size())
                                        : static_cast<std::size_t>(options.box_share * static_cast<double>(count));
   const Box<P::state_dim> box = problem.state_box();
   for (std::size_t i = 0; i < from_box; ++i) states.push_back(box.sample(choice));
@@ -139,12 +150,25 @@ auto fit_policy(const P& problem, const StateSamples<P>& a, const StateSamples<P
   Dataset<feature_dim<P>(), P::action_dim> data;
   data.inputs = feature_matrix(problem, a, b);
   data.outputs.resize(P::action_dim, data.inputs.cols());
+  const Box<P::action_dim> box = problem.action_box();
+  const Vec<P::action_dim> half = 0.5 * box.width();
   Eigen::Index column = 0;
   for (const auto* samples : {&a, &b}) {
-    for (const auto& action : samples->actions) data.outputs.col(column++) = action;
+    for (const auto& action : samples->actions) {
+      auto unit = data.outputs.col(column++);
+      for (int i = 0; i < P::action_dim; ++i) unit[i] = half[i] > 0 ? (action[i] - box.center()[i]) / half[i] : 0;
+    }
   }
   work.fits += fit_work(a.size() + b.size(), static_cast<std::size_t>(feature_dim<P>()), options);
-  return train_extra_trees<LinearLeaf>(data, options, executor, Rng(rng).bits(), std::move(stop));
+  Trees trees = train_extra_trees<ActionLeaf>(data, options, executor, Rng(rng).bits(), std::move(stop)).raw();
+  constexpr std::size_t numbers = feature_dim<P>() + 3;  // of a leaf, per dimension of the action
+  for (std::size_t i = 0; i < trees.parameters.size(); ++i) {
+    const auto dimension = static_cast<Eigen::Index>(i / numbers % P::action_dim);
+    const bool slope = i % numbers < feature_dim<P>();
+    trees.parameters[i] = static_cast<float>(static_cast<double>(trees.parameters[i]) * half[dimension] +
+                                             (slope ? 0.0 : box.center()[dimension]));
+  }
+  return typename ForestPolicy<P>::ActionForest(std::move(trees));
 }
 
 /// The forest of values, likewise.
@@ -157,14 +181,54 @@ auto fit_value(const P& problem, const StateSamples<P>& a, const StateSamples<P>
   std::copy(a.values.begin(), a.values.end(), data.outputs.data());
   std::copy(b.values.begin(), b.values.end(), data.outputs.data() + a.size());
   work.fits += fit_work(a.size() + b.size(), static_cast<std::size_t>(feature_dim<P>()), options);
-  return train_extra_trees<Leaf>(data, options, executor, Rng(rng).bits(), std::move(stop));
+  if constexpr (std::is_same_v<Leaf, LinearLeaf>) {
+    ExtraTreesOptions compared = options;
+    compared.trees = std::min(options.trees, 2 * trend_trees);
+    const std::size_t few = std::min(trend_samples, a.size() + b.size());
+    work.fits += fit_work(few, static_cast<std::size_t>(feature_dim<P>()), compared);
+    return train_value_forest(std::move(data), options, executor, Rng(rng).bits(), std::move(stop));
+  } else {
+    return train_extra_trees<Leaf>(data, options, executor, Rng(rng).bits(), std::move(stop));
+  }
+}
+
+/// Learns the policy in two sizes and keeps the one that does better on the evaluation runs.
+template <Problem P, Executor E>
+void learn_policy(const P& problem, const RfpiOptions& options, const RfpiState<P>& before, RfpiState<P>& after,
+                  const E& executor, const Rng& rng, std::uint64_t evaluation_seed, std::stop_token stop) {
+  const int most = options.policy_forest.max_leaves;
+  const int runs = evaluation_runs(options);
+  const auto learn = [&](int leaves) {
+    ExtraTreesOptions forest = options.policy_forest;
+    forest.max_leaves = leaves;
+    return fit_policy(problem, after.samples, after.previous, forest, executor, rng, after.work, stop);
+  };
+  const auto cost_of = [&](const typename RfpiState<P>::ActionForest& policy) {
+    const std::uint64_t steps = static_cast<std::uint64_t>(runs) * static_cast<std::uint64_t>(options.horizon);
+    after.work.steps += steps;
+    after.work.lookups += steps * policy.trees();
+    return policy_cost(problem, policy, options, runs, executor, evaluation_seed);
+  };
+  after.leaves = !options.adapt ? most : before.leaves > 0 ? before.leaves : std::max(1, most / 10);
+  after.policy = learn(after.leaves);
+  const PolicyCost usual = cost_of(after.policy);
+  after.cost = usual.cost.mean;
+  if (most == 0 || !options.adapt) return;
+  const int other = other_size(after.leaves, most, before.iteration);
+  auto another = learn(other);
+  if (const PolicyCost cost = cost_of(another); cost.discounted < usual.discounted) {
+    after.policy = std::move(another);
+    after.cost = cost.cost.mean;
+    after.leaves = other;
+  }
 }
 
 /// The state of affairs after one more iteration over `count` states. Incomplete if `stop` was requested.
 template <Problem P, Executor E>
-RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& options, const RfpiState<P>& before,
+RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& given, const RfpiState<P>& before,
                                std::size_t count, std::span<const typename P::State> seed_states, const E& executor,
-                               const Rng& rng, std::stop_token stop) {
+                               const Rng& rng, std::uint64_t evaluation_seed, std::stop_token stop) {
+  RfpiOptions options = given;
   RfpiState<P> after;
   after.work = before.work;
   StateSamples<P>& samples = after.samples;
@@ -173,7 +237,13 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& options, con
   samples.values.resize(samples.size());
   samples.actions.resize(samples.size());
   const bool initial = before.iteration < options.initial_iterations;
-  const ForestPolicy<P> policy(problem, before.policy);
+  if (options.adapt) {
+    const auto states = std::span<const typename P::State>(samples.states);
+    options.lookahead.hold = initial
+                                 ? std::max(initial_hold, options.lookahead.hold)
+                                 : chosen_hold(problem, before.value, states, options, rng.stream(5), after.work);
+  }
+  const ForestPolicy<P> policy(problem, before.policy, options.agreement);
   constexpr std::size_t states_per_job = 16;
   const std::size_t jobs = (samples.size() + states_per_job - 1) / states_per_job;
   std::vector<RfpiWork> done(jobs);
@@ -195,7 +265,7 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& options, con
           values[i] = found.value;
         }
         done[job].steps = size * look.transitions();
-        done[job].lookups = done[job].steps * before.value.trees() + incumbents.size() * before.policy.trees();
+        done[job].lookups = size * look.values() * before.value.trees() + incumbents.size() * before.policy.trees();
         if (!initial && options.backup_weight > 0) {
           backup_values(problem, options, policy, before.value, states, std::span<const typename P::Action>(actions),
                         values, noise.stream(size), done[job]);
@@ -213,8 +283,7 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& options, con
     after.previous = before.samples;
   after.value = fit_value<LinearLeaf>(problem, samples, after.previous, options.value_forest, executor, rng.stream(2),
                                       after.work, stop);
-  after.policy =
-      fit_policy(problem, samples, after.previous, options.policy_forest, executor, rng.stream(3), after.work, stop);
+  learn_policy(problem, options, before, after, executor, rng.stream(3), evaluation_seed, stop);
   return after;
 }
 

@@ -31,6 +31,7 @@ struct LookaheadOptions {
   double step = 0.4;         // of new actions away from those kept [half widths of the action box]
   double softness = 0.1;     // the action is the mean of those about as good as the best: scale of "about"
                              // [gap between the best and the median action]; 0: the best alone
+  int hold = 1;              // transitions that each action is held for before the value counts
   double radius = 0.6;       // and no further from the best than this [half widths of the action box, root mean square]
 };
 
@@ -45,7 +46,7 @@ struct RfpiOptions {
   double max_seconds = std::numeric_limits<double>::infinity();  // wall clock; if it strikes, the result depends on the
                                                                  // speed of the machine [s]
   int max_iterations = 0;                                        // 0: no limit but the budget
-  double discount = 0.98;                                        // per transition
+  double discount = 0;                                           // per transition; 0: 1 - 1 / horizon
   int horizon = 50;                                              // [transitions] of every simulated run
 
   ValueMethod value_method = ValueMethod::backup;
@@ -70,7 +71,11 @@ struct RfpiOptions {
   // ValueMethod::rollouts: all states ever visited are kept; policy n is improved after n more runs.
   int value_runs = 20;  // simulated runs per state
 
-  int evaluation_runs = 1000;     // runs, always the same, that tell which policy is the best
+  double agreement = 0.5;  // actions of trees that are further apart are of different opinions, and the policy does what
+                           // most say [half widths of the action box]; infinite: the mean of all
+  bool adapt = true;  // finds out by itself: whether there is noise (else single samples, longer backups), for how long
+                      // lookaheads hold an action, how many leaves, up to policy_forest's, do best
+  int evaluation_runs = 0;  // runs, always the same, that tell which policy is the best; 0: 50'000 transitions of them
   std::string checkpoint = {};    // file to resume from; empty: none is written
   double checkpoint_seconds = 5;  // wall time between two writes of it; the first follows the first iteration
   bool resume =
@@ -88,6 +93,10 @@ struct RfpiOptions {
     options.value_forest = {.trees = 25, .min_leaf = 10};
     options.policy_forest = {.trees = 25, .min_leaf = 50, .model_score = true};
     options.reuse_previous_samples = false;
+    options.discount = 0.98;
+    options.agreement = std::numeric_limits<double>::infinity();
+    options.evaluation_runs = 1000;
+    options.adapt = false;
     return options;
   }
 };
@@ -104,6 +113,9 @@ struct RfpiProgress {
   double best_cost = 0;        // of the best policy so far
   std::size_t leaves = 0;      // of the newest policy
 };
+
+/// The options with numbers in place of what is left to rfpi().
+RfpiOptions resolved(RfpiOptions options);
 
 /// Throws a SolveError that names the field and its range.
 void check(const LookaheadOptions& options);

@@ -1,6 +1,7 @@
 // Definitions of surefoot/solve/rfpi_options.hpp.
 #pragma once
 
+#include <algorithm>
 #include <string>
 
 #include "surefoot/core/compiled.hpp"
@@ -17,6 +18,7 @@ SUREFOOT_INLINE void check(const LookaheadOptions& l) {
   require(l.refined >= 0, "lookahead.refined must not be negative");
   require(l.refined == 0 || (l.refined_samples >= 1 && l.kept >= 1),
           "lookahead.kept and lookahead.refined_samples must be at least 1");
+  require(l.hold >= 1, "lookahead.hold must be at least 1");
   require(l.softness >= 0 && l.step >= 0 && l.radius >= 0,
           "lookahead.softness, lookahead.step and lookahead.radius must not be negative");
 }
@@ -29,7 +31,7 @@ SUREFOOT_INLINE void check(const RfpiOptions& o) {
   require(o.budget.counted_seconds > 0, "budget.counted_seconds must be positive");
   require(o.max_seconds > 0, "max_seconds must be positive");
   require(o.budget.step_ns >= 0, "budget.step_ns must not be negative");
-  require(o.discount > 0 && o.discount <= 1, "discount must be in (0, 1]");
+  require(o.discount >= 0 && o.discount <= 1, "discount must be in (0, 1], or 0 for 1 - 1 / horizon");
   require(o.horizon >= 1, "horizon must be at least 1");
   require(o.max_iterations >= 0, "max_iterations must be at least 1, or 0 for no limit");
   require(o.first_states >= 1 && o.max_states >= o.first_states,
@@ -41,7 +43,8 @@ SUREFOOT_INLINE void check(const RfpiOptions& o) {
   require(o.backup_steps >= 0 && o.backup_runs >= 1 && o.value_runs >= 1,
           "backup_steps must not be negative; backup_runs and value_runs must be at least 1");
   check(o.lookahead);
-  require(o.evaluation_runs >= 2, "evaluation_runs must be at least 2");
+  require(o.evaluation_runs >= 2 || o.evaluation_runs == 0, "evaluation_runs must be at least 2, or 0");
+  require(o.agreement > 0, "agreement must be positive");
   require(!o.resume || !o.checkpoint.empty(), "resume needs the name of the checkpoint file");
   try {
     check(o.value_forest);
@@ -49,6 +52,12 @@ SUREFOOT_INLINE void check(const RfpiOptions& o) {
   } catch (const ForestError& error) {
     require(false, error.what());
   }
+}
+
+SUREFOOT_INLINE RfpiOptions resolved(RfpiOptions options) {
+  constexpr double least_discount = 0.9;  // of runs of less than ten transitions
+  if (options.discount == 0) options.discount = std::max(least_discount, 1 - 1.0 / options.horizon);
+  return options;
 }
 
 SUREFOOT_INLINE std::string explain(RfpiStop stop) {

@@ -18,6 +18,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/solve/forest_policy.hpp"
 #include "surefoot/solve/lookahead.hpp"
+#include "surefoot/solve/rfpi_adapt.hpp"
 #include "surefoot/solve/rfpi_backup.hpp"
 #include "surefoot/solve/rfpi_options.hpp"
 #include "surefoot/solve/rfpi_state.hpp"
@@ -51,12 +52,12 @@ double rollout_value(const P& problem, Acting act, const typename P::State& star
 template <Problem P, Executor E>
 RfpiState<P> improve_by_rollouts(const P& problem, const RfpiOptions& options, const RfpiState<P>& before,
                                  std::span<const typename P::State> seed_states, const E& executor, const Rng& rng,
-                                 std::stop_token stop) {
+                                 std::uint64_t evaluation_seed, std::stop_token stop) {
   using State = typename P::State;
   using Action = typename P::Action;
   RfpiState<P> after;
   after.work = before.work;
-  const ForestPolicy<P> policy(problem, before.policy);
+  const ForestPolicy<P> policy(problem, before.policy, options.agreement);
   const Box<P::action_dim> box = problem.action_box();
   // The first policy is random.
   const auto acting = [&](Rng choice) {
@@ -108,6 +109,11 @@ RfpiState<P> improve_by_rollouts(const P& problem, const RfpiOptions& options, c
   if (!complete) return after;
   collect_work();
   after.policy = fit_policy(problem, samples, {}, options.policy_forest, executor, rng.stream(6), after.work, stop);
+  const int runs = evaluation_runs(options);
+  after.cost = policy_cost(problem, after.policy, options, runs, executor, evaluation_seed).cost.mean;
+  const std::uint64_t steps = static_cast<std::uint64_t>(runs) * static_cast<std::uint64_t>(options.horizon);
+  after.work.steps += steps;
+  after.work.lookups += steps * after.policy.trees();
   after.iteration = before.iteration + 1;
   return after;
 }

@@ -18,6 +18,7 @@
 #include "surefoot/forest/serialize.hpp"
 #include "surefoot/solve/forest_policy.hpp"
 #include "surefoot/solve/rfpi_options.hpp"
+#include "surefoot/solve/value_forest.hpp"
 
 namespace surefoot {
 
@@ -51,7 +52,7 @@ template <Problem P>
 struct RfpiState {
   static constexpr int inputs = feature_dim<P>();
   // Linear leaves learn values from fewer samples; the paper's constant ones are what ValueMethod::rollouts uses.
-  using LinearValue = Forest<inputs, 1, LinearLeaf>;
+  using LinearValue = ValueForest<inputs>;
   using ConstantValue = Forest<inputs, 1, ConstantLeaf>;
   using ActionForest = typename ForestPolicy<P>::ActionForest;
 
@@ -61,14 +62,18 @@ struct RfpiState {
   StateSamples<P> previous;  // of the one before
   LinearValue value;
   ActionForest policy;  // empty: none yet
+  double cost = 0;      // of that policy over the evaluation runs
+  int leaves = 0;       // per tree, the size of policy that did best; 0: none yet
   ActionForest best_policy;
   double best_cost = 0;
+  int worse = 0;  // iterations in a row that gave a clearly worse policy than the best
   std::vector<RfpiProgress> history;
 };
 
 namespace detail {
 
-constexpr FileFormat checkpoint_format{"SURERFPI", 1, "a checkpoint of RFPI"};
+constexpr FileFormat checkpoint_format{"SURERFPI", 2, "a checkpoint of RFPI"};
+constexpr FileFormat first_checkpoint_format{"SURERFPI", 1, "a checkpoint of RFPI"};  // no trend, no sizes
 
 template <class Vector>
 void write_vectors(ByteWriter& out, const std::vector<Vector>& vectors) {
@@ -118,6 +123,25 @@ F read_optional(ByteReader& in) {
   return in.u8() == 0 ? F() : read<F>(in);
 }
 
+template <int Inputs>
+void write_value(ByteWriter& out, const ValueForest<Inputs>& value) {
+  out.list(std::vector<double>(value.trend.parameters().begin(), value.trend.parameters().end()));
+  write_optional(out, value.forest);
+}
+
+template <int Inputs>
+ValueForest<Inputs> read_value(ByteReader& in, bool has_trend) {
+  ValueForest<Inputs> value;
+  std::vector<double> numbers;
+  if (has_trend) numbers = in.list<double>();
+  if (!numbers.empty() && numbers.size() != QuadraticTrend<Inputs>::count_of_parameters) {
+    in.fail("is damaged: its trend has " + std::to_string(numbers.size()) + " numbers");
+  }
+  value.trend.set_parameters(std::move(numbers));
+  value.forest = read_optional<Forest<Inputs, 1, LinearLeaf>>(in);
+  return value;
+}
+
 }  // namespace detail
 
 /// `fingerprint` names everything the run depends on (options, seed, problem); a resume must have the same.
@@ -132,10 +156,13 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const R
   out.u64(state.work.fits);
   detail::write_samples(out, state.samples);
   detail::write_samples(out, state.previous);
-  detail::write_optional(out, state.value);
+  detail::write_value(out, state.value);
   detail::write_optional(out, state.policy);
+  out.f64(state.cost);
+  out.u32(static_cast<std::uint32_t>(state.leaves));
   detail::write_optional(out, state.best_policy);
   out.f64(state.best_cost);
+  out.u32(static_cast<std::uint32_t>(state.worse));
   out.u64(state.history.size());
   for (const RfpiProgress& p : state.history) {
     out.u32(static_cast<std::uint32_t>(p.iteration));
@@ -152,7 +179,8 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const R
 template <Problem P>
 RfpiState<P> load_checkpoint(std::span<const std::byte> bytes, const std::string& path, std::uint64_t fingerprint) {
   ByteReader in(bytes, "checkpoint " + path);
-  expect_format(in, detail::checkpoint_format);
+  const bool first = has_format(in, detail::first_checkpoint_format);
+  expect_format(in, first ? detail::first_checkpoint_format : detail::checkpoint_format);
   if (in.u64() != fingerprint) {
     throw SolveError(in.source() +
                      " belongs to a run with another problem, other options or another seed: "
@@ -167,10 +195,15 @@ RfpiState<P> load_checkpoint(std::span<const std::byte> bytes, const std::string
   state.work.fits = in.u64();
   state.samples = detail::read_samples<P>(in);
   state.previous = detail::read_samples<P>(in);
-  state.value = detail::read_optional<typename RfpiState<P>::LinearValue>(in);
+  state.value = detail::read_value<RfpiState<P>::inputs>(in, !first);
   state.policy = detail::read_optional<typename RfpiState<P>::ActionForest>(in);
+  if (!first) {
+    state.cost = in.f64();
+    state.leaves = static_cast<int>(in.u32() & 0x7FFFFFFFU);
+  }
   state.best_policy = detail::read_optional<typename RfpiState<P>::ActionForest>(in);
   state.best_cost = in.f64();
+  if (!first) state.worse = static_cast<int>(in.u32() & 0x7FFFFFFFU);
   const std::uint64_t entries = in.u64();
   if (entries > in.remaining() / 60) in.fail("ends too early");
   for (std::uint64_t i = 0; i < entries; ++i) {

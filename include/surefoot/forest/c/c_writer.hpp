@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "surefoot/forest/c/c_agreement.hpp"
 #include "surefoot/forest/c/c_branches.hpp"
 #include "surefoot/forest/c/c_fixed_point.hpp"
 #include "surefoot/forest/c/c_tables.hpp"
@@ -133,13 +134,19 @@ class CWriter {
     code += "  uint32_t tree, o" + std::string(leaf_code_.find('k') != std::string::npos || needs_x ? ", k" : "");
     code += options_.descent == CDescent::tables ? ", first = 0, first_leaf = 0;\n" : ";\n";
     if (needs_x) code += "  for (k = 0; k < " + inputs_ + "; ++k) x[k] = " + as_float + ";\n";
+    const bool agreeing = !options_.agreement.empty();
+    if (agreeing) code += "  double proposals[" + trees_ + " * " + outputs_ + "] = {0};\n";
     code += "  for (o = 0; o < " + outputs_ + "; ++o) out[o] = 0;\n" + "  for (tree = 0; tree < " + trees_ +
             "; ++tree) {\n" + (options_.descent == CDescent::tables ? table_descent() : branch_descent()) +
-            indented(leaf_code_, "    ") + "\n" + "  }\n" + "  for (o = 0; o < " + outputs_ +
-            "; ++o) out[o] *= " + digits(1.0 / static_cast<double>(tables_.trees.size())) + ";\n" + bounds() +
-            "#undef number\n" + "}\n";
+            (agreeing ? "#define out (proposals + tree * " + outputs_ + ")\n" : std::string()) +
+            indented(leaf_code_, "    ") + "\n" + (agreeing ? "#undef out\n" : "") + "  }\n" +
+            (agreeing ? c_agreement(options_.agreement, tables_.trees.size())
+                      : "  for (o = 0; o < " + outputs_ + "; ++o) out[o] *= " + share() + ";\n") +
+            bounds() + "#undef number\n" + "}\n";
     return code;
   }
+
+  std::string share() const { return digits(1.0 / static_cast<double>(tables_.trees.size())); }
 
   std::string bounds() const {
     if (options_.low.empty()) return {};

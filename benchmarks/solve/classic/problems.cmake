@@ -1,0 +1,21 @@
+# Problems of the suite: name, header, type.
+set(classic_problems
+    pendulum:pendulum:Pendulum
+    cart_pole:cart_pole:CartPole
+    quadrotor:quadrotor:Quadrotor
+    mountain_car:mountain_car:MountainCar
+    acrobot:acrobot:Acrobot
+    reacher:reacher:Reacher
+    parking:parking:Parking
+    chain_2:chain:Chain2
+    chain_4:chain:Chain4
+    chain_6:chain:Chain6
+    chain_8:chain:Chain8
+    chain_12:chain:Chain12
+    minimum_time:minimum_time:MinimumTime
+    dubins:dubins:Dubins
+    double_pole:double_pole:DoublePole
+    lander:lander:Lander
+    approach_ha:approach:ApproachHa
+    approach_anha:approach:ApproachAnha
+    rolling_ball:approach:RollingBall)

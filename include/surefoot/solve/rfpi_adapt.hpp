@@ -1,0 +1,120 @@
+// Adaptation of RFPI to a problem: whether its simulator has noise, and how large a policy is best.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/problem.hpp"
+#include "surefoot/core/rng.hpp"
+#include "surefoot/core/rollout.hpp"
+#include "surefoot/solve/forest_policy.hpp"
+#include "surefoot/solve/rfpi_options.hpp"
+
+namespace surefoot::detail {
+
+/// Whether transitions were the same for two streams of random numbers, over random runs and states of the whole state
+/// box: then one sample tells as much as many.
+template <Problem P>
+bool is_deterministic(const P& problem, int horizon, const Rng& rng) {
+  constexpr std::size_t looked_at = 1000;  // states: noise in one of 200 is missed once in 150 times
+  const Box<P::action_dim> actions = problem.action_box();
+  const Box<P::state_dim> states = problem.state_box();
+  typename P::State state = states.center();
+  int left = 0;  // transitions of this run
+  for (std::size_t i = 0; i < looked_at; ++i) {
+    Rng first = rng.stream(i, 0), second = rng.stream(i, 1), choice = rng.stream(i, 2);
+    const bool in_run = i % 2 == 0;
+    if (in_run && left == 0) {
+      state = problem.initial_state(choice);
+      left = horizon;
+    }
+    const typename P::State from = in_run ? state : typename P::State(states.sample(choice));
+    const typename P::Action action = actions.sample(choice);
+    const auto a = problem.step(from, action, first), b = problem.step(from, action, second);
+    if ((a.next.array() != b.next.array()).any() || a.reward != b.reward || a.terminal != b.terminal) return false;
+    if (!in_run) continue;
+    state = a.next;
+    left = a.terminal ? 0 : left - 1;
+  }
+  return true;
+}
+
+/// The options with what a simulator without noise allows: single samples, and so values of longer runs of the policy,
+/// and more iterations.
+inline RfpiOptions without_noise(RfpiOptions options) {
+  constexpr int backup_steps = 6;   // information comes from so many transitions away in an iteration
+  constexpr double growth = 1.1;    // iterations are cheap, and values need many where runs are long
+  options.lookahead.samples = options.lookahead.refined_samples = options.backup_runs = 1;
+  options.backup_steps = std::max(options.backup_steps, backup_steps);
+  options.backup_weight = 1;
+  options.growth = std::min(options.growth, growth);
+  return options;
+}
+
+/// Runs that tell how good a policy is.
+inline int evaluation_runs(const RfpiOptions& options) {
+  constexpr int transitions = 50'000, least = 200;
+  return options.evaluation_runs > 0 ? options.evaluation_runs : std::max(least, transitions / options.horizon);
+}
+
+/// Minus the returns of a policy.
+struct PolicyCost {
+  Estimate cost;          // as they are
+  double discounted = 0;  // mean of the discounted ones, which is what the values are about
+};
+
+/// Over runs that are the same for every policy; in lockstep, so that a forest sees many states at once.
+template <Problem P, Executor E>
+PolicyCost policy_cost(const P& problem, const typename ForestPolicy<P>::ActionForest& forest,
+                       const RfpiOptions& options, int runs, const E& executor, std::uint64_t seed) {
+  using State = typename P::State;
+  constexpr std::size_t runs_per_job = 64;
+  const ForestPolicy<P> policy(problem, forest, options.agreement);
+  const auto count = static_cast<std::size_t>(runs);
+  std::vector<double> plain(count, 0.0), discounted(count, 0.0);
+  const auto job = [&](std::size_t chunk) {
+    std::vector<std::size_t> live;
+    std::vector<State> states;
+    for (std::size_t i = chunk * runs_per_job; i < std::min(count, (chunk + 1) * runs_per_job); ++i) {
+      Rng start = Rng(seed, i).stream(0);
+      live.push_back(i);
+      states.push_back(problem.initial_state(start));
+    }
+    double weight = 1;
+    for (int t = 0; t < options.horizon && !live.empty(); ++t, weight *= options.discount) {
+      const auto actions = policy.act(states);
+      std::size_t kept = 0;
+      for (std::size_t k = 0; k < live.size(); ++k) {
+        Rng noise = Rng(seed, live[k]).stream(1).stream(static_cast<std::uint64_t>(t));
+        const Step<State> step = problem.step(states[k], actions[k], noise);
+        plain[live[k]] -= step.reward;
+        discounted[live[k]] -= weight * step.reward;
+        if (step.terminal) continue;
+        live[kept] = live[k];
+        states[kept++] = step.next;
+      }
+      live.resize(kept);
+      states.resize(kept);
+    }
+  };
+  fill(executor, (count + runs_per_job - 1) / runs_per_job, job, {}, Results<double>{plain, runs_per_job},
+       Results<double>{discounted, runs_per_job});
+  return {estimate(plain), estimate(discounted).mean};
+}
+
+/// The other size of policy, in leaves per tree, that an iteration tries: three times smaller and larger in turn, within
+/// [1, most].
+inline int other_size(int leaves, int most, int iteration) {
+  constexpr int factor = 3;
+  const bool can_grow = leaves < most, can_shrink = leaves > 1;
+  const bool grow = can_grow && (!can_shrink || iteration % 2 == 0);
+  return grow ? std::min(most, factor * leaves) : can_shrink ? std::max(1, leaves / factor) : leaves;
+}
+
+}  // namespace surefoot::detail

@@ -1,0 +1,60 @@
+#include "surefoot/solve/rfpi_adapt.hpp"
+
+#include <doctest/doctest.h>
+
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/rollout.hpp"
+#include "surefoot/forest/dataset.hpp"
+#include "surefoot/forest/extra_trees.hpp"
+#include "tests/support/double_integrator.hpp"
+#include "tests/support/pendulum.hpp"
+
+namespace surefoot::detail {
+namespace {
+
+TEST_CASE("noise in the simulator is noticed") {
+  CHECK(is_deterministic(toy::DoubleIntegrator{}, 50, Rng(1)));
+  CHECK(is_deterministic(toy::Pendulum{}, 200, Rng(1)));
+  CHECK_FALSE(is_deterministic(toy::DoubleIntegrator{.push = 1e-9}, 50, Rng(1)));
+}
+
+TEST_CASE("without noise one sample is enough") {
+  const RfpiOptions options = without_noise({});
+  CHECK(options.lookahead.samples == 1);
+  CHECK(options.lookahead.refined_samples == 1);
+  CHECK(options.backup_runs == 1);
+  CHECK(options.backup_steps > RfpiOptions{}.backup_steps);
+}
+
+TEST_CASE("sizes of policies are tried in turn, and stay in bounds") {
+  CHECK(other_size(100, 1000, 0) == 300);
+  CHECK(other_size(100, 1000, 1) == 33);
+  CHECK(other_size(1000, 1000, 0) == 333);
+  CHECK(other_size(1, 1000, 1) == 3);
+  CHECK(other_size(1, 1, 0) == 1);
+  CHECK(other_size(500, 1000, 0) == 1000);
+}
+
+TEST_CASE("evaluation runs fit the horizon unless they are given") {
+  CHECK(evaluation_runs({.horizon = 50}) == 1000);
+  CHECK(evaluation_runs({.horizon = 1000}) == 200);
+  CHECK(evaluation_runs({.horizon = 1000, .evaluation_runs = 7}) == 7);
+}
+
+TEST_CASE("the cost of a policy is the one that evaluate() finds") {
+  const toy::Pendulum problem;
+  Dataset<3, 1> data;
+  data.inputs = Eigen::MatrixXf::Random(3, 50);
+  data.outputs = 2 * Eigen::MatrixXd::Random(1, 50);
+  const auto forest = train_extra_trees<LinearLeaf>(data, {.trees = 3}, Serial{}, 1);
+  RfpiOptions options{.discount = 0.9, .horizon = 30};
+  const PolicyCost cost = policy_cost(problem, forest, options, 70, Threads(2), 5);
+  const ForestPolicy<toy::Pendulum> policy(problem, forest, options.agreement);
+  const RolloutOptions runs{.runs = 70, .horizon = 30};
+  CHECK(cost.cost.mean == doctest::Approx(-evaluate(problem, policy, runs, Serial{}, 5).mean).epsilon(1e-12));
+  const RolloutOptions discounted{.runs = 70, .horizon = 30, .discount = 0.9};
+  CHECK(cost.discounted == doctest::Approx(-evaluate(problem, policy, discounted, Serial{}, 5).mean).epsilon(1e-12));
+}
+
+}  // namespace
+}  // namespace surefoot::detail
