@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -20,17 +21,22 @@ struct BusBudget {
   std::uint32_t bits_per_s = 1'000'000;
   double return_delay_s = 500e-6;  // of each servo [s]
   double latency_s = 0;            // from the last byte on the line until the program has the answer, once a cycle [s]
+  double timer_s = 0;              // period at which the adapter hands bytes over, instead; 0: as they come [s]
   std::uint16_t goal_bytes = 4;    // to each servo
   std::uint16_t feedback_bytes = 4;  // from each servo
 
   /// Of what is sent and received in a cycle.
   std::size_t bytes() const { return protocol == 1 ? bytes_of<Protocol1>() : bytes_of<Protocol2>(); }
   double cycle_s() const {
-    return to_seconds(line_time(bytes(), bits_per_s)) + static_cast<double>(servos) * return_delay_s + latency_s;
+    const double busy = static_cast<double>(servos) * return_delay_s +
+                        10 * (static_cast<double>(bytes()) + marks * static_cast<double>(servos)) / bits_per_s;
+    return timer_s > 0 ? timer_s * std::ceil(busy / timer_s) : busy + latency_s;
   }
   double rate_hz() const { return 1 / cycle_s(); }
 
  private:
+  static constexpr double marks = 0.5;  // bytes by which a bus marks its questions, 0 and 1 in turn
+
   template <class Protocol>
   std::size_t bytes_of() const {
     std::array<std::uint8_t, 1024> packet{};
@@ -70,8 +76,10 @@ inline std::vector<BudgetAdvice> advice(const BusBudget& now, std::uint32_t fast
   one("Return Delay Time 0 in all servos (setup --return-delay 0)", [](BusBudget& b) { b.return_delay_s = 0; });
   one("the fastest speed that all servos can do, " + std::to_string(fastest) + " bit/s (setup --new-baud)",
       [&](BusBudget& b) { b.bits_per_s = std::max(b.bits_per_s, fastest); });
-  one("a latency timer of 1 ms (setserial PORT low_latency)",
-      [](BusBudget& b) { b.latency_s = std::min(b.latency_s, 1e-3); });
+  one("a latency timer of 1 ms (setserial PORT low_latency)", [](BusBudget& b) {
+    b.latency_s = std::min(b.latency_s, 1e-3);
+    b.timer_s = 0;
+  });
   if (result.size() > 1) add("all of that", all);
   if (now.servos > 1) {
     BusBudget half = now;

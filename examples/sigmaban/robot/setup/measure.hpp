@@ -30,10 +30,11 @@ inline double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// Of questions to each servo in turn, apart from the time of the line and of the servo itself [s].
+/// Of questions to each servo in turn: what answers take beyond the time of the line and of the servo itself.
 template <class ServoBus>
-double latency(ServoBus& bus, const std::vector<std::uint8_t>& ids, const Register& asked, double return_delay_s,
-               int questions) {
+void measure_latency(ServoBus& bus, const std::vector<std::uint8_t>& ids, const Register& asked, int questions,
+                     BusBudget& budget) {
+  constexpr double least_timer_s = 3e-3;  // a program that waits for longer waits for the adapter's timer [s]
   std::vector<double> seconds;
   std::array<std::uint8_t, 64> packet{};
   std::array<std::uint8_t, 4> bytes{};
@@ -47,10 +48,10 @@ double latency(ServoBus& bus, const std::vector<std::uint8_t>& ids, const Regist
   if (seconds.empty()) throw BusError("no servo answers a question; is the line in order?");
   using Wire = typename ServoBus::Wire;
   const std::size_t sent = Wire::read_one(packet, {ids[0], asked.address, asked.size}).size();
-  constexpr double extra_bytes = 0.5;  // by which a bus marks its questions, 0 and 1 in turn
-  const double line = to_seconds(line_time(sent + Wire::status_overhead + asked.size, bus.port().bits_per_s())) +
-                      10 * extra_bytes / bus.port().bits_per_s();
-  return std::max(0.0, median(std::move(seconds)) - line - return_delay_s);
+  const double answer_s = median(std::move(seconds));
+  const double line_s = to_seconds(line_time(sent + Wire::status_overhead + asked.size, budget.bits_per_s));
+  budget.latency_s = std::max(0.0, answer_s - line_s - budget.return_delay_s);
+  if (budget.latency_s > least_timer_s) budget.timer_s = answer_s;  // each waits for the next tick after the last one
 }
 
 }  // namespace measure_detail
@@ -112,7 +113,7 @@ LineMeasurement measure_line(const ServoLine& line, const std::vector<std::uint8
   result.budget.bits_per_s = line.bits_per_s;
   auto bus = open_patiently<Protocol>(line.port, line.bits_per_s);
   const Cycle cycle = survey(bus, ids, result);
-  result.budget.latency_s = latency(bus, ids, *cycle.goal, result.budget.return_delay_s, cycles);
+  measure_latency(bus, ids, *cycle.goal, cycles, result.budget);
   std::vector<double> seconds;
   std::vector<std::uint8_t> answers(ids.size() * cycle.count);
   std::vector<Outcome> outcomes(ids.size());
@@ -135,7 +136,8 @@ inline void print(const LineMeasurement& m, const std::string& port) {
   const double bytes_s = to_seconds(line_time(b.bytes(), b.bits_per_s));
   std::printf("%s: %zu servos, Protocol %d, %u bit/s; goals of %d bytes out, feedback of %d bytes back\n", port.c_str(),
               b.servos, b.protocol, b.bits_per_s, b.goal_bytes, b.feedback_bytes);
-  std::printf("  latency of an answer            %8.3f ms  (adapter and operating system)\n", 1e3 * b.latency_s);
+  std::printf("  latency of an answer            %8.3f ms  (%s)\n", 1e3 * b.latency_s,
+              b.timer_s > 0 ? "the adapter hands bytes over by its latency timer" : "adapter and operating system");
   std::printf("  a cycle: bytes on the line      %8.3f ms  (%zu)\n", 1e3 * bytes_s, b.bytes());
   std::printf("           return delays          %8.3f ms\n", 1e3 * b.return_delay_s * static_cast<double>(b.servos));
   std::printf("  predicted                       %8.3f ms, %.0f Hz\n", 1e3 * b.cycle_s(), b.rate_hz());
