@@ -25,5 +25,6 @@ int main(int argc, char** argv) {
   calibrate_program::add_update(program);
   calibrate_program::add_compare(program);
   calibrate_program::add_simulate(program);
-  return example::run_program(program, argc, argv, "stopped; of `curve` the splits that are done are kept, of others nothing is written");
+  return example::run_program(program, argc, argv,
+                              "stopped; of `curve` the splits that are done are kept, of others nothing is written");
 }

@@ -7,8 +7,12 @@
 namespace surefoot {
 namespace {
 
-const LearningSigns good{.random_cost = 100, .learnt_cost = 20, .least_reward = -3, .greatest_reward = 0,
-                         .ended_share = 0, .mean_length = 100};
+const LearningSigns good{.random_cost = 100,
+                         .learnt_cost = 20,
+                         .least_reward = -3,
+                         .greatest_reward = 0,
+                         .ended_share = 0,
+                         .mean_length = 100};
 
 TEST_CASE("what goes well gets no hint") { CHECK(hints(good, {.discount = 0.99, .horizon = 100}).empty()); }
 

@@ -84,9 +84,10 @@ int main(int count, char** words) try {
   } else if (arguments.size() == 2 && arguments[0] == "table") {
     print_table(all_cases(), read_references(arguments[1]), read_returns(arguments[1]));
   } else {
-    std::printf("classic_problems references FOLDER [NAME...]\n"
-                "classic_problems train FOLDER SECONDS SEEDS [NAME...]\n"
-                "classic_problems table FOLDER\n");
+    std::printf(
+        "classic_problems references FOLDER [NAME...]\n"
+        "classic_problems train FOLDER SECONDS SEEDS [NAME...]\n"
+        "classic_problems table FOLDER\n");
     return 2;
   }
   return 0;

@@ -96,8 +96,9 @@ inline ReturnRow median(std::vector<ReturnRow> rows) {
 
 inline void print_table(const std::vector<Case>& cases, const std::vector<ReferenceRow>& references,
                         const std::vector<ReturnRow>& returns) {
-  std::printf("| problem | state, action | median return (seeds) | worst | reference | behind it by | CPU [s] | kB | ns | "
-              "reference by |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+  std::printf(
+      "| problem | state, action | median return (seeds) | worst | reference | behind it by | CPU [s] | kB | ns | "
+      "reference by |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
   for (const Case& one : cases) {
     std::vector<ReturnRow> ours;
     std::ranges::copy_if(returns, std::back_inserter(ours), [&](const ReturnRow& r) { return r.name == one.name; });

@@ -96,9 +96,8 @@ extern template void train(const CalibratedApproach&, const TrainOptions&, const
 /// Trains on the executor that make_executor(options) gives, as a std::unique_ptr.
 template <class MakeExecutor>
 void train_on(const TrainOptions& options, MakeExecutor&& make_executor) {
-  with_problem(options.problem, options.motion, [&](const auto& problem) {
-    train(problem, options, surefoot::AnyExecutor(make_executor(options)));
-  });
+  with_problem(options.problem, options.motion,
+               [&](const auto& problem) { train(problem, options, surefoot::AnyExecutor(make_executor(options))); });
 }
 
 /// Adds the subcommand; `work(options)` trains. `threads`: the default.

@@ -38,8 +38,9 @@ struct ExportCOptions {
   CThreshold thresholds = CThreshold::float32;
   std::vector<double> largest_inputs = {};  // whole numbers: sizes up to which inputs are told apart; empty: up to the
                                             // thresholds' (linear leaves may need more)
-  std::vector<double> agreement = {};  // per output: trees that differ by more are of different opinions, and the output
-                                       // is the mean of the largest group around the medoid; empty: the mean of all
+  std::vector<double> agreement =
+      {};  // per output: trees that differ by more are of different opinions, and the output
+           // is the mean of the largest group around the medoid; empty: the mean of all
   std::vector<double> low = {}, high = {};  // bounds that each output is kept in; empty: outputs as the forest has them
 };
 

@@ -26,7 +26,8 @@ SUREFOOT_INLINE void check(const ExportCOptions& options, int outputs) {
     right = std::isfinite(options.low[i]) && std::isfinite(options.high[i]) && options.low[i] <= options.high[i];
   }
   if (!options.agreement.empty() && options.agreement.size() != count) {
-    throw ForestError("ExportCOptions: agreement must be empty or hold " + std::to_string(count) + " numbers, one per output");
+    throw ForestError("ExportCOptions: agreement must be empty or hold " + std::to_string(count) +
+                      " numbers, one per output");
   }
   if (!right) {
     throw ForestError("ExportCOptions: low and high must be empty or hold " + std::to_string(count) +

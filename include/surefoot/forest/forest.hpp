@@ -18,8 +18,8 @@
 #include "surefoot/core/vec.hpp"
 #include "surefoot/forest/evaluate/descend.hpp"
 #include "surefoot/forest/evaluate/descend_batch.hpp"
-#include "surefoot/forest/trees.hpp"
 #include "surefoot/forest/leaf.hpp"
+#include "surefoot/forest/trees.hpp"
 
 namespace surefoot {
 
@@ -161,7 +161,8 @@ class Forest {
 
   /// As above, but what each tree says by itself: trees() * outputs() numbers per input, tree after tree.
   void predict_trees(const float* inputs, std::size_t count, double* out) const {
-    const std::size_t width = static_cast<std::size_t>(this->outputs()), stride = static_cast<std::size_t>(this->inputs());
+    const std::size_t width = static_cast<std::size_t>(this->outputs()),
+                      stride = static_cast<std::size_t>(this->inputs());
     std::fill_n(out, count * width * trees(), 0.0);
     while (count > 0) {
       const std::size_t samples = std::min(count, block_size());

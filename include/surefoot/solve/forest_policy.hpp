@@ -37,8 +37,8 @@ std::vector<float> feature_rows(const P& problem, std::span<const typename P::St
 }
 
 /// Maps a state's features through a forest with linear leaves to an action inside the action box. No memory, no
-/// allocation up to 256 numbers from all trees together: well under a microsecond on a desktop core. Holds a copy of the
-/// problem, for its features and its box.
+/// allocation up to 256 numbers from all trees together: well under a microsecond on a desktop core. Holds a copy of
+/// the problem, for its features and its box.
 template <Problem P>
 class ForestPolicy {
  public:
@@ -82,8 +82,8 @@ class ForestPolicy {
     std::vector<double> proposals(states.size() * each);
     forest_.predict_trees(rows.data(), states.size(), proposals.data());
     for (std::size_t i = 0; i < states.size(); ++i) {
-      actions[i] = box_.clamp(
-          agreed_action<P::action_dim>(std::span<const double>(proposals).subspan(i * each, each), reach_));
+      actions[i] =
+          box_.clamp(agreed_action<P::action_dim>(std::span<const double>(proposals).subspan(i * each, each), reach_));
     }
     return actions;
   }

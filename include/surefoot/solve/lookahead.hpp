@@ -49,9 +49,7 @@ class Lookahead {
   }
 
   /// Simulated transitions of one call.
-  std::size_t transitions() const {
-    return static_cast<std::size_t>(options_.hold) * values();
-  }
+  std::size_t transitions() const { return static_cast<std::size_t>(options_.hold) * values(); }
 
   /// Values looked up in one call.
   std::size_t values() const {

@@ -262,9 +262,6 @@ RfpiResult<P> rfpi(const P& problem, const RfpiOptions& options, const E& execut
 
 /// For a type that is not a Problem: one compile error that names the missing member.
 template <class P>
-  requires(!Problem<P>)
-auto rfpi(const P&, const RfpiOptions&, auto&&...) {
-  return explain_problem<P>();
-}
+requires(!Problem<P>) auto rfpi(const P&, const RfpiOptions&, auto&&...) { return explain_problem<P>(); }
 
 }  // namespace surefoot

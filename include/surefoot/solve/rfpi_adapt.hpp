@@ -48,8 +48,8 @@ bool is_deterministic(const P& problem, int horizon, const Rng& rng) {
 /// The options with what a simulator without noise allows: single samples, and so values of longer runs of the policy,
 /// and more iterations.
 inline RfpiOptions without_noise(RfpiOptions options) {
-  constexpr int backup_steps = 6;   // information comes from so many transitions away in an iteration
-  constexpr double growth = 1.1;    // iterations are cheap, and values need many where runs are long
+  constexpr int backup_steps = 6;  // information comes from so many transitions away in an iteration
+  constexpr double growth = 1.1;   // iterations are cheap, and values need many where runs are long
   options.lookahead.samples = options.lookahead.refined_samples = options.backup_runs = 1;
   options.backup_steps = std::max(options.backup_steps, backup_steps);
   options.backup_weight = 1;
@@ -108,11 +108,11 @@ PolicyCost policy_cost(const P& problem, const typename ForestPolicy<P>::ActionF
   return {estimate(plain), estimate(discounted).mean};
 }
 
-/// The other size of policy, in leaves per tree, that an iteration tries: three times smaller and larger in turn, within
-/// [1, most].
+/// The other size of policy, in leaves per tree, that an iteration tries: three times smaller and larger in turn,
+/// within [1, most].
 inline int other_size(int leaves, int most, int iteration) {
   constexpr int factor = 3;
-  const bool can_grow = leaves < most, can_shrink = leaves > 1;
+  const bool can_grow = leaves<most, can_shrink = leaves> 1;
   const bool grow = can_grow && (!can_shrink || iteration % 2 == 0);
   return grow ? std::min(most, factor * leaves) : can_shrink ? std::max(1, leaves / factor) : leaves;
 }

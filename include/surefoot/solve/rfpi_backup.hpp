@@ -239,9 +239,8 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& given, const
   const bool initial = before.iteration < options.initial_iterations;
   if (options.adapt) {
     const auto states = std::span<const typename P::State>(samples.states);
-    options.lookahead.hold = initial
-                                 ? std::max(initial_hold, options.lookahead.hold)
-                                 : chosen_hold(problem, before.value, states, options, rng.stream(5), after.work);
+    options.lookahead.hold = initial ? std::max(initial_hold, options.lookahead.hold)
+                                     : chosen_hold(problem, before.value, states, options, rng.stream(5), after.work);
   }
   const ForestPolicy<P> policy(problem, before.policy, options.agreement);
   constexpr std::size_t states_per_job = 16;

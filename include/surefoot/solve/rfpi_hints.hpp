@@ -18,12 +18,12 @@ namespace surefoot {
 
 /// What runs show about the fit of options and problem.
 struct LearningSigns {
-  double random_cost = 0;       // mean cost of random actions
-  double learnt_cost = 0;       // of the learnt policy
-  double least_reward = 0;      // of a transition, over the runs of both
+  double random_cost = 0;   // mean cost of random actions
+  double learnt_cost = 0;   // of the learnt policy
+  double least_reward = 0;  // of a transition, over the runs of both
   double greatest_reward = 0;
-  double ended_share = 0;       // of the learnt policy's runs that a terminal step ended
-  double mean_length = 0;       // of the learnt policy's runs [transitions]
+  double ended_share = 0;  // of the learnt policy's runs that a terminal step ended
+  double mean_length = 0;  // of the learnt policy's runs [transitions]
 };
 
 struct HintCriteria {

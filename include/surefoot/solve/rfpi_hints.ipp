@@ -21,15 +21,17 @@ SUREFOOT_INLINE std::vector<std::string> hints(const LearningSigns& signs, const
   std::vector<std::string> found;
   const double ahead = options.discount < 1 ? 1 / (1 - options.discount) : options.horizon;
   if (signs.least_reward == signs.greatest_reward && signs.ended_share == 0) {
-    found.push_back("every transition of the runs gave the same reward, " + text(signs.least_reward) +
-                    ", and none ended: nothing tells a good action from a bad one. Reward progress, let some runs start "
-                    "near the goal, hand over seed_states, or make the horizon (" +
-                    std::to_string(options.horizon) + ") longer");
+    found.push_back(
+        "every transition of the runs gave the same reward, " + text(signs.least_reward) +
+        ", and none ended: nothing tells a good action from a bad one. Reward progress, let some runs start "
+        "near the goal, hand over seed_states, or make the horizon (" +
+        std::to_string(options.horizon) + ") longer");
   } else if (signs.random_cost - signs.learnt_cost < criteria.no_gain * std::abs(signs.random_cost)) {
-    found.push_back("the policy costs " + text(signs.learnt_cost) + ", random actions " + text(signs.random_cost) +
-                    ": nothing was learnt yet. Make the horizon (" + std::to_string(options.horizon) +
-                    ") longer if nothing can be reached within it, multiply budget.counted_seconds by five, or let some "
-                    "runs start where more can be gained");
+    found.push_back(
+        "the policy costs " + text(signs.learnt_cost) + ", random actions " + text(signs.random_cost) +
+        ": nothing was learnt yet. Make the horizon (" + std::to_string(options.horizon) +
+        ") longer if nothing can be reached within it, multiply budget.counted_seconds by five, or let some "
+        "runs start where more can be gained");
   }
   if (ahead < criteria.short_sight * signs.mean_length) {
     found.push_back("runs last " + text(signs.mean_length) + " transitions, but with a discount of " +

@@ -20,12 +20,13 @@ namespace surefoot::detail {
 constexpr int compared_actions = 8;  // random ones, per state
 
 /// Of the first iterations [transitions]. Their values, from V = 0 on, come from lookaheads alone: held for two, values
-/// reach twice as far after as many iterations. More makes them those of clumsy policies, and standing still looks best.
+/// reach twice as far after as many iterations. More makes them those of clumsy policies, and standing still looks
+/// best.
 constexpr int initial_hold = 2;
 
 /// How well two halves of the value forest agree about which actions are better than others, if each is held for `hold`
-/// transitions: the correlation of their Q over random actions of a state, mean over states. What they disagree about is
-/// error of the values; where that outweighs what an action changes, the best action is a matter of chance.
+/// transitions: the correlation of their Q over random actions of a state, mean over states. What they disagree about
+/// is error of the values; where that outweighs what an action changes, the best action is a matter of chance.
 template <Problem P, class Value>
 double agreement_of_halves(const P& problem, const Value& value, std::span<const typename P::State> states,
                            double discount, int hold, const Rng& rng) {

@@ -71,8 +71,8 @@ struct RfpiOptions {
   // ValueMethod::rollouts: all states ever visited are kept; policy n is improved after n more runs.
   int value_runs = 20;  // simulated runs per state
 
-  double agreement = 0.5;  // actions of trees that are further apart are of different opinions, and the policy does what
-                           // most say [half widths of the action box]; infinite: the mean of all
+  double agreement = 0.5;  // actions of trees that are further apart are of different opinions, and the policy does
+                           // what most say [half widths of the action box]; infinite: the mean of all
   bool adapt = true;  // finds out by itself: whether there is noise (else single samples, longer backups), for how long
                       // lookaheads hold an action, how many leaves, up to policy_forest's, do best
   int evaluation_runs = 0;  // runs, always the same, that tell which policy is the best; 0: 50'000 transitions of them

@@ -29,7 +29,7 @@ class QuadraticTrend {
  public:
   static constexpr int terms = (Inputs + 1) * (Inputs + 2) / 2;
   static constexpr Eigen::Index most_samples = 20'000;  // enough for any number of inputs here; more are thinned out
-  static constexpr double ridge = 1e-6;                 // of the samples' own sum of squares: keeps dependent inputs solvable
+  static constexpr double ridge = 1e-6;  // of the samples' own sum of squares: keeps dependent inputs solvable
   bool empty() const { return coefficients_.empty(); }
   std::span<const double> parameters() const { return coefficients_; }  // coefficients, means, 1 / spreads, bounds
   void set_parameters(std::vector<double> parameters) { coefficients_ = std::move(parameters); }
@@ -71,7 +71,8 @@ class QuadraticTrend {
     double* scale = mean + Inputs;
     Vec<Inputs> sum = Vec<Inputs>::Zero(), squares = Vec<Inputs>::Zero();
     double count = 0;
-    for (Eigen::Index k = 0; k < data.inputs.cols(); k += stride, count += 1) sum += data.inputs.col(k).template cast<double>();
+    for (Eigen::Index k = 0; k < data.inputs.cols(); k += stride, count += 1)
+      sum += data.inputs.col(k).template cast<double>();
     sum /= count;
     for (Eigen::Index k = 0; k < data.inputs.cols(); k += stride) {
       squares += (data.inputs.col(k).template cast<double>() - sum).cwiseAbs2();

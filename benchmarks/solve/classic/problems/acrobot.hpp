@@ -58,8 +58,7 @@ struct Acrobot {
     const double d1 = 0.25 + (1.25 + cosine) + 2;
     const double d2 = 0.25 + 0.5 * cosine + 1;
     const double phi2 = 0.5 * gravity * std::sin(s[0] + s[1]);
-    const double phi1 =
-        -0.5 * s[3] * s[3] * sine - s[3] * s[2] * sine + 1.5 * gravity * std::sin(s[0]) + phi2;
+    const double phi1 = -0.5 * s[3] * s[3] * sine - s[3] * s[2] * sine + 1.5 * gravity * std::sin(s[0]) + phi2;
     const double second = (torque + d2 / d1 * phi1 - 0.5 * s[2] * s[2] * sine - phi2) / (1.25 - d2 * d2 / d1);
     return {s[2], s[3], -(d2 * second + phi1) / d1, second};
   }

@@ -26,8 +26,8 @@ struct Lander {
   surefoot::Box<2> action_box() const { return surefoot::Box<2>::symmetric(Action(1, 1)); }
   State initial_state(surefoot::Rng& rng) const {
     State state;
-    state << rng.uniform(-2, 2), rng.uniform(3, 4), rng.uniform(-0.3, 0.3), rng.uniform(-0.5, 0.5),
-        rng.uniform(-1, 0), 0;
+    state << rng.uniform(-2, 2), rng.uniform(3, 4), rng.uniform(-0.3, 0.3), rng.uniform(-0.5, 0.5), rng.uniform(-1, 0),
+        0;
     return state;
   }
 

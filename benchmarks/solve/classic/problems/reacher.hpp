@@ -37,8 +37,8 @@ struct Reacher {
   surefoot::Step<State> step(const State& state, const Action& action, surefoot::Rng&) const {
     const Action unit = action_box().clamp(action);
     State next = state;
-    next.head<4>() = runge_kutta(surefoot::Vec<4>(state.head<4>()), 0.05,
-                                 [&](const surefoot::Vec<4>& s) { return rates(s, unit); });
+    next.head<4>() =
+        runge_kutta(surefoot::Vec<4>(state.head<4>()), 0.05, [&](const surefoot::Vec<4>& s) { return rates(s, unit); });
     for (int i = 0; i < 2; ++i) next[i] = std::remainder(next[i], 2 * std::numbers::pi);
     const double x = 0.5 * (std::cos(next[0]) + std::cos(next[0] + next[1])) - next[4];
     const double y = 0.5 * (std::sin(next[0]) + std::sin(next[0] + next[1])) - next[5];
@@ -50,7 +50,7 @@ struct Reacher {
  private:
   // Rods of 1 kg and 0.5 m with viscous friction, without gravity.
   static surefoot::Vec<4> rates(const surefoot::Vec<4>& s, const Action& unit) {
-    constexpr double rod = 0.25;  // mass times squared length [kg m^2]
+    constexpr double rod = 0.25;                                                 // mass times squared length [kg m^2]
     constexpr double friction = 0.1, strongest_first = 6, strongest_second = 2;  // [N m s], [N m]
     const double cosine = std::cos(s[1]), sine = std::sin(s[1]);
     const double a = rod * (5.0 / 3 + cosine), b = rod * (1.0 / 3 + 0.5 * cosine), c = rod / 3;

@@ -15,11 +15,11 @@
 namespace classic {
 
 struct MpcOptions {
-  int horizon = 30;     // of the plan [transitions]
-  int samples = 200;    // plans tried per round
-  int rounds = 4;       // of narrowing down
-  double elite = 0.1;   // share of the plans that the next round is drawn around
-  double keep = 0.3;    // share of the last round's mean and width that stays
+  int horizon = 30;    // of the plan [transitions]
+  int samples = 200;   // plans tried per round
+  int rounds = 4;      // of narrowing down
+  double elite = 0.1;  // share of the plans that the next round is drawn around
+  double keep = 0.3;   // share of the last round's mean and width that stays
 };
 
 /// Plans from the state it is in, does the first action, goes on from the rest of the plan. Problems without noise.

@@ -87,9 +87,9 @@ class Grid {
 
 struct GridOptions {
   double discount = 1;
-  int sweeps = 100;         // at most
-  double settled = 1e-4;    // it ends when no value changes by more
-  double floor = -1000;     // no value below
+  int sweeps = 100;       // at most
+  double settled = 1e-4;  // it ends when no value changes by more
+  double floor = -1000;   // no value below
 };
 
 /// Evenly spread actions, `counts` of them along each dimension.

@@ -15,8 +15,8 @@
 #include "surefoot/forest/c/c_branches.hpp"
 #include "surefoot/forest/c/c_fixed_point.hpp"
 #include "surefoot/forest/c/c_tables.hpp"
-#include "surefoot/forest/trees.hpp"
 #include "surefoot/forest/export_c_options.hpp"
+#include "surefoot/forest/trees.hpp"
 
 namespace surefoot::detail {
 
