@@ -8,6 +8,7 @@ must be in its --help. A block that needs what was not built is skipped and says
 """
 
 import argparse
+import contextlib
 import functools
 import os
 import pathlib
@@ -16,6 +17,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 
 from blocks import ROOT, Fault, all_blocks
 
@@ -62,17 +64,20 @@ def missing(block, programs):
 def run(block, folder):
     environment = dict(os.environ, PATH=f"{folder}/build/release/bin:{os.environ['PATH']}")
     environment.setdefault("SUREFOOT_RECORDINGS", str(folder / "recordings"))
-    process = subprocess.Popen(["bash", "-euo", "pipefail", "-c", script_of(block)], cwd=folder, env=environment, text=True,
-                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                               start_new_session=True)
-    try:
-        told, _ = process.communicate(timeout=SECONDS)
-    except subprocess.TimeoutExpired:
-        os.killpg(process.pid, signal.SIGKILL)
-        return f"took more than {SECONDS} s"
-    if process.returncode:
-        return f"exit code {process.returncode}:\n" + "\n".join(told.splitlines()[-SHOWN:])
-    return ""
+    with tempfile.TemporaryFile("w+") as told:  # not a pipe: what a block leaves running would hold it open
+        process = subprocess.Popen(["bash", "-euo", "pipefail", "-c", script_of(block)], cwd=folder, env=environment,
+                                   stdin=subprocess.DEVNULL, stdout=told, stderr=subprocess.STDOUT,
+                                   start_new_session=True)
+        late = ""
+        try:
+            process.wait(timeout=SECONDS)
+        except subprocess.TimeoutExpired:
+            late = f"took more than {SECONDS} s"
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        failed = late or (f"exit code {process.returncode}" if process.wait() else "")
+        told.seek(0)
+        return failed and failed + ":\n" + "\n".join(told.read().splitlines()[-SHOWN:])
 
 
 @functools.cache

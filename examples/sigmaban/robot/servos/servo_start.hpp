@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../bus/bus.hpp"
+#include "../bus/keep_trying.hpp"
 #include "feedback.hpp"
 #include "joint.hpp"
 #include "servo_group_types.hpp"
@@ -26,20 +27,9 @@ namespace dynamixel {
 
 namespace servo_start_detail {
 
-inline constexpr int least_tries = 5;              // of each step: one answer in a hundred is lost
 inline constexpr double least_trying_s = 0.2;      // of each step: machines stand still for a moment, too [s]
 inline constexpr double largest_delay_s = 508e-6;  // that a servo can have as its Return Delay Time [s]
 inline constexpr double long_patience_s = 0.05;    // three periods of the worst latency timer [s]
-
-/// Until work() is true; false where it never is.
-template <class ServoBus, class Work>
-bool keep_trying(const ServoBus& bus, double at_least_s, Work work) {
-  const Time end = bus.port().now() + from_seconds(at_least_s);
-  for (int tries = 0; tries < least_tries || bus.port().now() < end; ++tries) {
-    if (work()) return true;
-  }
-  return false;
-}
 
 /// Why a servo was not heard; `if_it_is` where it answers a ping.
 template <class ServoBus>

@@ -1,11 +1,14 @@
 // Settings of servos changed, with a backup first, and put back from it.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -80,9 +83,10 @@ const ServoModel& known_model(ServoBus& bus, std::uint8_t id) {
 template <class ServoBus>
 void send_away(ServoBus& bus, ServoSettings<ServoBus>& servo, const char* name, std::uint32_t counts) {
   constexpr int most = 10, sure = 2;  // one answer may be lost by chance
+  std::array<std::uint8_t, 2> number{};
   for (int i = 0, silent = 0; i < most && silent < sure; ++i) {
     servo.send(servo.at(name), counts);
-    silent = bus.ping(servo.id()) ? 0 : silent + 1;
+    silent = bus.read(servo.id(), 0, number) ? 0 : silent + 1;
   }
 }
 
@@ -132,32 +136,53 @@ void change_settings(const ServoLine& line, const std::vector<std::uint8_t>& ids
   }
 }
 
+namespace change_detail {
+
+/// Where it is now, by that id, gets its settings back, then its id and its speed.
+template <class ServoBus>
+void restore_servo(ServoBus& bus, const ServoModel& model, std::uint8_t id, const ServoBackup& saved,
+                   bool other_speed) {
+  ServoSettings<ServoBus> servo(bus, model, id);
+  servo.torque_off();
+  std::uint32_t baud_rate = 0;
+  for (const auto& [name, counts] : saved.registers) {
+    if (name == "baud_rate") baud_rate = counts;
+    if (name != "id" && name != "baud_rate") servo.write(name, counts);
+  }
+  if (id != saved.id) send_away(bus, servo, "id", saved.id);
+  ServoSettings<ServoBus> back(bus, known_model(bus, saved.id), saved.id);
+  if (other_speed) send_away(bus, back, "baud_rate", baud_rate);
+}
+
+/// Those of the backup that answer at that speed and are not `done` yet.
+template <class Protocol>
+void restore_at(const std::string& port, std::uint32_t speed, const SettingsBackup& backup, std::vector<bool>& done) {
+  auto bus = open_patiently<Protocol>(port, speed);
+  for (std::size_t i = 0; i < backup.servos.size(); ++i) {
+    const ServoBackup& saved = backup.servos[i];
+    const std::uint8_t ids[] = {saved.new_id, saved.id};
+    for (const std::uint8_t id : std::span(ids).first(saved.new_id == saved.id ? 1 : 2)) {
+      constexpr double glance_s = 0;  // it may well be elsewhere
+      const ServoModel* model = done[i] ? nullptr : model_of(bus, id, glance_s);
+      if (model == nullptr || model->model_number != saved.model_number) continue;
+      restore_servo(bus, *model, id, saved, speed != backup.bits_per_s);
+      done[i] = true;
+    }
+  }
+}
+
+}  // namespace change_detail
+
 /// Puts all settings back, wherever the servos are: before the change, after it, or between. Throws BusError, naming
 /// the servo, where one is not found or does not take a setting.
 template <class Protocol>
 void restore_settings(const std::string& port, const SettingsBackup& backup) {
   using namespace change_detail;
   std::vector<bool> done(backup.servos.size());
-  for (const std::uint32_t speed : {backup.new_bits_per_s, backup.bits_per_s}) {
-    auto bus = open_patiently<Protocol>(port, speed);
-    for (std::size_t i = 0; i < backup.servos.size(); ++i) {
-      const ServoBackup& saved = backup.servos[i];
-      for (const std::uint8_t id : {saved.new_id, saved.id}) {
-        const ServoModel* model = done[i] ? nullptr : model_of(bus, id);
-        if (model == nullptr || model->model_number != saved.model_number) continue;
-        ServoSettings<PatientBus<Protocol>> servo(bus, *model, id);
-        servo.torque_off();
-        std::uint32_t baud_rate = 0;
-        for (const auto& [name, counts] : saved.registers) {
-          if (name == "baud_rate") baud_rate = counts;
-          if (name != "id" && name != "baud_rate") servo.write(name, counts);
-        }
-        if (id != saved.id) send_away(bus, servo, "id", saved.id);
-        ServoSettings<PatientBus<Protocol>> back(bus, known_model(bus, saved.id), saved.id);
-        if (speed != backup.bits_per_s) send_away(bus, back, "baud_rate", baud_rate);
-        done[i] = true;
-      }
-    }
+  constexpr int passes = 3;  // over both speeds: answers may be lost
+  for (int pass = 0; pass < passes && std::ranges::find(done, false) != done.end(); ++pass) {
+    restore_at<Protocol>(port, backup.new_bits_per_s, backup, done);
+    if (backup.bits_per_s != backup.new_bits_per_s) restore_at<Protocol>(port, backup.bits_per_s, backup, done);
   }
   auto bus = open_patiently<Protocol>(port, backup.bits_per_s);
   for (const ServoBackup& saved : backup.servos) {

@@ -21,11 +21,11 @@ struct ServoLine {
 template <class Protocol>
 using PatientBus = Bus<Protocol, SerialPort>;
 
-/// Waits for the slowest servo behind the slowest adapter.
+/// Waits for the slowest servo behind the slowest adapter, and believes no answer that a computer's pause made late.
 template <class Protocol>
 PatientBus<Protocol> open_patiently(const std::string& port, std::uint32_t bits_per_s) {
   return PatientBus<Protocol>(SerialPort(port, bits_per_s),
-                              {.return_delay_s = 508e-6, .latency_s = 0.02, .memory_s = 2e-3, .retries = 2});
+                              {.return_delay_s = 508e-6, .latency_s = 0.02, .memory_s = 0.5, .retries = 2});
 }
 
 /// Calls work(Protocol()) with the protocol of that number.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../bus/bus.hpp"
+#include "../bus/keep_trying.hpp"
 #include "../dynamixel/servo_models.hpp"
 
 namespace dynamixel {
@@ -26,6 +27,12 @@ inline bool is_setting(const Register& r) {
   return !r.name.starts_with("goal_") && !r.name.starts_with("external_port_data");
 }
 
+/// For which an answer is waited for: nothing is moving, so that a computer may stand still for a while [s].
+inline constexpr double patience_s = 1;
+
+/// Bytes that may be read of any servo: no control table is shorter than that of the AX-12, 50 bytes.
+inline constexpr std::uint16_t every_table = 50;
+
 /// In the way of a servo that is only being set up: slow, but sure.
 template <class ServoBus>
 class ServoSettings {
@@ -41,9 +48,8 @@ class ServoSettings {
   /// Throws BusError where the servo does not tell.
   std::uint32_t read(const Register& r) {
     std::array<std::uint8_t, 4> bytes{};
-    for (int i = 0; i < tries; ++i) {
-      if (bus_->read(id_, r.address, Buffer(bytes).first(r.size))) return bits_in(bytes, r.address, r);
-    }
+    const auto told = [&] { return bool(bus_->read(id_, r.address, Buffer(bytes).first(r.size))); };
+    if (keep_trying(*bus_, patience_s, told)) return bits_in(bytes, r.address, r);
     fail("does not tell its " + std::string(r.name));
   }
 
@@ -59,7 +65,7 @@ class ServoSettings {
   void write(std::string_view name, std::uint32_t counts) {
     const Register& r = at(name);
     if (r.access == Access::read_only) fail("only tells its " + std::string(name) + ", which cannot be set");
-    for (int i = 0; i < tries; ++i) {
+    for (int i = 0; i < least_tries; ++i) {
       send(r, counts);
       if (read(r) == counts) return;
     }
@@ -87,29 +93,25 @@ class ServoSettings {
   }
 
  private:
-  static constexpr int tries = 5;  // one answer in fifty may be lost, and more must not be
-
   ServoBus* bus_;
   const ServoModel* model_;
   std::uint8_t id_;
 };
 
-/// The model of the servo with that id; none where nobody answers. Throws BusError for one that is not known.
+/// The model of the servo with that id; none where nobody answers for that long [s]. Throws BusError for one that is
+/// not known.
 template <class ServoBus>
-const ServoModel* model_of(ServoBus& bus, std::uint8_t id) {
-  bus.set_table_end(1);  // nothing is known of its table
+const ServoModel* model_of(ServoBus& bus, std::uint8_t id, double wait_s = patience_s) {
+  bus.set_table_end(every_table);
   std::array<std::uint8_t, 2> bytes{};
-  for (int i = 0; i < 3; ++i) {
-    if (!bus.read(id, 0, bytes)) continue;
-    const unsigned number = bytes[0] + 256U * bytes[1];
-    const ServoModel* model = find_model(number);
-    if (model == nullptr) {
-      throw BusError("servo " + std::to_string(id) + " has the model number " + std::to_string(number) +
-                     ", which is not known here");
-    }
-    return model;
+  if (!keep_trying(bus, wait_s, [&] { return bool(bus.read(id, 0, bytes)); })) return nullptr;
+  const unsigned number = bytes[0] + 256U * bytes[1];
+  const ServoModel* model = find_model(number);
+  if (model == nullptr) {
+    throw BusError("servo " + std::to_string(id) + " has the model number " + std::to_string(number) +
+                   ", which is not known here");
   }
-  return nullptr;
+  return model;
 }
 
 }  // namespace dynamixel
