@@ -170,14 +170,14 @@ class Chain {
     const double kp = soft * random_.uniform(0.6, 1.6) * s_.mass * std::pow(s_.frequency, 2) / top;
     machine_.inputs.push_back({words_.command, words_.command + (s_.turns ? "_rad" : "_m"), s_.length_unit, 0});
     draft_.middle.push_back(0), draft_.swing.push_back(s_.amplitude);
-    std::string duty = "kp*" + error;
+    std::string duty = "gain*" + error;
     const double spread = random_.chance(0.4) ? 2 : 1;
     if (own && random_.chance(0.5)) {
       duty = switching(error);
       title_ += ", on/off control";
     } else {
-      machine_.constants.push_back({"kp", 0, "kp"});
-      draft_.metas.push_back({"kp", {three_digits(kp), three_digits(kp / spread)}});
+      machine_.constants.push_back({"gain", 0, "gain"});
+      draft_.metas.push_back({"gain", {three_digits(kp), three_digits(kp / spread)}});
       if (own) integral(kp, error, duty);
       if (random_.chance(0.5)) {
         machine_.constants.push_back({"kd", three_digits(kp * 2 * random_.uniform(0.1, 0.4) / s_.frequency)});

@@ -58,6 +58,14 @@ TEST_CASE("noise has no structure, even if it is correlated from row to row") {
   }
 }
 
+TEST_CASE("the typical size of residuals is that of the median recording, not of one that is far off") {
+  Remains r = remains(0, 0, 5);
+  r.runs[2].outputs.array() += 1;
+  const WhitenessTest one = structure_of(r);
+  CHECK(one.rms == doctest::Approx(0.5).epsilon(0.01));
+  CHECK(one.typical == doctest::Approx(0.01).epsilon(0.1));
+}
+
 TEST_CASE("a slow error has structure, and the share of it is told") {
   for (const double sine : {0.005, 0.01, 0.05}) {
     const double truth = 0.5 * sine * sine / (0.5 * sine * sine + 1e-4);

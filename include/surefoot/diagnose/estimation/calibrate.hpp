@@ -26,8 +26,9 @@ Fit scattered_fit(const BoundSimulator& bound, Fit best, const Hypothesis& aroun
 std::vector<double> recording_scales(const BoundSimulator& bound, const FitProblem& problem,
                                      const std::vector<SimulatedRun>& trajectories);
 
-/// Global start: Latin-hypercube points over the bounds beside the nominal one; the best few are fitted, the best of
-/// those kept. Then twice more with each output and each recording weighted by what is left of it.
+/// Global start: from the nominal parameters, at once and with a growing horizon, and from Latin-hypercube points over
+/// the bounds, of which the best few are fitted; the best of all is kept. Then twice more with each output and each
+/// recording weighted by what is left of it.
 Fit calibrate(const BoundSimulator& bound, const Hypothesis& nominal, FitProblem& problem, std::size_t points,
               std::uint64_t seed, const Parallel& parallel);
 

@@ -18,6 +18,7 @@ struct WhitenessTest {
   double share = 0;    // of the mean square that is still correlated after the noise has forgotten itself
   double p_value = 1;  // one-sided, that there is none
   double rms = 0;      // of the residuals, in the unit of the output
+  double typical = 0;  // the same of the median recording: what is off in a few is not everywhere
 };
 
 /// Residuals of one output in one recording; what was not measured is 0.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -47,25 +48,39 @@ SUREFOOT_INLINE double chi_square_tail(double value, double mean, double varianc
   return normal_tail(chi_square_score(value, mean, variance));
 }
 
+/// Sum of the squares of what was measured, and its count.
+SUREFOOT_INLINE std::pair<double, double> squares_of(const Eigen::VectorXd& series) {
+  double sum = 0, count = 0;
+  for (const double value : series) {
+    if (value == 0 || !std::isfinite(value)) continue;
+    sum += value * value;
+    ++count;
+  }
+  return {sum, count};
+}
+
 SUREFOOT_INLINE WhitenessTest test_whiteness(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
                                              const std::vector<SimulatedRun>& trajectories, Eigen::Index output,
                                              Eigen::Index from, Eigen::Index to) {
   constexpr int draws = 40;
   WhitenessTest result;
   std::vector<Eigen::VectorXd> all;
+  std::vector<double> each;  // mean squares of recordings
   double sum = 0, count = 0;
   Eigen::Index longest = 0;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     all.push_back(series_of(bound, recordings[i], trajectories[i], output));
     longest = std::max(longest, all.back().size());
-    for (const double value : all.back()) {
-      if (value == 0 || !std::isfinite(value)) continue;
-      sum += value * value;
-      ++count;
-    }
+    const auto [squares, measured] = squares_of(all.back());
+    if (measured > 0) each.push_back(squares / measured);
+    sum += squares;
+    count += measured;
   }
   if (count < 1) return result;
   result.rms = std::sqrt(sum / count);
+  const auto middle = each.begin() + static_cast<std::ptrdiff_t>(each.size() / 2);
+  std::ranges::nth_element(each, middle);
+  result.typical = std::sqrt(*middle);
   to = std::min(to, longest / 4);
   if (to < from || longest < 6 * from) return result;
   double squares = 0;

@@ -14,6 +14,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
+#include "surefoot/diagnose/estimation/growing_horizon.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/restarts.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
@@ -164,8 +165,9 @@ SUREFOOT_INLINE void refit_best(const Search& search, std::vector<EvaluatedHypot
        best_structures(pool, problem.effort.restarted, none_is_hopeless, problem.criteria)) {
     if (problem.stopped() || !problem.structured(one.hypothesis, problem.fit.integration)) continue;
     const Fit fitted{one.hypothesis, one.loss, true};
-    const Fit again =
+    Fit again =
         restarted_fit(search.bound, fitted, problem.fit, quick, problem.effort.restarts, restart_seed, search.parallel);
+    again = grown_fit(search.bound, again, again.hypothesis, problem.fit, search.parallel);
     if (!(again.loss < fitted.loss)) continue;
     keep_best_form(pool, evaluate_fit(search.bound, again, problem, search.parallel), problem.criteria);
   }

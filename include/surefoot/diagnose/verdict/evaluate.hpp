@@ -38,8 +38,9 @@ double corrected_error(const EstimationSetup& setup, const FittedModel& model, c
 ForestResidual offer_forest(const EstimationSetup& setup, const FittedModel& chosen, double held_out_before,
                             const Parallel& parallel, std::uint64_t seed, const EvaluationCriteria& criteria = {});
 
-/// Standard deviation of the noise of one output: as stated; or, where it is not, the part of the `residuals` that no
-/// lag predicts, and at least what differs from row to row. Never more than the `error` of the model.
+/// Standard deviation of the noise of one output: as stated; or, where it is not, the part of the `residuals` of
+/// the median recording that no lag predicts, and at least what differs from row to row. Never more than the `error` of
+/// the model.
 double output_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings, Eigen::Index output,
                     const WhitenessTest& residuals, double error);
 

@@ -52,7 +52,8 @@ SUREFOOT_INLINE double corrected_error(const EstimationSetup& setup, const Fitte
                                        std::uint64_t seed) {
   const auto& [training, held_out, folds, cross_fitted] = setup.split;
   std::vector<SimulatedRun> runs(held_out.size());
-  const auto correct = [&](const std::vector<std::size_t>& learned_from, const std::vector<std::size_t>& corrected_ones) {
+  const auto correct = [&](const std::vector<std::size_t>& learned_from,
+                           const std::vector<std::size_t>& corrected_ones) {
     std::vector<SimulatedRun> learned;
     for (const std::size_t r : learned_from) {
       const auto place = std::ranges::find(training, r) - training.begin();
@@ -101,7 +102,7 @@ SUREFOOT_INLINE double output_noise(const BoundSimulator& bound, const std::vect
   const double stated = bound.info.outputs[static_cast<std::size_t>(output)].noise;
   if (stated > 0) return stated;
   const double structured = residuals.p_value < significance ? std::min(1.0, residuals.share) : 0;
-  const double unpredictable = residuals.rms * std::sqrt(1 - structured);
+  const double unpredictable = residuals.typical * std::sqrt(1 - structured);
   return std::min(std::max(fast_noise(bound, recordings, output), unpredictable), error);
 }
 
@@ -174,10 +175,9 @@ SUREFOOT_INLINE void keep_curves(const EstimationSetup& setup, const FittedModel
   for (std::size_t n = 0; n < std::min(most, held_out.size()); ++n) {
     const std::size_t i = held_out.size() <= most ? n : n * held_out.size() / most;
     const Recording& one = setup.bound.recordings[held_out[i]];
-    diagnosis.curves.push_back({one.name, one.time, one.inputs, one.outputs,
-                                models.nominal.runs.whole_held_out[i].outputs,
-                                models.calibrated.runs.whole_held_out[i].outputs,
-                                models.chosen.runs.whole_held_out[i].outputs});
+    diagnosis.curves.push_back(
+        {one.name, one.time, one.inputs, one.outputs, models.nominal.runs.whole_held_out[i].outputs,
+         models.calibrated.runs.whole_held_out[i].outputs, models.chosen.runs.whole_held_out[i].outputs});
   }
 }
 

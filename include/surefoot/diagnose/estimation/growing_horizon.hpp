@@ -1,0 +1,24 @@
+// A fit to the beginnings of the recordings first, then to twice as much of them, and so on. Over a short horizon the
+// error has few valleys; over a long one, a pendulum with a wrong length is out of step, and the error has a valley for
+// each swing that it may be ahead or behind (Bock, "Recent advances in parameter identification techniques for ODE",
+// 1983, has multiple shooting for the same reason).
+#pragma once
+
+#include <vector>
+
+#include "surefoot/diagnose/estimation/fit.hpp"
+
+namespace surefoot::diagnosis {
+
+/// The same simulator over the first `share` (0 to 1) of the rows of each recording, two at least.
+BoundSimulator beginnings(const BoundSimulator& bound, double share);
+
+/// `best`, or a clearly better fit that is reached from `start` on with a growing horizon. Costs less than two fits.
+Fit grown_fit(const BoundSimulator& bound, Fit best, const Hypothesis& start, const FitProblem& problem,
+              const Parallel& parallel);
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/estimation/growing_horizon.ipp"
+#endif
