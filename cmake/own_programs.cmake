@@ -20,6 +20,8 @@ function(surefoot_unity target files)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${SUREFOOT_UNITY} UNITY_BUILD_BATCH_SIZE ${files})
 endfunction()
 
+surefoot_unity(surefoot_compiled 3)  # a user's build has the files one by one, for small computers
+
 if(SUREFOOT_TIDY)
   find_program(SUREFOOT_CLANG_TIDY NAMES clang-tidy-19 clang-tidy)
   if(SUREFOOT_CLANG_TIDY)

@@ -1,7 +1,6 @@
 #include "surefoot/forest/export_c.hpp"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -19,16 +18,10 @@
 #include "surefoot/forest/extra_trees.hpp"
 #include "surefoot/solve/agreement.hpp"
 #include "tests/forest/samples.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace surefoot {
 namespace {
-
-struct Folder {  // a scratch folder of this test, removed at its end
-  std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("surefoot_export_c_test_" + std::to_string(::getpid()));
-  Folder() { std::filesystem::create_directories(path); }
-  ~Folder() { std::filesystem::remove_all(path); }
-};
 
 bool have_c_compiler() {
   static const bool found = std::system("cc --version > /dev/null 2>&1") == 0;
@@ -41,7 +34,7 @@ bool have_c_compiler() {
 std::vector<double> run_c(const std::string& code, const std::string& name, const std::vector<double>& inputs,
                           std::size_t width_in, std::size_t width_out, const std::string& whole = "",
                           const std::string& flags = "") {
-  const Folder folder;
+  const toy::ScratchFolder folder("export_c_test");
   const std::string in = std::to_string(width_in);
   const std::string out = std::to_string(width_out);
   write_file_atomically(folder.path / "forest.c", code);

@@ -1,7 +1,6 @@
 #include "surefoot/forest/serialize.hpp"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,16 +16,10 @@
 #include "surefoot/forest/export_c.hpp"
 #include "surefoot/forest/extra_trees.hpp"
 #include "tests/forest/samples.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace surefoot {
 namespace {
-
-struct Folder {  // a scratch folder of this test, removed at its end
-  std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("surefoot_serialize_test_" + std::to_string(::getpid()));
-  Folder() { std::filesystem::create_directories(path); }
-  ~Folder() { std::filesystem::remove_all(path); }
-};
 
 template <LeafModel Leaf>
 using Laws = Forest<4, 2, Leaf>;
@@ -81,7 +74,7 @@ TEST_CASE_TEMPLATE("a saved forest is loaded as it was", F, Forest<5, 1>, Forest
     }
   };
   const F forest = train();
-  const Folder folder;
+  const toy::ScratchFolder folder("serialize_test");
   save(forest, folder.path / "forest.bin");
   CHECK(load<F>(folder.path / "forest.bin") == forest);
 
@@ -299,7 +292,7 @@ TEST_CASE("nodes that lead astray are refused") {
 }
 
 TEST_CASE("a file of another kind is refused with its name and what was expected") {
-  const Folder folder;
+  const toy::ScratchFolder folder("serialize_test");
   const auto path = folder.path / "forest.bin";
   save(small_forest<ConstantLeaf>(), path);
   CHECK_THROWS_WITH_AS((load<Forest<5, 2>>(path)), doctest::Contains("inputs: 4, expected 5"), ForestError);
