@@ -9,6 +9,6 @@ require_packages "${build_packages[@]}" doctest-dev gnuplot-nox libmujoco-dev pk
 
 build=${SUREFOOT_BUILD_DIR:-build/dev}
 # Line numbers are for debuggers, and tests wait for servos and processes now and then: one more at a time than cores.
-cmake --preset dev -B "$build" -D CMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -D SUREFOOT_TESTS=ON -D SUREFOOT_EXAMPLES=ON -D SUREFOOT_BENCHMARKS=OFF
+cmake --preset dev -B "$build" -D CMAKE_CXX_FLAGS_RELWITHDEBINFO=-Og -D SUREFOOT_TESTS=ON -D SUREFOOT_EXAMPLES=ON -D SUREFOOT_BENCHMARKS=OFF
 cmake --build "$build"
 ctest --test-dir "$build" --output-on-failure -j $(($(nproc) + 1)) "$@"

@@ -12,13 +12,14 @@ line or as several:
 
 | language | without a comment | keys |
 | --- | --- | --- |
-| sh | run in a scratch folder that looks like the repository; all blocks of a page share one | quick, first, then, needs, by |
+| sh | run in a scratch folder that looks like the repository; all blocks of a page share one | quick, first, then, needs, tries, by |
 | cpp, c | compiled as the body of a function | code (the lines after it; "@" is where the block goes), needs |
 | toml, json, csv, text | not allowed | file (written to that name beside the shell blocks), then (a command that reads it); or prints |
 | cmake | not allowed | project (configured against the installed package), by |
 
 quick: s/OLD/NEW/, what the test shortens; first, then: commands before and after; needs: programs or packages without
-which the block is skipped; by: CTest cases that run the same, or a workflow of CI that has each line as a step;
+which the block is skipped; tries: how often it may be run, for programs that keep time with each other on a computer that
+stalls now and then; by: CTest cases that run the same, or a workflow of CI that has each line as a step;
 prints: the program whose output this is ("..." stands for lines left out).
 """
 
@@ -32,7 +33,7 @@ RULE = re.compile(r"<!-- test(?::(?P<line>.*?)|\n(?P<lines>.*?))-->\s*\Z", re.S)
 QUOTE = re.compile(r"<!-- \[quote(?:: [^\]]+)?\]\((?:\.\./)*(?P<file>[^)#]+)\) -->\s*\Z")
 SEVERAL = ("quick", "first", "then")
 KEYS = {
-    "sh": {"quick", "first", "then", "needs", "by"},
+    "sh": {"quick", "first", "then", "needs", "tries", "by"},
     "cpp": {"code", "needs"},
     "c": {"code"},
     "cmake": {"project", "by", "needs"},

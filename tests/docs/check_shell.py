@@ -80,6 +80,19 @@ def run(block, folder):
         return failed and failed + ":\n" + "\n".join(told.read().splitlines()[-SHOWN:])
 
 
+def attempt(block, folder):
+    """Runs it as often as its rule allows until it succeeds; what is wrong with the last run."""
+    for _ in range(int(block.rule.get("tries", 1))):
+        before = os.times()
+        fault = run(block, folder)
+        after = os.times()
+        cpu_s = after.children_user - before.children_user
+        print(f"{after.elapsed - before.elapsed:6.1f} s {cpu_s:6.1f} CPU s  {block.where}{' failed' if fault else ''}", flush=True)
+        if not fault:
+            break
+    return fault
+
+
 @functools.cache
 def help_of(*command):
     done = subprocess.run([*command, "--help"], capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=20)
@@ -132,10 +145,7 @@ def main():
             continue
         if script_of(block).strip():
             count += 1
-            before = os.times()
-            fault = run(block, folder)
-            after = os.times()
-            print(f"{after.elapsed - before.elapsed:6.1f} s {after.children_user - before.children_user:6.1f} CPU s  {block.where}", flush=True)
+            fault = attempt(block, folder)
             if fault:
                 faults.append(f"{block.where}: {fault}")
     print(f"{count} blocks run")
