@@ -11,7 +11,7 @@
 #include "../common/files.hpp"
 #include "commands.hpp"
 #include "compare_report.hpp"
-#include "motion_file.hpp"
+#include "motion_file/motion_file.hpp"
 #include "sequence_options.hpp"
 #include "surefoot/motion/one_sided_correction.hpp"
 #include "surefoot/motion/walk_changes.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "load_sequences.hpp"
-#include "motion_file.hpp"
+#include "motion_file/motion_file.hpp"
 
 namespace calibrate_program {
 

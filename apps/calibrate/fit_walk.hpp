@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "motion_file.hpp"
+#include "motion_file/motion_file.hpp"
 #include "stoppable.hpp"
 #include "surefoot/motion/calibrate.hpp"
 #include "surefoot/motion/compare.hpp"

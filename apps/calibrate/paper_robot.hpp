@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <numbers>
 
-#include "motion_file.hpp"
+#include "motion_file/motion_file.hpp"
 
 namespace calibrate_program {
 

@@ -8,7 +8,7 @@
 
 #include "../common/files.hpp"
 #include "commands.hpp"
-#include "motion_file.hpp"
+#include "motion_file/motion_file.hpp"
 #include "sequence_options.hpp"
 #include "surefoot/motion/monitor.hpp"
 

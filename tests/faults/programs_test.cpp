@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/common/files.hpp"
-#include "apps/calibrate/motion_file.hpp"
+#include "apps/calibrate/motion_file/motion_file.hpp"
 #include "surefoot/core/binary.hpp"
 #include "tests/faults/child.hpp"
 

@@ -207,6 +207,9 @@ struct ApproachWith {
 /// The problem as published.
 using Approach = ApproachWith<>;
 
+/// "ha" or "anha".
+inline Approach problem_named(const std::string& name) { return name == "ha" ? Approach::ha() : Approach::anha(); }
+
 static_assert(surefoot::Problem<Approach>);
 static_assert(surefoot::HasFeatures<Approach>);
 

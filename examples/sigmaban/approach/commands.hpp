@@ -34,6 +34,4 @@ inline void add_threads_option(CLI::App& command, std::size_t& threads) {
       ->capture_default_str();
 }
 
-inline Approach problem_named(const std::string& name) { return name == "ha" ? Approach::ha() : Approach::anha(); }
-
 }  // namespace sigmaban

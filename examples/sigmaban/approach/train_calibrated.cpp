@@ -1,5 +1,5 @@
 // Training with the calibrated walk.
-#include "train.hpp"
+#include "train_problem.hpp"
 
 namespace sigmaban {
 

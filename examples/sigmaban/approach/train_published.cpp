@@ -1,5 +1,5 @@
 // Training with the published walk.
-#include "train.hpp"
+#include "train_problem.hpp"
 
 namespace sigmaban {
 

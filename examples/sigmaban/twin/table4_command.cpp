@@ -12,8 +12,10 @@
 
 #include "../../../apps/calibrate/stoppable.hpp"
 #include "../../../apps/common/files.hpp"
+#include "../../../apps/common/usage_error.hpp"
 #include "../approach/any_policy.hpp"
 #include "../approach/motion.hpp"
+#include "../approach/results.hpp"
 #include "../robot/policy_option.hpp"
 #include "commands.hpp"
 #include "progress_line.hpp"
@@ -24,6 +26,7 @@ namespace sigmaban {
 namespace {
 
 using calibrate_program::StoppableThreads;
+using example::UsageError;
 
 struct Table4Options {
   Table4Work work;

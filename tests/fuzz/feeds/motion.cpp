@@ -1,5 +1,5 @@
 // A calibrated walk that was read is written as it was.
-#include "apps/calibrate/motion_file.hpp"
+#include "apps/calibrate/motion_file/motion_file.hpp"
 #include "tests/fuzz/accepted.hpp"
 #include "tests/fuzz/feeds.hpp"
 #include "tests/fuzz/text_of.hpp"
