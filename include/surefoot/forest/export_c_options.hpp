@@ -10,7 +10,7 @@ namespace surefoot {
 
 /// How a C file spells its tables of numbers.
 enum class CTable {
-  integers,  // hexadecimal integers of 64 bits: no decoding, fastest
+  integers,  // hexadecimal integers: no decoding, fastest
   text,      // five characters per number in string literals: half the source, decoded at every use
 };
 
@@ -23,7 +23,7 @@ enum class CThreshold {
 
 /// How a C file finds a leaf.
 enum class CDescent {
-  tables,    // a loop over tables: small
+  tables,    // a loop over tables, four trees at a time: small, and about as fast as the library
   branches,  // nested ifs: fast for trees that fit into the caches, at most 120 levels deep
 };
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/forest/trees.hpp"
 #include "surefoot/forest/export_c_options.hpp"
+#include "surefoot/forest/trees.hpp"
 
 namespace surefoot::detail {
 
@@ -88,11 +88,8 @@ inline std::string c_numbers(const std::vector<std::uint32_t>& numbers, CTable t
                            "_number(uint32_t i) {\n"
                            "  union { uint32_t bits; float value; } n;\n";
   if (table == CTable::integers) {
-    std::vector<unsigned long long> pairs((numbers.size() + 1) / 2, 0);
-    for (std::size_t i = 0; i < numbers.size(); ++i) pairs[i / 2] |= std::uint64_t{numbers[i]} << (i % 2 * 32);
-    return "static const uint64_t " + name +
-           "_numbers[] = " + c_list(std::span<const unsigned long long>(pairs), "0x%llx") + ";\n\n" + head +
-           "  n.bits = (uint32_t)(" + name + "_numbers[i / 2] >> (i % 2 * 32));\n  return n.value;\n}\n";
+    return "static const uint32_t " + name + "_numbers[] = " + c_list(std::span<const std::uint32_t>(numbers), "0x%x") +
+           ";\n\n" + head + "  n.bits = " + name + "_numbers[i];\n  return n.value;\n}\n";
   }
   // Base 85, most significant digit first; '"', '\' and '?' are left out. C99 promises 4095 characters per literal.
   constexpr std::size_t row = 800;

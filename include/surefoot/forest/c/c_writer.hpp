@@ -14,6 +14,7 @@
 #include "surefoot/forest/c/c_agreement.hpp"
 #include "surefoot/forest/c/c_branches.hpp"
 #include "surefoot/forest/c/c_fixed_point.hpp"
+#include "surefoot/forest/c/c_nodes.hpp"
 #include "surefoot/forest/c/c_tables.hpp"
 #include "surefoot/forest/export_c_options.hpp"
 #include "surefoot/forest/trees.hpp"
@@ -44,6 +45,7 @@ class CWriter {
               std::to_string(trees.leaves) + " leaves of kind " + std::to_string(leaf_tag) +
               ". Written by surefoot. */\n"),
         width_(static_cast<std::uint32_t>(trees.inputs)),
+        from_(trees),
         tables_(trees) {
     if (options.thresholds != CThreshold::float32) {
       whole_ = options.thresholds == CThreshold::int16 ? "int16_t" : "int32_t";
@@ -84,30 +86,36 @@ class CWriter {
   }
 
   std::string node_tables() const {
-    std::vector<std::uint32_t> nodes;
-    for (std::size_t i = 0; i < tables_.left.size(); ++i) {
-      nodes.push_back(tables_.left[i] * width_ + static_cast<std::uint32_t>(tables_.inputs[i]));
-    }
-    const std::uint32_t widest = nodes.empty() ? 0 : *std::max_element(nodes.begin(), nodes.end());
-    const std::string type = widest < 0x100U ? "uint8_t" : widest < 0x10000U ? "uint16_t" : "uint32_t";
-    std::string code =
-        "/* inner nodes of each tree */\n"
-        "static const uint32_t " +
-        name_ + "_trees[] = " + c_list(std::span(tables_.trees), "%u") + ";\n\n" +
-        "/* of each inner node, depth first: (inner nodes below its left child) * inputs + its input */\n" +
-        "static const " + type + " " + name_ + "_nodes[] = " + c_list(std::span<const std::uint32_t>(nodes), "%u") +
-        ";\n\n";
+    const CNodes nodes(from_);
+    std::string code = "/* root of each tree */\nstatic const uint32_t " + name_ +
+                       "_roots[] = " + c_list(std::span(nodes.roots), "%u") + ";\n\n" +
+                       "/* of each node: (nodes to its left child, of a leaf its number) << " +
+                       std::to_string(nodes.input_bits) + " | its input, of a leaf " + inputs_ + " */\nstatic const " +
+                       nodes.word_type() + " " + name_ +
+                       "_nodes[] = " + c_list(std::span<const std::uint32_t>(nodes.words), "%u") + ";\n\n";
     std::vector<std::uint32_t> numbers;
     if (whole_.empty()) {
-      for (const float threshold : tables_.thresholds) numbers.push_back(std::bit_cast<std::uint32_t>(threshold));
-      code += "/* floats: the threshold of each inner node, then the numbers of each leaf */\n";
+      for (const float threshold : nodes.thresholds) numbers.push_back(std::bit_cast<std::uint32_t>(threshold));
+      code += "/* floats: the threshold of each node, then the numbers of each leaf */\n";
     } else {
+      std::vector<std::int32_t> fixed;
+      for (std::size_t i = 0; i < nodes.words.size(); ++i) {
+        const std::uint32_t input = nodes.input(i);
+        fixed.push_back(input < width_ ? c_fixed(nodes.thresholds[i], scales_[input]) : 0);
+      }
       code += "static const " + whole_ + " " + name_ +
-              "_thresholds[] = " + c_list(std::span<const std::int32_t>(fixed_), "%d") + ";\n\n" +
+              "_thresholds[] = " + c_list(std::span<const std::int32_t>(fixed), "%d") + ";\n\n" +
               "/* floats: the numbers of each leaf */\n";
     }
-    numbers.insert(numbers.end(), tables_.numbers.begin(), tables_.numbers.end());
-    return code + c_numbers(numbers, options_.table, name_) + "\n";
+    for (const std::uint32_t payload : nodes.payloads) {
+      if (from_.inline_leaves()) numbers.push_back(payload);
+      const std::size_t count = from_.inline_leaves() ? 0 : from_.leaf_parameters;
+      const float* row = from_.parameters.data() + payload * count;
+      for (std::size_t k = 0; k < count; ++k) numbers.push_back(std::bit_cast<std::uint32_t>(row[k]));
+    }
+    return code + c_numbers(numbers, options_.table, name_) + "\n" +
+           nodes.descent(name_, whole_.empty() ? "float" : whole_, from_.inputs,
+                         name_ + (whole_.empty() ? "_number(n)" : "_thresholds[n]"));
   }
 
   std::string branches() const {
@@ -130,10 +138,15 @@ class CWriter {
     const std::string as_float = whole_.empty() ? "(float)in[k]" : "(float)(in[k] / " + name_ + "_scales[k])";
     std::string code = options_.wrapper.empty() ? head + ";\n" + head : "static " + head;
     code += " {\n#define number(i) " + name_ + "_number(i)\n";
-    if (needs_x) code += "  float x[" + inputs_ + "];\n";
-    code += "  uint32_t tree, o" + std::string(leaf_code_.find('k') != std::string::npos || needs_x ? ", k" : "");
-    code += options_.descent == CDescent::tables ? ", first = 0, first_leaf = 0;\n" : ";\n";
-    if (needs_x) code += "  for (k = 0; k < " + inputs_ + "; ++k) x[k] = " + as_float + ";\n";
+    const bool tables = options_.descent == CDescent::tables;
+    if (needs_x) code += "  float x[" + inputs_ + " + 1];\n";
+    if (tables && !whole_.empty()) code += "  " + whole_ + " keys[" + inputs_ + " + 1];\n";
+    code += std::string("  uint32_t tree, o, k") + (tables ? ", at[4];\n" : ";\n");
+    code += "  for (k = 0; k < " + inputs_ + "; ++k) {\n";
+    if (needs_x) code += "    x[k] = " + as_float + ";\n";
+    if (tables && !whole_.empty()) code += "    keys[k] = in[k];\n";
+    code += "  }\n";
+    if (tables) code += std::string("  ") + (whole_.empty() ? "x" : "keys") + "[" + inputs_ + "] = 0;\n";
     const bool agreeing = !options_.agreement.empty();
     if (agreeing) code += "  double proposals[" + trees_ + " * " + outputs_ + "] = {0};\n";
     code += "  for (o = 0; o < " + outputs_ + "; ++o) out[o] = 0;\n" + "  for (tree = 0; tree < " + trees_ +
@@ -157,15 +170,11 @@ class CWriter {
   }
 
   std::string table_descent() const {
-    const std::string threshold = whole_.empty() ? "number(node)" : name_ + "_thresholds[node]";
-    return "    uint32_t node = first, leaf = first_leaf, rest = " + name_ + "_trees[tree], p;\n" +
-           "    first += rest;\n" + "    first_leaf += rest + 1;\n" + "    while (rest != 0) {\n" +
-           "      const uint32_t left = " + name_ + "_nodes[node] / " + inputs_ + ";\n" + "      if (" +
-           (whole_.empty() ? "x" : "in") + "[" + name_ + "_nodes[node] % " + inputs_ + "] > " + threshold + ") {\n" +
-           "        node += left + 1;\n" + "        leaf += left + 1;\n" + "        rest -= left + 1;\n" +
-           "      } else {\n" + "        node += 1;\n" + "        rest = left;\n" + "      }\n" + "    }\n" +
-           "    p = " + (numbers_hold_thresholds() ? std::to_string(tables_.left.size()) + " + " : std::string()) +
-           "leaf * " + leaf_parameters_ + ";\n";
+    const CNodes nodes(from_);
+    return "    uint32_t p;\n    if (tree % 4 == 0) " + name_ + "_leaves(" + (whole_.empty() ? "x" : "keys") +
+           ", tree, " + trees_ + " - tree, at);\n    p = " +
+           (numbers_hold_thresholds() ? std::to_string(nodes.words.size()) + " + " : std::string()) + "(uint32_t)(" +
+           name_ + "_nodes[at[tree % 4]] >> " + std::to_string(nodes.input_bits) + ") * " + leaf_parameters_ + ";\n";
   }
 
   std::string branch_descent() const {
@@ -176,6 +185,7 @@ class CWriter {
   const ExportCOptions& options_;
   std::string name_, inputs_, outputs_, trees_, leaf_code_, leaf_parameters_, head_;
   std::uint32_t width_;  // number of inputs
+  const Trees& from_;
   CTables tables_;
   std::string whole_;  // the C type of inputs that are whole numbers, or empty
   std::vector<double> scales_;
