@@ -38,6 +38,9 @@ struct ExportCOptions {
   CThreshold thresholds = CThreshold::float32;
   std::vector<double> largest_inputs = {};  // whole numbers: sizes up to which inputs are told apart; empty: up to the
                                             // thresholds' (linear leaves may need more)
+  bool whole_outputs = false;  // with whole thresholds and tables, constant and clamped linear leaves: no floating
+                               // point at all, void FUNCTION(const intN_t in[inputs], int32_t out[outputs]), and double
+                               // FUNCTION_output(int output, int32_t value) that says what `out` means
   std::vector<double> agreement =
       {};  // per output: trees that differ by more are of different opinions, and the output
            // is the mean of the largest group around the medoid; empty: the mean of all

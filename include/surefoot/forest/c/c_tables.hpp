@@ -82,11 +82,13 @@ std::string c_list(std::span<const Number> items, const char* format) {
   return list;
 }
 
-/// The table of numbers and `static float number(uint32_t i)` to read it.
-inline std::string c_numbers(const std::vector<std::uint32_t>& numbers, CTable table, const std::string& name) {
-  const std::string head = "static float " + name +
+/// The table of numbers, given by their bits, and `static TYPE number(uint32_t i)` to read it.
+inline std::string c_numbers(const std::vector<std::uint32_t>& numbers, CTable table, const std::string& name,
+                             const std::string& type = "float") {
+  const std::string head = "static " + type + " " + name +
                            "_number(uint32_t i) {\n"
-                           "  union { uint32_t bits; float value; } n;\n";
+                           "  union { uint32_t bits; " +
+                           type + " value; } n;\n";
   if (table == CTable::integers) {
     return "static const uint32_t " + name + "_numbers[] = " + c_list(std::span<const std::uint32_t>(numbers), "0x%x") +
            ";\n\n" + head + "  n.bits = " + name + "_numbers[i];\n  return n.value;\n}\n";
