@@ -87,12 +87,12 @@ class Evictor {
   std::vector<unsigned char> buffer_ = std::vector<unsigned char>(2 * last_cache());
 };
 
-/// `cold`: one prediction at a time, nothing in the caches; else 1,024 at a time.
+/// `cold`: one prediction at a time, nothing in the caches; else all points, which visit most nodes several times.
 void descent(benchmark::State& state, bool cold) {
   const Trees& trees = forest_of<ConstantLeaf, 1>(state.range(0)).raw();
   const SmallPages before(trees.nodes);
   const std::vector<Keys> points = random_keys(4096);
-  const std::size_t group = cold ? 1 : 1024;
+  const std::size_t group = cold ? 1 : points.size();
   Evictor evict;
   std::vector<double> times_before, times_now, ratios;
   Payloads payloads{}, expected{};

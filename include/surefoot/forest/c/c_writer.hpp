@@ -49,7 +49,7 @@ class CWriter {
               ". Written by surefoot. */\n"),
         width_(static_cast<std::uint32_t>(trees.inputs)),
         from_(trees),
-        nodes_(trees),
+        nodes_(trees, options.thresholds != CThreshold::float32),
         tables_(trees) {
     if (options.thresholds != CThreshold::float32) {
       whole_ = options.thresholds == CThreshold::int16 ? "int16_t" : "int32_t";
@@ -94,9 +94,9 @@ class CWriter {
   std::string node_tables() const {
     std::string code = "/* root of each tree */\nstatic const uint32_t " + name_ +
                        "_roots[] = " + c_list(std::span(nodes_.roots), "%u") + ";\n\n" +
-                       "/* of each node: (nodes to its left child, of a leaf its number) << " +
-                       std::to_string(nodes_.input_bits) + " | its input, of a leaf " + inputs_ + " */\nstatic const " +
-                       nodes_.word_type() + " " + name_ +
+                       "/* of each node: (nodes to its left child, of a leaf " +
+                       (nodes_.words_name_leaves ? "its number" : "0") + ") << " + std::to_string(nodes_.input_bits) +
+                       " | its input, of a leaf " + inputs_ + " */\nstatic const " + nodes_.word_type() + " " + name_ +
                        "_nodes[] = " + c_list(std::span<const std::uint32_t>(nodes_.words), "%u") + ";\n\n";
     if (!whole_.empty()) {
       std::vector<std::int32_t> fixed;
@@ -111,8 +111,10 @@ class CWriter {
       const std::vector<std::uint32_t> numbers(whole_leaves_.numbers.begin(), whole_leaves_.numbers.end());
       code += "/* whole numbers: those of each leaf */\n" + c_numbers(numbers, options_.table, name_, "int32_t");
     } else {
-      code += numbers_hold_thresholds() ? "/* floats: the threshold of each node, then the numbers of each leaf */\n"
-                                        : "/* floats: the numbers of each leaf */\n";
+      code += numbers_hold_thresholds()
+                  ? "/* floats: the threshold of each node, then the numbers of each leaf; a leaf has its only number "
+                    "in place of a\n   threshold, or the bits of its row */\n"
+                  : "/* floats: the numbers of each leaf */\n";
       code += c_numbers(float_numbers(), options_.table, name_);
     }
     return code + "\n" +
@@ -122,11 +124,15 @@ class CWriter {
 
   std::vector<std::uint32_t> float_numbers() const {
     std::vector<std::uint32_t> numbers;
-    if (numbers_hold_thresholds()) {
-      for (const float threshold : nodes_.thresholds) numbers.push_back(std::bit_cast<std::uint32_t>(threshold));
+    std::uint32_t leaf = 0;
+    for (std::size_t i = 0; numbers_hold_thresholds() && i < nodes_.words.size(); ++i) {
+      const bool inner = nodes_.input(i) < width_;
+      numbers.push_back(inner ? std::bit_cast<std::uint32_t>(nodes_.thresholds[i])
+                              : (from_.inline_leaves() ? nodes_.payloads[leaf] : leaf));
+      leaf += inner ? 0 : 1;
     }
     for (const std::uint32_t payload : nodes_.payloads) {
-      if (from_.inline_leaves()) numbers.push_back(payload);
+      if (from_.inline_leaves() && !numbers_hold_thresholds()) numbers.push_back(payload);
       const std::size_t count = from_.inline_leaves() ? 0 : from_.leaf_parameters;
       const float* row = from_.parameters.data() + payload * count;
       for (std::size_t k = 0; k < count; ++k) numbers.push_back(std::bit_cast<std::uint32_t>(row[k]));
@@ -157,12 +163,13 @@ class CWriter {
     const bool tables = options_.descent == CDescent::tables;
     if (needs_x) code += "  float x[" + inputs_ + " + 1];\n";
     if (tables && !whole_.empty()) code += "  " + whole_ + " keys[" + inputs_ + " + 1];\n";
-    code += std::string("  uint32_t tree, o, k") + (tables ? ", at[4];\n" : ";\n");
+    code += std::string("  uint32_t tree, o, k") + (tables ? ", at[" + std::to_string(nodes_.lanes()) + "];\n" : ";\n");
     code += "  for (k = 0; k < " + inputs_ + "; ++k) {\n";
     if (needs_x) code += "    x[k] = " + as_float + ";\n";
     if (tables && !whole_.empty()) code += "    keys[k] = in[k];\n";
     code += "  }\n";
-    if (tables) code += std::string("  ") + (whole_.empty() ? "x" : "keys") + "[" + inputs_ + "] = 0;\n";
+    if (tables)
+      code += whole_.empty() ? "  x[" + inputs_ + "] = -3.402823466e38f;\n" : "  keys[" + inputs_ + "] = 0;\n";
     const bool agreeing = !options_.agreement.empty();
     if (agreeing) code += "  double proposals[" + trees_ + " * " + outputs_ + "] = {0};\n";
     code += "  for (o = 0; o < " + outputs_ + "; ++o) out[o] = 0;\n" + "  for (tree = 0; tree < " + trees_ +
@@ -192,7 +199,7 @@ class CWriter {
     };
     std::string code = options_.wrapper.empty() ? head + ";\n" + head : "static " + head;
     code += " {\n#define number(i) " + name_ + "_number(i)\n  " + whole_ + " keys[" + inputs_ +
-            " + 1];\n  uint32_t tree, o, k, at[4];\n";
+            " + 1];\n  uint32_t tree, o, k, at[" + std::to_string(nodes_.lanes()) + "];\n";
     if (agreeing) code += "  int32_t proposals[" + trees_ + " * " + outputs_ + "] = {0};\n";
     code += "  for (k = 0; k < " + inputs_ + "; ++k) keys[k] = in[k];\n  keys[" + inputs_ + "] = 0;\n" +
             each_output("out[o] = 0;") + "  for (tree = 0; tree < " + trees_ + "; ++tree) {\n" + table_descent() +
@@ -230,10 +237,16 @@ class CWriter {
   }
 
   std::string table_descent() const {
-    return "    uint32_t p;\n    if (tree % 4 == 0) " + name_ + "_leaves(" + (whole_.empty() ? "x" : "keys") +
-           ", tree, " + trees_ + " - tree, at);\n    p = " +
-           (numbers_hold_thresholds() ? std::to_string(nodes_.words.size()) + " + " : std::string()) + "(uint32_t)(" +
-           name_ + "_nodes[at[tree % 4]] >> " + std::to_string(nodes_.input_bits) + ") * " + leaf_parameters_ + ";\n";
+    const std::string lanes = std::to_string(nodes_.lanes()), end = "at[tree % " + lanes + "]";
+    const std::string leaf = nodes_.words_name_leaves ? "(uint32_t)(" + name_ + "_nodes[" + end + "] >> " +
+                                                            std::to_string(nodes_.input_bits) + ")"
+                                                      : name_ + "_bits(" + end + ")";
+    return "    uint32_t p;\n    if (tree % " + lanes + " == 0) " + name_ + "_leaves(" +
+           (whole_.empty() ? "x" : "keys") + ", tree, " + trees_ + " - tree, at);\n    p = " +
+           (!numbers_hold_thresholds() ? leaf + " * " + leaf_parameters_
+            : from_.inline_leaves()    ? end
+                                    : std::to_string(nodes_.words.size()) + " + " + leaf + " * " + leaf_parameters_) +
+           ";\n";
   }
 
   std::string branch_descent() const {

@@ -94,18 +94,28 @@ constexpr std::size_t most_in_flight = 64;                                 // tr
 constexpr std::size_t far_nodes = (std::size_t{2} << 20U) / sizeof(Node);  // a forest of more is beyond the caches near
                                                                            // the core (0.5 to 2 MB today)
 
-/// As find_leaves, for at most most_in_flight trees that lie far from the core: every tree takes one step in turn, and
-/// the node it comes to is fetched until it is its turn again. So as many fetches are in flight as trees go on, and
-/// none waits for another; a vector of lanes waits for the slowest of them at every step.
+/// As find_leaves, for at most most_in_flight trees that lie far from the core. Below the levels that stay near it
+/// every tree takes one step in turn, and the node it comes to is fetched until it is its turn again. So as many
+/// fetches are in flight as trees go on, and none waits for another; a vector of lanes waits for the slowest of them at
+/// every step.
 inline void find_leaves_far(const Node* nodes, std::span<const std::uint32_t> roots,
                             std::span<const std::uint64_t> keys, std::uint32_t* payloads) {
+  constexpr std::size_t near_steps = 5;  // 25 trees have 25 kB so near their roots
   std::array<const Node*, most_in_flight> place;
   std::array<std::uint32_t, most_in_flight> underway;  // trees that are not in a leaf yet
-  const auto trees = static_cast<std::uint32_t>(roots.size());
-  for (std::uint32_t tree = 0; tree < trees; ++tree) {
-    place[tree] = nodes + roots[tree];
-    underway[tree] = tree;
-    __builtin_prefetch(place[tree]);
+  for (const std::uint32_t root : roots) __builtin_prefetch(nodes + root);
+  const std::size_t trees = roots.size();
+  for (std::size_t tree = 0; tree < trees; tree += lanes) {
+    const std::size_t last = std::min(lanes, trees - tree) - 1;
+    descend<false>([&](std::size_t lane) { return nodes + roots[tree + std::min(lane, last)]; },
+                   [&](const Node* node, std::size_t) { return node->step(keys.data()); },
+                   [&](std::size_t lane, const Node* node) {
+                     const std::size_t at = tree + std::min(lane, last);
+                     __builtin_prefetch(node);
+                     place[at] = node;
+                     underway[at] = static_cast<std::uint32_t>(at);
+                   },
+                   near_steps);
   }
   for (std::size_t left = trees; left > 0;) {
     const std::size_t count = std::exchange(left, 0);
@@ -119,7 +129,7 @@ inline void find_leaves_far(const Node* nodes, std::span<const std::uint32_t> ro
       left += step != 0 ? 1 : 0;
     }
   }
-  for (std::uint32_t tree = 0; tree < trees; ++tree) payloads[tree] = place[tree]->payload();
+  for (std::size_t tree = 0; tree < trees; ++tree) payloads[tree] = place[tree]->payload();
 }
 
 /// The payload of the leaf that one input, given by its wide keys, reaches in each tree.
