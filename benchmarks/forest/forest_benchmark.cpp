@@ -3,12 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "benchmarks/forest/data.hpp"
+#include "benchmarks/forest/forests.hpp"
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rng.hpp"
@@ -50,19 +50,6 @@ BENCHMARK_CAPTURE(train, constant_3_outputs, ConstantLeaf{}, outputs<3>, fully_g
 BENCHMARK_CAPTURE(train, linear, LinearLeaf{}, outputs<1>, by_fit, Serial{})->Apply(sample_counts);
 BENCHMARK_CAPTURE(train, linear_by_variance, LinearLeaf{}, outputs<1>, by_variance, Serial{})->Apply(sample_counts);
 BENCHMARK_CAPTURE(train, linear_3_outputs, LinearLeaf{}, outputs<3>, by_fit, Serial{})->Apply(sample_counts);
-
-// A forest of 25 trees with so many leaves each; trained once.
-template <LeafModel Leaf, int Outputs>
-const Forest<6, Outputs, Leaf>& forest_of(std::int64_t leaves) {
-  static std::map<std::int64_t, Forest<6, Outputs, Leaf>> forests;
-  auto [at, fresh] = forests.try_emplace(leaves);
-  if (fresh) {
-    at->second = train_extra_trees<Leaf>(make_samples<Outputs>(10'000 + 7 * leaves, 1),
-                                         {.min_leaf = 2, .max_leaves = static_cast<int>(leaves), .model_score = false},
-                                         Threads{}, 1);
-  }
-  return at->second;
-}
 
 constexpr std::size_t queries = 4096;
 

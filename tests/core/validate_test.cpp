@@ -128,6 +128,29 @@ TEST_CASE("a step that depends on its thread is found") {
   complains_only(ThreadBound{}, "on another thread");
 }
 
+TEST_CASE("a difference in the last digits is put down to fused multiplications and additions") {
+  struct FusedElsewhere : Good {  // as if the compiler had fused one of two copies of the code
+    std::thread::id home = std::this_thread::get_id();
+    Step<State> step(const State& state, const Action& action, Rng& rng) const {
+      auto result = Good::step(state, action, rng);
+      volatile const double square = state[0] * state[0];
+      const bool fused = std::this_thread::get_id() != home;
+      result.reward = fused ? std::fma(state[0], state[0], -state[1]) : square - state[1];
+      return result;
+    }
+  };
+  complains_only(FusedElsewhere{}, "on two threads, but only in the last digits");
+  struct FusedNowAndThen : Good {
+    Step<State> step(const State& state, const Action& action, Rng& rng) const {
+      static int calls = 0;
+      auto result = Good::step(state, action, rng);
+      if (++calls % 2 == 0) result.next[1] = std::nextafter(result.next[1], 0.0);
+      return result;
+    }
+  };
+  complains_only(FusedNowAndThen{}, "compile with -ffp-contract=off");
+}
+
 TEST_CASE("a next state or reward that is not finite is named with where it happened") {
   struct RootOfState : Good {
     Step<State> step(const State& state, const Action& action, Rng& rng) const {

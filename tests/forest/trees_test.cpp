@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -46,6 +47,18 @@ TEST_CASE("a leaf leads to itself and keeps its payload") {
   CHECK(leaf.payload() == 0xFFFFFFFFU);
   const std::array<std::uint64_t, 3> keys = {wide_key(infinity), wide_key(infinity), 0};
   CHECK(leaf.step(keys.data()) == 0);
+}
+
+TEST_CASE("nodes start with a cache line, and where there are many with a large page") {
+  const auto offset = [](const NodeArray& nodes, std::size_t from) {
+    return reinterpret_cast<std::uintptr_t>(nodes.data()) % from;
+  };
+  for (const std::size_t count : {1U, 1000U}) CHECK(offset(NodeArray(count), detail::cache_line) == 0);
+  NodeArray many(2 * detail::large_page / sizeof(Node), Node::leaf(3, 7));
+  CHECK(offset(many, detail::large_page) == 0);
+  many.push_back(Node::leaf(3, 8));
+  CHECK(many.front() == Node::leaf(3, 7));
+  CHECK(many.back() == Node::leaf(3, 8));
 }
 
 }  // namespace

@@ -56,13 +56,14 @@ class Library {
   std::size_t bytes_ = 0;
 };
 
-/// `Number`: what the function takes, double or whole numbers.
-template <class Number>
+/// `Number`: what the function takes, double or whole numbers; `Output`: what it gives.
+template <class Number, class Output = double>
 class CCode final : public Model {
  public:
   CCode(const std::string& code, std::size_t outputs, double leaves)
       : library_(code),
-        predict_(library_.function<void(const Number*, double*)>("f")),
+        predict_(library_.function<void(const Number*, Output*)>("f")),
+        value_(library_.function<double(int, std::int32_t)>("f_output")),
         outputs_(outputs),
         leaves_(leaves) {}
 
@@ -77,31 +78,45 @@ class CCode final : public Model {
       }
     }
   }
-  void predict_one(std::size_t kept, double* out) override { predict_(&points_[kept * inputs], out); }
+  void predict_one(std::size_t kept, double* out) override { predict(&points_[kept * inputs], out); }
   void predict_all(double* out) override {
-    for (std::size_t i = 0; i < points_.size(); i += inputs, out += outputs_) predict_(&points_[i], out);
+    for (std::size_t i = 0; i < points_.size(); i += inputs, out += outputs_) predict(&points_[i], out);
   }
   double leaves() const override { return leaves_; }
   std::size_t bytes() const override { return library_.bytes(); }
 
  private:
+  void predict(const Number* point, double* out) {
+    if constexpr (std::is_same_v<Output, double>) {
+      predict_(point, out);
+    } else {
+      Output whole[most_outputs];
+      predict_(point, whole);
+      for (std::size_t o = 0; o < outputs_; ++o) out[o] = value_(static_cast<int>(o), whole[o]);
+    }
+  }
+
   Library library_;
-  void (*predict_)(const Number*, double*);
+  void (*predict_)(const Number*, Output*);
+  double (*value_)(int, std::int32_t);  // of a whole output
   std::size_t outputs_;
   double leaves_;
   std::vector<Number> points_;
 };
 
-template <class Number>
+template <class Number, class Output = double>
 std::unique_ptr<Model> train(const Samples& samples, const Size& size, surefoot::CDescent descent) {
   if (samples.outputs != 1) throw std::invalid_argument("C code of 1 output only");
   const auto forest = surefoot::train_extra_trees(
       data_of<1>(samples), {.trees = size.trees, .min_leaf = size.min_leaf, .max_leaves = size.leaves},
       surefoot::Threads(size.threads), 1);
   const auto thresholds = std::is_same_v<Number, double> ? surefoot::CThreshold::float32 : surefoot::CThreshold::int16;
-  const std::string code = surefoot::export_c(forest, {.function = "f", .descent = descent, .thresholds = thresholds});
-  return std::make_unique<CCode<Number>>(code, samples.outputs,
-                                         static_cast<double>(forest.leaves()) / static_cast<double>(forest.trees()));
+  const std::string code = surefoot::export_c(forest, {.function = "f",
+                                                       .descent = descent,
+                                                       .thresholds = thresholds,
+                                                       .whole_outputs = !std::is_same_v<Output, double>});
+  return std::make_unique<CCode<Number, Output>>(
+      code, samples.outputs, static_cast<double>(forest.leaves()) / static_cast<double>(forest.trees()));
 }
 
 }  // namespace
@@ -116,6 +131,9 @@ std::unique_ptr<Model> train_c_tables(const Samples& samples, const Size& size) 
 }
 std::unique_ptr<Model> train_c_tables_int16(const Samples& samples, const Size& size) {
   return train<std::int16_t>(samples, size, surefoot::CDescent::tables);
+}
+std::unique_ptr<Model> train_c_whole(const Samples& samples, const Size& size) {
+  return train<std::int16_t, std::int32_t>(samples, size, surefoot::CDescent::tables);
 }
 std::unique_ptr<Model> train_c_branches(const Samples& samples, const Size& size) {
   return train<double>(samples, size, surefoot::CDescent::branches);

@@ -46,6 +46,7 @@ std::vector<Method> all_methods() {
     methods.insert(after_ours,
                    {{.name = "surefoot C tables", .train = train_c_tables, .min_leaf = 2},
                     {.name = "surefoot C tables, int16", .train = train_c_tables_int16, .min_leaf = 2},
+                    {.name = "surefoot C, no floating point", .train = train_c_whole, .min_leaf = 2},
                     {.name = "surefoot C branches", .train = train_c_branches, .min_leaf = 2, .most_leaves = 2'000}});
   }
   return methods;

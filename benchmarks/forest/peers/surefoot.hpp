@@ -21,6 +21,7 @@ std::unique_ptr<Model> train_one_tree(const Samples& samples, const Size& size);
 bool have_c_compiler();
 std::unique_ptr<Model> train_c_tables(const Samples& samples, const Size& size);
 std::unique_ptr<Model> train_c_tables_int16(const Samples& samples, const Size& size);
+std::unique_ptr<Model> train_c_whole(const Samples& samples, const Size& size);
 std::unique_ptr<Model> train_c_branches(const Samples& samples, const Size& size);
 
 }  // namespace peers

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -68,6 +69,9 @@ class Validation {
   using State = typename P::State;
   using Action = typename P::Action;
   using Transition = Step<State>;
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
+  static constexpr double rounding = 1e-9;  // [widths of the box]: some thousand roundings in a step, and no program's
+                                            // own memory or randomness is so small
 
   struct Probe {
     State state;
@@ -181,19 +185,45 @@ class Validation {
 
   // Every step once more: backwards, which shows hidden memory, and on another thread.
   bool check_repeats() {
-    const auto all_same = [this] {
-      return std::all_of(probes_.rbegin(), probes_.rend(),
-                         [this](const Probe& p) { return same(step(p.state, p.action, p.noise), p.result); });
+    const double here = largest_difference();
+    double there = 0;
+    const auto ask = [&] {
+      there = largest_difference();
+      return true;
     };
-    if (!all_same()) {
-      return complain(
-          "step() gave another result for the same state, action and Rng: let it change nothing (no static or mutable "
-          "variables) and draw all its randomness from the Rng it is given");
+    ask_another_thread([](const void* any) { return (*static_cast<decltype(&ask)>(any))(); }, &ask);
+    const double larger = std::max(here, there);
+    if (larger == 0) return true;
+    if (larger <= rounding) {
+      return complain("step() gave two results for the same state, action and Rng", here == 0 ? " on two threads" : "",
+                      ", but only in the last digits (", larger,
+                      " of the range): most likely the compiler fuses multiplications and additions in one copy of the "
+                      "code and not in another; compile with -ffp-contract=off");
     }
-    const auto ask = [](const void* any) { return (*static_cast<decltype(&all_same)>(any))(); };
-    if (ask_another_thread(ask, &all_same)) return true;
-    return complain(
-        "step() gave another result on another thread: use no thread_local or otherwise thread-bound variables in it");
+    return here > rounding
+               ? complain(
+                     "step() gave another result for the same state, action and Rng: let it change nothing "
+                     "(no static or mutable variables) and draw all its randomness from the Rng it is given")
+               : complain(
+                     "step() gave another result on another thread: use no thread_local or otherwise "
+                     "thread-bound variables in it");
+  }
+
+  // Largest difference of a step made now from what it was [widths of the state box, largest reward]; infinite if one
+  // of the two is terminal.
+  double largest_difference() const {
+    double largest = 0, scale = 0;
+    for (const Probe& p : probes_) scale = std::max(scale, std::abs(p.result.reward));
+    const auto add = [&largest](double difference, double range) {
+      if (difference != 0) largest = std::max(largest, range > 0 ? difference / range : infinite);
+    };
+    for (auto p = probes_.rbegin(); p != probes_.rend(); ++p) {
+      const Transition now = step(p->state, p->action, p->noise);
+      if (!finite(now) || now.terminal != p->result.terminal) return infinite;
+      for (int i = 0; i < P::state_dim; ++i) add(std::abs(now.next[i] - p->result.next[i]), states_.width()[i]);
+      add(std::abs(now.reward - p->result.reward), scale);
+    }
+    return largest;
   }
 
   bool check_features() {
@@ -208,7 +238,8 @@ class Validation {
           return complain("features() gave two values for one state: let it depend on the state alone");
         }
       }
-    } else if constexpr (requires(const State& s) { problem_.features(s); } || requires { P::feature_dim; }) {
+    } else if constexpr (
+        requires(const State& s) { problem_.features(s); } || requires { P::feature_dim; }) {
       return complain(
           "features() is ignored: it needs `int feature_dim` and `Vec<feature_dim> features(const State&) const`");
     }
@@ -309,8 +340,9 @@ class Validation {
 
 /// Complaints about a problem, each one sentence that names the member and the cure; empty if there are none. What may
 /// well be meant starts with "remark: ". Checks: finite numbers, equal results for equal random numbers (again, and on
-/// another thread), states inside their box, boxes with width, actions that have an effect and may leave their box,
-/// rewards that differ, states that change, runs that last, features, names, exceptions.
+/// another thread; differences of rounding alone, as fused multiplications and additions make, are told apart), states
+/// inside their box, boxes with width, actions that have an effect and may leave their box, rewards that differ, states
+/// that change, runs that last, features, names, exceptions.
 template <Problem P>
 std::vector<std::string> validate(const P& problem, const ValidateOptions& options = {}, std::uint64_t seed = 0) {
   return detail::Validation<P>(problem, options, seed).complaints();
@@ -318,8 +350,7 @@ std::vector<std::string> validate(const P& problem, const ValidateOptions& optio
 
 /// What a type that is no Problem gets.
 template <class P>
-  requires(!Problem<P>)
-auto validate(const P&, const ValidateOptions& = {}, std::uint64_t = 0) {
+requires(!Problem<P>) auto validate(const P&, const ValidateOptions& = {}, std::uint64_t = 0) {
   return explain_problem<P>();
 }
 

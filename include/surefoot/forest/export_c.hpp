@@ -1,9 +1,10 @@
 // A forest as one C99 file without dependencies, for a micro-controller: tables of 32-bit numbers and a few lines of
 // code, or nested ifs, that give the same outputs as Forest::predict. No allocation, no recursion, no libm.
 //
-// Size: per inner node tables have one small integer and one threshold, per leaf its numbers: about 14 characters for
-// each inner node and 10 (or 5, see CTable) for each of a leaf's numbers; in the machine 2 or 4 + 4 bytes (4 + 2 with
-// 16-bit thresholds), and 4 (5) bytes. Nested ifs take several times that per inner node.
+// Size: per node (of which there are two per leaf) tables have one small integer and one number, its threshold or what
+// its leaf says, and per leaf its numbers if there are several: about 25 characters for the two nodes of a leaf and 11 (or
+// 5, see CTable) for each of its numbers; in the machine 1 to 4 + 4 bytes a node (+ 2 with 16-bit thresholds), and 4 (5)
+// bytes a number. Nested ifs take several times that.
 #pragma once
 
 #include <concepts>

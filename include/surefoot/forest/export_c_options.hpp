@@ -10,7 +10,7 @@ namespace surefoot {
 
 /// How a C file spells its tables of numbers.
 enum class CTable {
-  integers,  // hexadecimal integers of 64 bits: no decoding, fastest
+  integers,  // hexadecimal integers: no decoding, fastest
   text,      // five characters per number in string literals: half the source, decoded at every use
 };
 
@@ -23,7 +23,7 @@ enum class CThreshold {
 
 /// How a C file finds a leaf.
 enum class CDescent {
-  tables,    // a loop over tables: small
+  tables,    // a loop over tables, four trees at a time: small, and about as fast as the library
   branches,  // nested ifs: fast for trees that fit into the caches, at most 120 levels deep
 };
 
@@ -38,6 +38,9 @@ struct ExportCOptions {
   CThreshold thresholds = CThreshold::float32;
   std::vector<double> largest_inputs = {};  // whole numbers: sizes up to which inputs are told apart; empty: up to the
                                             // thresholds' (linear leaves may need more)
+  bool whole_outputs = false;  // with whole thresholds and tables, constant and clamped linear leaves: no floating
+                               // point at all, void FUNCTION(const intN_t in[inputs], int32_t out[outputs]), and double
+                               // FUNCTION_output(int output, int32_t value) that says what `out` means
   std::vector<double> agreement =
       {};  // per output: trees that differ by more are of different opinions, and the output
            // is the mean of the largest group around the medoid; empty: the mean of all

@@ -20,6 +20,9 @@ SUREFOOT_INLINE void check(const ExportCOptions& options, int outputs) {
       std::isdigit(static_cast<unsigned char>(name[0])) != 0) {
     throw ForestError("ExportCOptions: function must be a name in C, got \"" + name + "\"");
   }
+  if (options.whole_outputs && (options.thresholds == CThreshold::float32 || options.descent != CDescent::tables)) {
+    throw ForestError("ExportCOptions: whole_outputs needs thresholds int16 or int32 and descent tables");
+  }
   const auto count = static_cast<std::size_t>(outputs);
   bool right = options.low.size() == options.high.size() && (options.low.empty() || options.low.size() == count);
   for (std::size_t i = 0; right && i < options.low.size(); ++i) {

@@ -190,7 +190,7 @@ class Forest {
  private:
   static constexpr std::size_t input_room = static_cast<std::size_t>(Inputs > 0 ? Inputs : max_forest_inputs);
   static constexpr std::size_t fixed_stride = Inputs > 0 ? input_room + 1 : 0;
-  static constexpr std::size_t tree_block = 64;  // trees descended before their leaves are summed
+  static constexpr std::size_t tree_block = detail::most_in_flight;  // trees descended before their leaves are summed
   static constexpr std::size_t key_room = 2048;  // sort keys of the samples that go through a tree together: 24 kB
   static constexpr std::size_t few = 32;         // fewer samples are faster one by one
 
@@ -242,7 +242,7 @@ class Forest {
     std::array<std::uint32_t, tree_block> payloads;
     for (std::size_t first = 0; first < trees(); first += tree_block) {
       const auto roots = roots_from(first);
-      detail::find_leaves(trees_.nodes.data(), roots, used(keys), payloads.data());
+      detail::find_leaves(std::span<const Node>(trees_.nodes), roots, used(keys), payloads.data());
       visit(std::span<const std::uint32_t>(payloads).first(roots.size()));
     }
   }

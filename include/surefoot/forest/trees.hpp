@@ -78,16 +78,27 @@ class Node {
 };
 static_assert(sizeof(Node) == 8);
 
+namespace detail {
+
+constexpr std::size_t cache_line = 64;
+constexpr std::size_t large_page = std::size_t{2} << 20U;
+
+/// Memory from the start of a cache line, or, from two large pages on, of such pages, where the system has them to
+/// give: a descent then does not wait for the addresses of the many small ones that it jumps between.
+void* allocate_lines(std::size_t bytes);
+void release_lines(void* memory, std::size_t bytes);
+
+}  // namespace detail
+
 /// Allocates whole cache lines, and leaves new items as they are unless a value is given.
 template <class T>
 struct CacheLineAllocator {
   using value_type = T;
-  static constexpr std::align_val_t line{64};
   CacheLineAllocator() = default;
   template <class U>
   explicit CacheLineAllocator(const CacheLineAllocator<U>&) {}
-  T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), line)); }
-  void deallocate(T* memory, std::size_t) { ::operator delete(memory, line); }
+  T* allocate(std::size_t count) { return static_cast<T*>(detail::allocate_lines(count * sizeof(T))); }
+  void deallocate(T* memory, std::size_t count) { detail::release_lines(memory, count * sizeof(T)); }
   template <class U>
   void construct(U* item) {
     ::new (static_cast<void*>(item)) U;
@@ -103,7 +114,7 @@ struct CacheLineAllocator {
 };
 
 using NodeArray = std::vector<Node, CacheLineAllocator<Node>>;
-constexpr std::size_t nodes_per_line = 64 / sizeof(Node);
+constexpr std::size_t nodes_per_line = detail::cache_line / sizeof(Node);
 
 /// Sizes of the trees of a forest.
 struct TreesShape {

@@ -1,8 +1,13 @@
 // Definitions of surefoot/forest/trees.hpp.
 #pragma once
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 #include <cstddef>
 #include <cstdint>
+#include <new>
 #include <string>
 
 #include "surefoot/core/compiled.hpp"
@@ -10,6 +15,26 @@
 #include "surefoot/forest/trees.hpp"
 
 namespace surefoot {
+
+namespace detail {
+
+inline bool takes_large_pages(std::size_t bytes) { return bytes >= 2 * large_page; }
+
+SUREFOOT_INLINE void* allocate_lines(std::size_t bytes) {
+  if (!takes_large_pages(bytes)) return ::operator new (bytes, std::align_val_t{cache_line});
+  const std::size_t whole = (bytes + large_page - 1) / large_page * large_page;
+  void* memory = ::operator new (whole, std::align_val_t{large_page});
+#ifdef MADV_HUGEPAGE
+  madvise(memory, whole, MADV_HUGEPAGE);  // a wish: without it the memory is as good, only slower
+#endif
+  return memory;
+}
+
+SUREFOOT_INLINE void release_lines(void* memory, std::size_t bytes) {
+  ::operator delete (memory, std::align_val_t{takes_large_pages(bytes) ? large_page : cache_line});
+}
+
+}  // namespace detail
 
 SUREFOOT_INLINE std::string TreesShape::shape() const {
   return std::to_string(inputs) + " inputs, " + std::to_string(outputs) + " outputs, " +

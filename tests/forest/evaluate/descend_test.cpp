@@ -100,11 +100,15 @@ TEST_CASE_TEMPLATE("all ways down a tree end in the same leaf", Function, toy::C
           for (std::size_t t = 0; t < count; ++t) differences += found[t] != expected[i][t] ? 1 : 0;
           found.assign(count, 1);
         };
-        detail::find_leaves(trees.nodes.data(), roots, keys, found.data());
+        detail::find_leaves(std::span<const Node>(trees.nodes), roots, keys, found.data());
         compare();
         detail::find_leaves_portable(trees.nodes.data(), roots, keys,
                                      [&](std::size_t t, const Node* leaf) { found[t] = leaf->payload(); });
         compare();
+        if (count <= detail::most_in_flight) {
+          detail::find_leaves_far(trees.nodes.data(), roots, keys, found.data());
+          compare();
+        }
 #ifdef SUREFOOT_AVX2
         if (__builtin_cpu_supports("avx2")) {
           detail::find_leaves_avx2(trees.nodes.data(), roots, keys, found.data());

@@ -53,11 +53,14 @@ inline std::vector<double> c_scales(const CTables& tables, int inputs, CThreshol
   return sizes;
 }
 
+inline std::int32_t c_fixed(float threshold, double scale) {
+  return static_cast<std::int32_t>(std::lround(static_cast<double>(threshold) * scale));
+}
+
 inline std::vector<std::int32_t> c_fixed_thresholds(const CTables& tables, std::span<const double> scales) {
   std::vector<std::int32_t> fixed;
   for (std::size_t i = 0; i < tables.thresholds.size(); ++i) {
-    const double scale = scales[static_cast<std::size_t>(tables.inputs[i])];
-    fixed.push_back(static_cast<std::int32_t>(std::lround(static_cast<double>(tables.thresholds[i]) * scale)));
+    fixed.push_back(c_fixed(tables.thresholds[i], scales[static_cast<std::size_t>(tables.inputs[i])]));
   }
   return fixed;
 }

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/forest/trees.hpp"
 #include "surefoot/forest/export_c_options.hpp"
+#include "surefoot/forest/trees.hpp"
 
 namespace surefoot::detail {
 
@@ -82,17 +82,16 @@ std::string c_list(std::span<const Number> items, const char* format) {
   return list;
 }
 
-/// The table of numbers and `static float number(uint32_t i)` to read it.
-inline std::string c_numbers(const std::vector<std::uint32_t>& numbers, CTable table, const std::string& name) {
-  const std::string head = "static float " + name +
-                           "_number(uint32_t i) {\n"
-                           "  union { uint32_t bits; float value; } n;\n";
+/// The table of numbers, given by their bits, and to read it `static uint32_t NAME_bits(uint32_t i)` and
+/// `static TYPE NAME_number(uint32_t i)`.
+inline std::string c_numbers(const std::vector<std::uint32_t>& numbers, CTable table, const std::string& name,
+                             const std::string& type = "float") {
+  const std::string head = "static uint32_t " + name + "_bits(uint32_t i) {\n";
+  const std::string tail = "}\n\nstatic " + type + " " + name + "_number(uint32_t i) {\n  union { uint32_t bits; " +
+                           type + " value; } n;\n  n.bits = " + name + "_bits(i);\n  return n.value;\n}\n";
   if (table == CTable::integers) {
-    std::vector<unsigned long long> pairs((numbers.size() + 1) / 2, 0);
-    for (std::size_t i = 0; i < numbers.size(); ++i) pairs[i / 2] |= std::uint64_t{numbers[i]} << (i % 2 * 32);
-    return "static const uint64_t " + name +
-           "_numbers[] = " + c_list(std::span<const unsigned long long>(pairs), "0x%llx") + ";\n\n" + head +
-           "  n.bits = (uint32_t)(" + name + "_numbers[i / 2] >> (i % 2 * 32));\n  return n.value;\n}\n";
+    return "static const uint32_t " + name + "_numbers[] = " + c_list(std::span<const std::uint32_t>(numbers), "0x%x") +
+           ";\n\n" + head + "  return " + name + "_numbers[i];\n" + tail;
   }
   // Base 85, most significant digit first; '"', '\' and '?' are left out. C99 promises 4095 characters per literal.
   constexpr std::size_t row = 800;
@@ -112,10 +111,11 @@ inline std::string c_numbers(const std::vector<std::uint32_t>& numbers, CTable t
   return "static const char " + name + "_numbers[][" + std::to_string(5 * row + 1) + "] = {\n" + rows + "\"};\n\n" +
          head + "  const char *text = " + name + "_numbers[i / " + std::to_string(row) + "] + i % " +
          std::to_string(row) +
-         " * 5;\n  int k;\n  n.bits = 0;\n"
-         "  for (k = 0; k < 5; ++k) n.bits = n.bits * 85 + (uint32_t)(text[k] - '#' - (text[k] > '?') - (text[k] > "
+         " * 5;\n  uint32_t bits = 0;\n  int k;\n"
+         "  for (k = 0; k < 5; ++k) bits = bits * 85 + (uint32_t)(text[k] - '#' - (text[k] > '?') - (text[k] > "
          "'\\\\'));\n"
-         "  return n.value;\n}\n";
+         "  return bits;\n" +
+         tail;
 }
 
 }  // namespace surefoot::detail

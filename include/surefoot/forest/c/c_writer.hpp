@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,7 +16,9 @@
 #include "surefoot/forest/c/c_agreement.hpp"
 #include "surefoot/forest/c/c_branches.hpp"
 #include "surefoot/forest/c/c_fixed_point.hpp"
+#include "surefoot/forest/c/c_nodes.hpp"
 #include "surefoot/forest/c/c_tables.hpp"
+#include "surefoot/forest/c/c_whole_leaves.hpp"
 #include "surefoot/forest/export_c_options.hpp"
 #include "surefoot/forest/trees.hpp"
 
@@ -44,19 +48,23 @@ class CWriter {
               std::to_string(trees.leaves) + " leaves of kind " + std::to_string(leaf_tag) +
               ". Written by surefoot. */\n"),
         width_(static_cast<std::uint32_t>(trees.inputs)),
+        from_(trees),
+        nodes_(trees, options.thresholds != CThreshold::float32),
         tables_(trees) {
     if (options.thresholds != CThreshold::float32) {
       whole_ = options.thresholds == CThreshold::int16 ? "int16_t" : "int32_t";
       scales_ = c_scales(tables_, trees.inputs, options.thresholds, options.largest_inputs);
       fixed_ = c_fixed_thresholds(tables_, scales_);
     }
+    if (options.whole_outputs) whole_leaves_ = c_whole_leaves(trees, nodes_, leaf_tag, options.thresholds, scales_);
   }
 
   std::string code() const {
     std::string code = head_ + "#include <stdint.h>\n\n";
     if (!whole_.empty()) code += input_code();
     code += options_.descent == CDescent::tables ? node_tables() : branches();
-    code += function();
+    if (options_.whole_outputs) code += output_code();
+    code += options_.whole_outputs ? whole_function() : function();
     if (!options_.wrapper.empty()) code += "\n" + options_.wrapper + (options_.wrapper.ends_with('\n') ? "" : "\n");
     return code;
   }
@@ -84,30 +92,52 @@ class CWriter {
   }
 
   std::string node_tables() const {
-    std::vector<std::uint32_t> nodes;
-    for (std::size_t i = 0; i < tables_.left.size(); ++i) {
-      nodes.push_back(tables_.left[i] * width_ + static_cast<std::uint32_t>(tables_.inputs[i]));
-    }
-    const std::uint32_t widest = nodes.empty() ? 0 : *std::max_element(nodes.begin(), nodes.end());
-    const std::string type = widest < 0x100U ? "uint8_t" : widest < 0x10000U ? "uint16_t" : "uint32_t";
-    std::string code =
-        "/* inner nodes of each tree */\n"
-        "static const uint32_t " +
-        name_ + "_trees[] = " + c_list(std::span(tables_.trees), "%u") + ";\n\n" +
-        "/* of each inner node, depth first: (inner nodes below its left child) * inputs + its input */\n" +
-        "static const " + type + " " + name_ + "_nodes[] = " + c_list(std::span<const std::uint32_t>(nodes), "%u") +
-        ";\n\n";
-    std::vector<std::uint32_t> numbers;
-    if (whole_.empty()) {
-      for (const float threshold : tables_.thresholds) numbers.push_back(std::bit_cast<std::uint32_t>(threshold));
-      code += "/* floats: the threshold of each inner node, then the numbers of each leaf */\n";
-    } else {
+    std::string code = "/* root of each tree */\nstatic const uint32_t " + name_ +
+                       "_roots[] = " + c_list(std::span(nodes_.roots), "%u") + ";\n\n" +
+                       "/* of each node: (nodes to its left child, of a leaf " +
+                       (nodes_.words_name_leaves ? "its number" : "0") + ") << " + std::to_string(nodes_.input_bits) +
+                       " | its input, of a leaf " + inputs_ + " */\nstatic const " + nodes_.word_type() + " " + name_ +
+                       "_nodes[] = " + c_list(std::span<const std::uint32_t>(nodes_.words), "%u") + ";\n\n";
+    if (!whole_.empty()) {
+      std::vector<std::int32_t> fixed;
+      for (std::size_t i = 0; i < nodes_.words.size(); ++i) {
+        const std::uint32_t input = nodes_.input(i);
+        fixed.push_back(input < width_ ? c_fixed(nodes_.thresholds[i], scales_[input]) : 0);
+      }
       code += "static const " + whole_ + " " + name_ +
-              "_thresholds[] = " + c_list(std::span<const std::int32_t>(fixed_), "%d") + ";\n\n" +
-              "/* floats: the numbers of each leaf */\n";
+              "_thresholds[] = " + c_list(std::span<const std::int32_t>(fixed), "%d") + ";\n\n";
     }
-    numbers.insert(numbers.end(), tables_.numbers.begin(), tables_.numbers.end());
-    return code + c_numbers(numbers, options_.table, name_) + "\n";
+    if (options_.whole_outputs) {
+      const std::vector<std::uint32_t> numbers(whole_leaves_.numbers.begin(), whole_leaves_.numbers.end());
+      code += "/* whole numbers: those of each leaf */\n" + c_numbers(numbers, options_.table, name_, "int32_t");
+    } else {
+      code += numbers_hold_thresholds()
+                  ? "/* floats: the threshold of each node, then the numbers of each leaf; a leaf has its only number "
+                    "in place of a\n   threshold, or the bits of its row */\n"
+                  : "/* floats: the numbers of each leaf */\n";
+      code += c_numbers(float_numbers(), options_.table, name_);
+    }
+    return code + "\n" +
+           nodes_.descent(name_, whole_.empty() ? "float" : whole_, from_.inputs,
+                          name_ + (whole_.empty() ? "_number(n)" : "_thresholds[n]"));
+  }
+
+  std::vector<std::uint32_t> float_numbers() const {
+    std::vector<std::uint32_t> numbers;
+    std::uint32_t leaf = 0;
+    for (std::size_t i = 0; numbers_hold_thresholds() && i < nodes_.words.size(); ++i) {
+      const bool inner = nodes_.input(i) < width_;
+      numbers.push_back(inner ? std::bit_cast<std::uint32_t>(nodes_.thresholds[i])
+                              : (from_.inline_leaves() ? nodes_.payloads[leaf] : leaf));
+      leaf += inner ? 0 : 1;
+    }
+    for (const std::uint32_t payload : nodes_.payloads) {
+      if (from_.inline_leaves() && !numbers_hold_thresholds()) numbers.push_back(payload);
+      const std::size_t count = from_.inline_leaves() ? 0 : from_.leaf_parameters;
+      const float* row = from_.parameters.data() + payload * count;
+      for (std::size_t k = 0; k < count; ++k) numbers.push_back(std::bit_cast<std::uint32_t>(row[k]));
+    }
+    return numbers;
   }
 
   std::string branches() const {
@@ -130,10 +160,16 @@ class CWriter {
     const std::string as_float = whole_.empty() ? "(float)in[k]" : "(float)(in[k] / " + name_ + "_scales[k])";
     std::string code = options_.wrapper.empty() ? head + ";\n" + head : "static " + head;
     code += " {\n#define number(i) " + name_ + "_number(i)\n";
-    if (needs_x) code += "  float x[" + inputs_ + "];\n";
-    code += "  uint32_t tree, o" + std::string(leaf_code_.find('k') != std::string::npos || needs_x ? ", k" : "");
-    code += options_.descent == CDescent::tables ? ", first = 0, first_leaf = 0;\n" : ";\n";
-    if (needs_x) code += "  for (k = 0; k < " + inputs_ + "; ++k) x[k] = " + as_float + ";\n";
+    const bool tables = options_.descent == CDescent::tables;
+    if (needs_x) code += "  float x[" + inputs_ + " + 1];\n";
+    if (tables && !whole_.empty()) code += "  " + whole_ + " keys[" + inputs_ + " + 1];\n";
+    code += std::string("  uint32_t tree, o, k") + (tables ? ", at[" + std::to_string(nodes_.lanes()) + "];\n" : ";\n");
+    code += "  for (k = 0; k < " + inputs_ + "; ++k) {\n";
+    if (needs_x) code += "    x[k] = " + as_float + ";\n";
+    if (tables && !whole_.empty()) code += "    keys[k] = in[k];\n";
+    code += "  }\n";
+    if (tables)
+      code += whole_.empty() ? "  x[" + inputs_ + "] = -3.402823466e38f;\n" : "  keys[" + inputs_ + "] = 0;\n";
     const bool agreeing = !options_.agreement.empty();
     if (agreeing) code += "  double proposals[" + trees_ + " * " + outputs_ + "] = {0};\n";
     code += "  for (o = 0; o < " + outputs_ + "; ++o) out[o] = 0;\n" + "  for (tree = 0; tree < " + trees_ +
@@ -144,6 +180,50 @@ class CWriter {
                       : "  for (o = 0; o < " + outputs_ + "; ++o) out[o] *= " + share() + ";\n") +
             bounds() + "#undef number\n" + "}\n";
     return code;
+  }
+
+  // How outputs are read.
+  std::string output_code() const {
+    const std::string head = "double " + name_ + "_output(int output, int32_t value)";
+    return "/* Outputs are whole numbers: value * scale of the output. */\nstatic const double " + name_ +
+           "_output_scales[" + outputs_ + "] = " + c_list(std::span<const double>(whole_leaves_.scales), "%.17g") +
+           ";\n\n" + head + ";\n" + head + " { return value / " + name_ + "_output_scales[output]; }\n\n";
+  }
+
+  std::string whole_function() const {
+    const std::string head =
+        "void " + name_ + "(const " + whole_ + " in[" + inputs_ + "], int32_t out[" + outputs_ + "])";
+    const bool agreeing = !options_.agreement.empty();
+    const auto each_output = [&](const std::string& does) {
+      return "  for (o = 0; o < " + outputs_ + "; ++o) " + does + "\n";
+    };
+    std::string code = options_.wrapper.empty() ? head + ";\n" + head : "static " + head;
+    code += " {\n#define number(i) " + name_ + "_number(i)\n  " + whole_ + " keys[" + inputs_ +
+            " + 1];\n  uint32_t tree, o, k, at[" + std::to_string(nodes_.lanes()) + "];\n";
+    if (agreeing) code += "  int32_t proposals[" + trees_ + " * " + outputs_ + "] = {0};\n";
+    code += "  for (k = 0; k < " + inputs_ + "; ++k) keys[k] = in[k];\n  keys[" + inputs_ + "] = 0;\n" +
+            each_output("out[o] = 0;") + "  for (tree = 0; tree < " + trees_ + "; ++tree) {\n" + table_descent() +
+            (agreeing ? "#define out (proposals + tree * " + outputs_ + ")\n" : std::string()) +
+            c_whole_leaf_code(whole_leaves_, from_.inputs, from_.outputs) + (agreeing ? "#undef out\n" : "") + "  }\n" +
+            (agreeing ? c_whole_agreement(options_.agreement, whole_leaves_, tables_.trees.size())
+                      : each_output("out[o] /= " + trees_ + ";"));
+    if (!options_.low.empty()) {
+      code +=
+          each_output("{\n    static const int32_t low[" + outputs_ + "] = " + whole_bounds(options_.low) +
+                      ";\n    static const int32_t high[" + outputs_ + "] = " + whole_bounds(options_.high) +
+                      ";\n    if (out[o] < low[o]) out[o] = low[o];\n    if (out[o] > high[o]) out[o] = high[o];\n  }");
+    }
+    return code + "#undef number\n}\n";
+  }
+
+  std::string whole_bounds(const std::vector<double>& bounds) const {
+    std::vector<std::int32_t> whole;
+    for (std::size_t o = 0; o < bounds.size(); ++o) {
+      constexpr double most = std::numeric_limits<std::int32_t>::max();
+      whole.push_back(
+          static_cast<std::int32_t>(std::clamp(std::round(bounds[o] * whole_leaves_.scales[o]), -most, most)));
+    }
+    return c_list(std::span<const std::int32_t>(whole), "%d");
   }
 
   std::string share() const { return digits(1.0 / static_cast<double>(tables_.trees.size())); }
@@ -157,15 +237,16 @@ class CWriter {
   }
 
   std::string table_descent() const {
-    const std::string threshold = whole_.empty() ? "number(node)" : name_ + "_thresholds[node]";
-    return "    uint32_t node = first, leaf = first_leaf, rest = " + name_ + "_trees[tree], p;\n" +
-           "    first += rest;\n" + "    first_leaf += rest + 1;\n" + "    while (rest != 0) {\n" +
-           "      const uint32_t left = " + name_ + "_nodes[node] / " + inputs_ + ";\n" + "      if (" +
-           (whole_.empty() ? "x" : "in") + "[" + name_ + "_nodes[node] % " + inputs_ + "] > " + threshold + ") {\n" +
-           "        node += left + 1;\n" + "        leaf += left + 1;\n" + "        rest -= left + 1;\n" +
-           "      } else {\n" + "        node += 1;\n" + "        rest = left;\n" + "      }\n" + "    }\n" +
-           "    p = " + (numbers_hold_thresholds() ? std::to_string(tables_.left.size()) + " + " : std::string()) +
-           "leaf * " + leaf_parameters_ + ";\n";
+    const std::string lanes = std::to_string(nodes_.lanes()), end = "at[tree % " + lanes + "]";
+    const std::string leaf = nodes_.words_name_leaves ? "(uint32_t)(" + name_ + "_nodes[" + end + "] >> " +
+                                                            std::to_string(nodes_.input_bits) + ")"
+                                                      : name_ + "_bits(" + end + ")";
+    return "    uint32_t p;\n    if (tree % " + lanes + " == 0) " + name_ + "_leaves(" +
+           (whole_.empty() ? "x" : "keys") + ", tree, " + trees_ + " - tree, at);\n    p = " +
+           (!numbers_hold_thresholds() ? leaf + " * " + leaf_parameters_
+            : from_.inline_leaves()    ? end
+                                    : std::to_string(nodes_.words.size()) + " + " + leaf + " * " + leaf_parameters_) +
+           ";\n";
   }
 
   std::string branch_descent() const {
@@ -176,10 +257,13 @@ class CWriter {
   const ExportCOptions& options_;
   std::string name_, inputs_, outputs_, trees_, leaf_code_, leaf_parameters_, head_;
   std::uint32_t width_;  // number of inputs
+  const Trees& from_;
+  CNodes nodes_;
   CTables tables_;
   std::string whole_;  // the C type of inputs that are whole numbers, or empty
   std::vector<double> scales_;
   std::vector<std::int32_t> fixed_;
+  CWholeLeaves whole_leaves_;  // if outputs are whole numbers
 };
 
 }  // namespace surefoot::detail

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "surefoot/forest/evaluate/descend_avx2.hpp"
 #include "surefoot/forest/trees.hpp"
@@ -89,9 +90,53 @@ inline void find_leaves_portable(const Node* nodes, std::span<const std::uint32_
   }
 }
 
+constexpr std::size_t most_in_flight = 64;                                 // trees that find_leaves_far can take
+constexpr std::size_t far_nodes = (std::size_t{2} << 20U) / sizeof(Node);  // a forest of more is beyond the caches near
+                                                                           // the core (0.5 to 2 MB today)
+
+/// As find_leaves, for at most most_in_flight trees that lie far from the core. Below the levels that stay near it
+/// every tree takes one step in turn, and the node it comes to is fetched until it is its turn again. So as many
+/// fetches are in flight as trees go on, and none waits for another; a vector of lanes waits for the slowest of them at
+/// every step.
+inline void find_leaves_far(const Node* nodes, std::span<const std::uint32_t> roots,
+                            std::span<const std::uint64_t> keys, std::uint32_t* payloads) {
+  constexpr std::size_t near_steps = 5;  // 25 trees have 25 kB so near their roots
+  std::array<const Node*, most_in_flight> place;
+  std::array<std::uint32_t, most_in_flight> underway;  // trees that are not in a leaf yet
+  for (const std::uint32_t root : roots) __builtin_prefetch(nodes + root);
+  const std::size_t trees = roots.size();
+  for (std::size_t tree = 0; tree < trees; tree += lanes) {
+    const std::size_t last = std::min(lanes, trees - tree) - 1;
+    descend<false>([&](std::size_t lane) { return nodes + roots[tree + std::min(lane, last)]; },
+                   [&](const Node* node, std::size_t) { return node->step(keys.data()); },
+                   [&](std::size_t lane, const Node* node) {
+                     const std::size_t at = tree + std::min(lane, last);
+                     __builtin_prefetch(node);
+                     place[at] = node;
+                     underway[at] = static_cast<std::uint32_t>(at);
+                   },
+                   near_steps);
+  }
+  for (std::size_t left = trees; left > 0;) {
+    const std::size_t count = std::exchange(left, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t tree = underway[i];
+      std::size_t step = place[tree]->step(keys.data());
+      asm("" : "+r"(step));  // a number, and not a jump that is guessed wrong half of the time
+      place[tree] += step;
+      __builtin_prefetch(place[tree]);
+      underway[left] = tree;
+      left += step != 0 ? 1 : 0;
+    }
+  }
+  for (std::size_t tree = 0; tree < trees; ++tree) payloads[tree] = place[tree]->payload();
+}
+
 /// The payload of the leaf that one input, given by its wide keys, reaches in each tree.
-inline void find_leaves(const Node* nodes, std::span<const std::uint32_t> roots, std::span<const std::uint64_t> keys,
-                        std::uint32_t* payloads) {
+inline void find_leaves(std::span<const Node> all, std::span<const std::uint32_t> roots,
+                        std::span<const std::uint64_t> keys, std::uint32_t* payloads) {
+  const Node* nodes = all.data();
+  if (all.size() > far_nodes && roots.size() <= most_in_flight) return find_leaves_far(nodes, roots, keys, payloads);
 #ifdef SUREFOOT_AVX2
   if (roots.size() > avx2_trees / 2 && keys.size() <= avx2_slots && __builtin_cpu_supports("avx2")) {
     const std::size_t rest =
