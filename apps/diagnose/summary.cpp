@@ -36,7 +36,8 @@ std::string summary(const surefoot::Diagnosis& d, const std::filesystem::path& o
   if (!d.held_out.empty()) {
     text << "  on " << d.held_out.size() << " held-out recording(s): error " << rounded(d.held_out_before);
     if (!d.effects.empty()) text << " before, " << rounded(d.held_out_after) << " after";
-    text << "; forest " << rounded(d.held_out_forest) << ", noise floor " << rounded(d.noise_floor);
+    text << "; forest " << rounded(d.held_out_forest);
+    if (std::isfinite(d.noise_floor)) text << ", noise floor " << rounded(d.noise_floor);
     if (std::isfinite(d.noise_ratio)) text << " (" << rounded(d.noise_ratio) << " times it is left)";
     text << '\n';
   }

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "surefoot/core/rng.hpp"
+#include "tests/diagnose/small_simulators.hpp"
 #include "tests/support/servo_pendulum.hpp"
 #include "tests/support/walking_robot.hpp"
 
@@ -87,6 +89,54 @@ TEST_CASE("a delay is told from a lag") {
   const Diagnosis lagging = diagnose_servo({{.name = "first_order_lag", .attached_to = "goal", .values = {0.05}}}, 5);
   REQUIRE(lagging.effects.size() == 1);
   CHECK(lagging.effects.front().name == "first_order_lag");
+}
+
+namespace {
+
+// Recordings of 120 rows that begin at rest, of a machine whose input comes 0.12 s late; noise of 1 % of its outputs.
+template <class Machine>
+std::vector<surefoot::Recording> late_recordings(const Machine& machine, const std::string& input) {
+  std::vector<surefoot::Recording> recordings;
+  surefoot::Rng rng(3);
+  for (int r = 0; r < 6; ++r) {
+    surefoot::Recording one = toys::blank_recording(machine.info(), 120, 0.05);
+    one.name = "recording " + std::to_string(r);
+    one.inputs.rightCols(110) = toys::tank_recording(r, 120).inputs.leftCols(110);
+    one.outputs = simulate_augmented(machine, toys::machine({}, {{"input_delay", input, {}, {}, {0.12}}}), one).outputs;
+    for (Eigen::Index k = 0; k < one.outputs.rows(); ++k) {
+      const double noise = 0.01 * one.outputs.row(k).norm() / std::sqrt(120.0);
+      for (Eigen::Index row = 1; row < one.rows(); ++row) one.outputs(k, row) += noise * rng.normal();
+    }
+    recordings.push_back(std::move(one));
+  }
+  return recordings;
+}
+
+}  // namespace
+
+TEST_CASE("in open loop a late input and a late only sensor are the same, and that is said") {
+  DiagnoseOptions options;
+  options.effects = {"input_delay", "sensor_delay", "sensor_scale", "constant_rate"};
+  const Diagnosis one =
+      diagnose(toys::LeakyTank{}, late_recordings(toys::LeakyTank{}, "valve"), options, surefoot::Threads{}, 1);
+  REQUIRE(one.effects.size() == 1);
+  const bool input = one.effects[0].name == "input_delay";
+  CHECK((input || one.effects[0].name == "sensor_delay"));
+  CHECK(one.effects[0].parameters[0].value == doctest::Approx(0.12).epsilon(0.1));
+  REQUIRE_FALSE(one.alternatives.empty());
+  CHECK(one.alternatives[0].indistinguishable);
+  CHECK(one.alternatives[0].effects.at(0).first == (input ? "sensor_delay" : "input_delay"));
+  CHECK(one.sentence.find(input ? "sensor delay at level_m" : "input delay at valve") != std::string::npos);
+}
+
+TEST_CASE("one late input is named where several sensors are late, not one of these") {
+  DiagnoseOptions options;
+  options.effects = {"input_delay", "sensor_delay", "sensor_scale", "viscous_friction"};
+  const Diagnosis two =
+      diagnose(toys::SlidingBlock{}, late_recordings(toys::SlidingBlock{}, "push"), options, surefoot::Threads{}, 1);
+  REQUIRE(two.effects.size() == 1);
+  CHECK(two.effects[0].name == "input_delay");
+  CHECK(two.effects[0].parameters[0].value == doctest::Approx(0.12).epsilon(0.1));
 }
 
 TEST_CASE("two effects are found together") {

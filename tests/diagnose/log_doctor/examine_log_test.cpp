@@ -156,6 +156,20 @@ TEST_SUITE("log_doctor") {
     CHECK(toys::examined(log).faults.empty());
   }
 
+  TEST_CASE("an examination ends when its time is over, and says nothing that it did not compare to the end") {
+    Log log = toys::servo_log();
+    log[2].outputs.row(0) *= -1;
+    const surefoot::diagnosis::Parallel parallel = surefoot::diagnosis::serially();
+    surefoot::diagnosis::LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    inputs.stopped = [] { return true; };
+    CHECK(surefoot::diagnosis::examine_log(inputs, log).faults.empty());
+    int asked = 0;
+    inputs.stopped = [&asked] { return ++asked > 40; };
+    const auto cut_short = surefoot::diagnosis::examine_log(inputs, log);
+    CHECK(asked > 40);
+    for (const LogFault& fault : cut_short.faults) CHECK(fault.kind == "sign_flipped");
+  }
+
   TEST_CASE("a caution names the first fault that was not repaired") {
     using surefoot::diagnosis::caution;
     CHECK(caution({}).empty());

@@ -82,5 +82,32 @@ TEST_CASE("a store can leak and overflow, a place and an angle cannot") {
   CHECK(places(car, effects::constant_rate()) == std::vector<std::string>{"x", "yaw"});
 }
 
+// A cart that moves by its command and by that of the step before.
+struct Cart {
+  using State = Vec<2>;
+  using Input = Vec<1>;
+  using Output = Vec<1>;
+
+  SimulatorInfo info() const {
+    return {.name = "cart",
+            .kind = SimulatorKind::map,
+            .states = {{"x", "m"}, {"last", "m"}},
+            .inputs = {{"step", "m"}},
+            .outputs = {{"x_m", "m"}}};
+  }
+  State next(const State& x, const Input& u, const Eigen::VectorXd& /*p*/) const {
+    return {x[0] + 0.8 * u[0] + 0.2 * x[1], u[0]};
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return x.head<1>(); }
+};
+
+TEST_CASE("nothing acts on the memory of a command") {
+  const BoundSimulator cart = bind_simulator(Cart{}, {toys::blank_recording(Cart{}.info(), 100, 1)});
+  for (const Effect& effect : {effects::leak(), effects::overflow(), effects::constant_rate()}) {
+    CAPTURE(effect.name);
+    CHECK(places(cart, effect) == std::vector<std::string>{"x"});
+  }
+}
+
 }  // namespace
 }  // namespace surefoot::diagnosis

@@ -37,6 +37,32 @@ TEST_CASE("a level is no velocity, and neither are the states of a map") {
   CHECK(robot.output_of == std::vector<int>{0, 1, 2});
 }
 
+// A cart whose speed is the mean of this command and the two before, which it keeps.
+struct Sluggish {
+  using State = Vec<3>;
+  using Input = Vec<1>;
+  using Output = Vec<1>;
+  SimulatorInfo info() const {
+    return {.name = "sluggish",
+            .kind = SimulatorKind::map,
+            .states = {{"x", "m"}, {"last", "m"}, {"one_before", "m"}},
+            .inputs = {{"step", "m"}},
+            .outputs = {{"x_m", "m"}}};
+  }
+  State next(const State& x, const Input& u, const Eigen::VectorXd& /*p*/) const {
+    return {x[0] + (u[0] + x[1] + x[2]) / 3, u[0], x[1]};
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return x.head<1>(); }
+};
+
+TEST_CASE("states of a map that only keep commands are known with them") {
+  const auto structure = facts_of(Sluggish{}, toys::blank_recording(Sluggish{}.info(), 5, 1));
+  CHECK(structure.remembers == std::vector<bool>{false, true, true});
+  CHECK(structure.all_states_measured);
+  const auto tank = facts_of(toys::LeakyTank{}, toys::tank_recording(0, 20));
+  CHECK(tank.remembers == std::vector<bool>{false});
+}
+
 TEST_CASE("signals count as driven even where orders far away saturate them") {
   for (const double goal : {0.0, 0.6, -0.6, -1.5, 3.0}) {
     Recording recording = toys::blank_recording(toys::ServoPendulum{}.info(), 50, 0.01);

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "tests/diagnose/verdict/tank_setup.hpp"
 
 namespace surefoot::diagnosis {
@@ -29,6 +31,27 @@ TEST_CASE("the noise floor is that of the outputs in their scales") {
   outputs[0].noise = 0.3;
   outputs[1].noise = 8;
   CHECK(noise_floor(outputs, Vec<2>(0.1, 2)) == doctest::Approx(std::sqrt((9 + 16) / 2.0)));
+}
+
+TEST_CASE("where the noise of an output cannot be told no floor is") {
+  std::vector<ChannelMismatch> outputs(2);
+  outputs[0].noise = 0.3;
+  CHECK(std::isnan(noise_floor(outputs, Vec<2>(0.1, 2))));
+}
+
+TEST_CASE("the noise of an output that is read in every tenth row is that of these readings") {
+  auto recordings = toys::noisy_tanks({}, 0.01);
+  for (Recording& one : recordings) {
+    for (Eigen::Index row = 0; row < one.rows(); ++row) {
+      if (row % 10 != 0) one.outputs(0, row) = std::nan("");
+    }
+  }
+  const EstimationSetup setup = toys::tank_setup(std::move(recordings));
+  const FittedModel right = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
+  Diagnosis diagnosis;
+  evaluate_errors(setup, {right, right, right}, diagnosis, 1);
+  CHECK(diagnosis.channels.at(0).noise == doctest::Approx(0.01).epsilon(0.3));
+  CHECK(diagnosis.noise_ratio == doctest::Approx(1).epsilon(0.3));
 }
 
 TEST_CASE("the noise of an output is what no lag predicts, unless it is stated") {

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "surefoot/diagnose/diagnose.hpp"
@@ -133,6 +134,22 @@ TEST_CASE("by default every recording is for the fit, and held out once") {
   name_recordings(setup, diagnosis);
   CHECK(diagnosis.fit.size() == 6);
   CHECK(diagnosis.held_out == diagnosis.fit);
+}
+
+TEST_CASE("the order in which recordings are given changes nothing") {
+  DiagnoseOptions options;
+  options.effects = {"constant_rate", "sensor_drift"};
+  options.starts = 4;
+  std::vector<Recording> recordings = toys::noisy_tanks(toys::extra_inflow(), 0.01, 7);
+  const Diagnosis one = diagnose(toys::LeakyTank{}, recordings, options, Serial{}, 1);
+  std::ranges::reverse(recordings);
+  std::swap(recordings[1], recordings[4]);
+  const Diagnosis other = diagnose(toys::LeakyTank{}, recordings, options, Serial{}, 1);
+  CHECK(one.effects.size() == 1);
+  CHECK(one.sentence == other.sentence);
+  CHECK(one.held_out_after == other.held_out_after);
+  CHECK(one.probability == other.probability);
+  CHECK(one.held_out == other.held_out);
 }
 
 TEST_CASE("the pipeline names what is missing, and tells how far it is") {

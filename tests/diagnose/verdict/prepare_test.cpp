@@ -37,5 +37,17 @@ TEST_CASE("an initial state that was read off a sensor is known as well as that 
   CHECK(bound.recordings[2].initial_scale[0] == 0);  // known from elsewhere
 }
 
+TEST_CASE("recordings stand in the order of their names, those of one name in that of what they hold") {
+  const std::vector<Recording> all = toys::noisy_tanks({}, 0.01, 4);
+  std::vector<Recording> shuffled{all[2], all[0], all[3], all[1]};
+  sort_recordings(shuffled);
+  for (std::size_t r = 0; r < all.size(); ++r) CHECK(shuffled[r].name == all[r].name);
+  for (Recording& one : shuffled) one.name.clear();
+  std::vector<Recording> reversed(shuffled.rbegin(), shuffled.rend());
+  sort_recordings(shuffled);
+  sort_recordings(reversed);
+  for (std::size_t r = 0; r < all.size(); ++r) CHECK(shuffled[r].inputs == reversed[r].inputs);
+}
+
 }  // namespace
 }  // namespace surefoot::diagnosis

@@ -45,17 +45,17 @@ SUREFOOT_INLINE LogFit first_fit(const LogDoctorInputs& inputs, const std::vecto
 
 SUREFOOT_INLINE void examine_columns(LogUnderExamination& log) {
   constexpr int most_of_all = 3;  // faults of the whole log, one after the other
-  for (int round = 0; round < most_of_all; ++round) {
+  for (int round = 0; round < most_of_all && !log.inputs.stopped(); ++round) {
     const auto found = find_fault_of_all(log.inputs, log.fit);
-    if (!found) break;
+    if (!found || log.inputs.stopped()) break;  // what a comparison that was cut short says does not count
     log.add(describe_fault(log.fit.bound, *found), true);
     std::vector<Recording> recordings = log.fit.bound.recordings;
     for (Recording& recording : recordings) recording = repaired(log.fit.bound, recording, found->repairs);
     log.fit = first_fit(log.inputs, recordings);
   }
-  for (std::size_t round = 0; 2 * round < log.fit.bound.recordings.size(); ++round) {
+  for (std::size_t round = 0; 2 * round < log.fit.bound.recordings.size() && !log.inputs.stopped(); ++round) {
     const auto found = find_fault_of_one(log.fit, log.inputs.criteria, log.inputs.parallel);
-    if (!found) break;
+    if (!found || log.inputs.stopped()) break;
     log.add(describe_fault(log.fit.bound, *found), true);
     std::vector<Recording> recordings = log.fit.bound.recordings;
     Recording& one = recordings[*found->recording];
@@ -108,9 +108,9 @@ SUREFOOT_INLINE void examine_readings(LogUnderExamination& log) {
 }
 
 SUREFOOT_INLINE void examine_clocks(LogUnderExamination& log) {
-  for (std::size_t round = 0; 2 * round < log.fit.bound.recordings.size(); ++round) {
+  for (std::size_t round = 0; 2 * round < log.fit.bound.recordings.size() && !log.inputs.stopped(); ++round) {
     const auto fault = find_clock_fault(log.inputs, log.fit);
-    if (!fault) break;
+    if (!fault || log.inputs.stopped()) break;
     log.add(describe_fault(log.fit.bound, *fault), true);
     std::vector<Recording> recordings = log.fit.bound.recordings;
     for (std::size_t r = 0; r < recordings.size(); ++r) {
@@ -128,7 +128,8 @@ SUREFOOT_INLINE LogExamination examine_log(const LogDoctorInputs& inputs, const 
   examine_columns(log);
   examine_readings(log);
   examine_clocks(log);
-  if (const auto odd = find_odd_recording(inputs, log.fit)) log.add({describe_fault(log.fit.bound, *odd)}, false);
+  const auto odd = find_odd_recording(inputs, log.fit);
+  if (odd && !inputs.stopped()) log.add({describe_fault(log.fit.bound, *odd)}, false);
   return {std::move(log.faults), std::move(log.fit.bound.recordings)};
 }
 

@@ -18,6 +18,7 @@ struct LogDoctorInputs {
   std::function<Hypothesis(const BoundSimulator&)> nominal;
   const Parallel& parallel;
   LogDoctorCriteria criteria = {};
+  std::function<bool()> stopped = [] { return false; };  // the time is over: what was found until then counts
 };
 
 /// Simulated minus measured, output x row; NaN: not measured, infinite: the simulation ran away.

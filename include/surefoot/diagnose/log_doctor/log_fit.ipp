@@ -202,6 +202,7 @@ SUREFOOT_INLINE LogFit fit_log(const LogDoctorInputs& inputs, std::vector<Record
   bound.integration.restart = result.noise == NoiseKind::process ? 1 : 0;
   problem.integration = bound.integration;
   problem.max_iterations = criteria.fit_iterations;
+  problem.stopped = inputs.stopped;
   problem.weighting.sigma = result.size = output_sizes(bound);
   Fit best{.hypothesis = result.hypothesis};
   for (int round = 0; round < criteria.fit_rounds; ++round) {

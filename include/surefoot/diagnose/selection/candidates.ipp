@@ -65,6 +65,7 @@ SUREFOOT_INLINE bool fits_state(const BoundSimulator& bound, const Effect& effec
   const SimulatorInfo& info = bound.info;
   const auto i = static_cast<int>(state);
   const bool is_position = std::ranges::find(bound.structure.position_of, i) != bound.structure.position_of.end();
+  if (bound.structure.remembers[state]) return false;  // no matter is kept there, only what was commanded
   const bool pose = info.planar && (i == info.planar->x || i == info.planar->y || i == info.planar->heading);
   if (is_position || bound.structure.velocity[state] || pose) return false;  // there forces act, or walking effects
   const std::string& unit = info.states[state].unit;

@@ -16,9 +16,10 @@ struct SimulatorStructure {
   std::vector<int> position_of;     // by state: the state whose rate it is, or -1
   std::vector<bool> velocity;       // by state: forces may act on it
   std::vector<bool> affects_rates;  // by state: some rate depends on it (maps are not asked: always)
+  std::vector<bool> remembers;      // by state of a map: only keeps inputs, of this step or of earlier ones
   std::vector<int> output_of;       // by state: the output that reads it directly, or -1
   std::vector<bool> driven_signal;  // by signal: changes with the inputs
-  bool all_states_measured = false;
+  bool all_states_measured = false;  // but for those that only keep inputs, and are known with them
 };
 
 /// Typical sizes, root mean squares over the recordings.

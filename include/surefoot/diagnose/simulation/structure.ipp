@@ -42,8 +42,9 @@ SUREFOOT_INLINE bool nearly_equal(double a, double b) {
 
 /// What no point has refuted yet.
 struct StructureSearch {
-  std::vector<std::vector<bool>> speed;  // [i][j]: the rate of state i is state j
-  std::vector<std::vector<bool>> reads;  // [i][k]: output k reads state i
+  std::vector<std::vector<bool>> speed;       // [i][j]: the rate of state i is state j
+  std::vector<std::vector<bool>> reads;       // [i][k]: output k reads state i
+  std::vector<std::vector<bool>> depends_on;  // [i][j]: the rate, or next value, of state i depends on state j
 };
 
 SUREFOOT_INLINE void refute(StructureSearch& search, const Eigen::VectorXd& x, const Eigen::VectorXd& rate,
@@ -66,6 +67,35 @@ SUREFOOT_INLINE bool is_speed_unit(const std::string& unit) {
   return std::ranges::find(speeds, unit) != speeds.end();
 }
 
+/// Compares the rates at a point with those after each state was moved from it.
+SUREFOOT_INLINE void find_dependencies(StructureSearch& search, const SimulatorAnswers& answers,
+                                       const Eigen::VectorXd& x, const Eigen::VectorXd& u, const Eigen::VectorXd& rate,
+                                       double scale, Rng& rng) {
+  for (std::size_t j = 0; j < search.speed.size(); ++j) {
+    Eigen::VectorXd moved = x;
+    moved[static_cast<Eigen::Index>(j)] += scale * (0.1 + rng.uniform());
+    const Eigen::VectorXd changed = answers.rates(moved, u, nullptr);
+    for (std::size_t i = 0; i < search.speed.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      if (!nearly_equal(rate[row], changed[row])) search.depends_on[i][j] = true;
+    }
+  }
+}
+
+/// States whose next values depend on inputs alone, or on others of that kind.
+SUREFOOT_INLINE std::vector<bool> states_that_remember(const StructureSearch& search) {
+  const std::size_t n = search.depends_on.size();
+  std::vector<bool> remembers(n, false);
+  for (std::size_t round = 0; round < n; ++round) {  // each finds what keeps what the one before keeps
+    for (std::size_t i = 0; i < n; ++i) {
+      bool only = true;
+      for (std::size_t j = 0; j < n; ++j) only = only && (!search.depends_on[i][j] || (j != i && remembers[j]));
+      remembers[i] = only;
+    }
+  }
+  return remembers;
+}
+
 /// Fills in what remains true.
 SUREFOOT_INLINE void conclude_structure(const StructureSearch& search, const SimulatorInfo& info,
                                         SimulatorStructure& structure) {
@@ -73,6 +103,9 @@ SUREFOOT_INLINE void conclude_structure(const StructureSearch& search, const Sim
   structure.position_of.assign(n, -1);
   structure.velocity.assign(n, false);
   structure.output_of.assign(n, -1);
+  const bool map = info.kind == SimulatorKind::map;
+  structure.remembers = map ? states_that_remember(search) : std::vector<bool>(n, false);
+  structure.affects_rates.assign(n, map);
   structure.all_states_measured = true;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n && info.kind == SimulatorKind::ode; ++j) {
@@ -81,7 +114,12 @@ SUREFOOT_INLINE void conclude_structure(const StructureSearch& search, const Sim
     for (std::size_t k = 0; k < search.reads[i].size(); ++k) {
       if (search.reads[i][k]) structure.output_of[i] = static_cast<int>(k);
     }
-    structure.all_states_measured = structure.all_states_measured && structure.output_of[i] >= 0;
+    for (std::size_t j = 0; j < n; ++j) {
+      if (search.depends_on[j][i]) structure.affects_rates[i] = true;
+    }
+    if (structure.output_of[i] >= 0) structure.remembers[i] = false;  // what is measured is more than kept
+    structure.all_states_measured =
+        structure.all_states_measured && (structure.output_of[i] >= 0 || structure.remembers[i]);
   }
   for (std::size_t i = 0; i < n; ++i) {
     const StateInfo& state = info.states[i];
@@ -95,8 +133,8 @@ SUREFOOT_INLINE SimulatorStructure find_structure(const SimulatorAnswers& answer
   const auto n = info.states.size(), m = info.inputs.size(), k = info.outputs.size();
   SimulatorStructure structure;
   structure.driven_signal.assign(info.signals.size(), false);
-  structure.affects_rates.assign(n, info.kind == SimulatorKind::map);
-  StructureSearch search{std::vector(n, std::vector<bool>(n, true)), std::vector(n, std::vector<bool>(k, true))};
+  StructureSearch search{std::vector(n, std::vector<bool>(n, true)), std::vector(n, std::vector<bool>(k, true)),
+                         std::vector(n, std::vector<bool>(n, false))};
   Rng rng(1);
   std::vector<double> signals(info.signals.size());
   constexpr int rounds = 36;
@@ -112,14 +150,7 @@ SUREFOOT_INLINE SimulatorStructure find_structure(const SimulatorAnswers& answer
     const Eigen::VectorXd rate = answers.rates(x, u, &signals);
     const std::vector<double> first = signals;
     refute(search, x, rate, answers.outputs(x, u));
-    for (std::size_t i = 0; i < n && info.kind == SimulatorKind::ode; ++i) {
-      Eigen::VectorXd moved = x;
-      moved[static_cast<Eigen::Index>(i)] += scale * (0.1 + rng.uniform());
-      const Eigen::VectorXd changed = answers.rates(moved, u, nullptr);
-      for (Eigen::Index j = 0; j < rate.size(); ++j) {
-        if (!nearly_equal(rate[j], changed[j])) structure.affects_rates[i] = true;
-      }
-    }
+    find_dependencies(search, answers, x, u, rate, scale, rng);
     const double reach = (round % 2 == 0 ? 10 : -10) * scale;
     for (double& value : u) value += reach * (0.1 + rng.uniform());
     answers.rates(x, u, &signals);

@@ -46,7 +46,7 @@ double output_noise(const BoundSimulator& bound, const std::vector<std::size_t>&
 
 std::vector<ChannelMismatch> mismatch_by_output(const EstimationSetup& setup, const FittedModels& models);
 
-/// Error that noise alone leaves, in units of `scale` (by output).
+/// Error that noise alone leaves, in units of `scale` (by output); NaN if that of any output cannot be told.
 double noise_floor(const std::vector<ChannelMismatch>& outputs, const Eigen::VectorXd& scale);
 
 /// Fills in errors and curves.

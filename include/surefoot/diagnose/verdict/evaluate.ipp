@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <stop_token>
 #include <tuple>
 #include <utility>
@@ -150,6 +151,7 @@ SUREFOOT_INLINE std::vector<ChannelMismatch> mismatch_by_output(const Estimation
 SUREFOOT_INLINE double noise_floor(const std::vector<ChannelMismatch>& outputs, const Eigen::VectorXd& scale) {
   double squares = 0;
   for (std::size_t k = 0; k < outputs.size(); ++k) {
+    if (!(outputs[k].noise > 0)) return std::numeric_limits<double>::quiet_NaN();
     const double unit = scale[static_cast<Eigen::Index>(k)];
     squares += outputs[k].noise * outputs[k].noise / (unit * unit) / static_cast<double>(outputs.size());
   }

@@ -69,7 +69,8 @@ SUREFOOT_INLINE Hypothesis nominal_with_known(const BoundSimulator& bound, const
 SUREFOOT_INLINE std::vector<LogFault> examine_recordings(const BindSimulator& bind, std::vector<Recording>& recordings,
                                                          const RunContext& run) {
   const auto nominal = [&](const BoundSimulator& bound) { return nominal_with_known(bound, run.options); };
-  LogExamination examined = examine_log({bind, nominal, run.parallel}, recordings);
+  LogExamination examined =
+      examine_log({bind, nominal, run.parallel, {}, [run] { return run.search_has_ended(); }}, recordings);
   if (run.options.repair) {
     recordings = std::move(examined.repaired);
   } else {
@@ -349,6 +350,7 @@ SUREFOOT_INLINE Diagnosis run_pipeline(const BindSimulator& bind, const Simulato
 
   run.progress("screening", 0);
   diagnosis.remarks = screen_recordings(info, recordings);
+  sort_recordings(recordings);
   const Eigen::Index kept = shorten_recordings(recordings, options.max_rows);
   if (kept > 0) diagnosis.remarks.push_back({"", shortening_sentence(kept)});
   diagnosis.log_faults = examine_recordings(bind, recordings, run);

@@ -31,6 +31,10 @@ std::vector<Recording> cut_recordings(const BoundSimulator& bound, const Hypothe
 void free_measured_initial_states(BoundSimulator& bound, const std::vector<std::size_t>& training,
                                   const PreparationCriteria& criteria = {});
 
+/// Puts recordings in the order of their names, those of one name in that of their times and inputs: what is concluded
+/// does not depend on the order in which they are given.
+void sort_recordings(std::vector<Recording>& recordings);
+
 /// Of more rows than `most` each recording keeps only the first ones, short recordings all of theirs. Returns how many
 /// rows the longest has left, 0 if none was shortened.
 Eigen::Index shorten_recordings(std::vector<Recording>& recordings, std::size_t most);

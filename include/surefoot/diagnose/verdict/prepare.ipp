@@ -4,12 +4,14 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
 #include "surefoot/diagnose/residual_tests/whiteness.hpp"
 #include "surefoot/diagnose/verdict/prepare.hpp"
@@ -58,6 +60,17 @@ SUREFOOT_INLINE void free_measured_initial_states(BoundSimulator& bound, const s
       if (noise > criteria.least_noise * deviation) recording.initial_scale[state] = noise;
     }
   }
+}
+
+SUREFOOT_INLINE void sort_recordings(std::vector<Recording>& recordings) {
+  const auto compare = [](const auto& a, const auto& b) {
+    return std::lexicographical_compare_three_way(a.data(), a.data() + a.size(), b.data(), b.data() + b.size());
+  };
+  sort_items(recordings, [&compare](const Recording& a, const Recording& b) {
+    if (a.name != b.name) return a.name < b.name;
+    const auto times = compare(a.time, b.time);
+    return times != 0 ? times < 0 : compare(a.inputs, b.inputs) < 0;
+  });
 }
 
 /// Whether the first rows hold about their share of the measurements: not where only the end was measured.
