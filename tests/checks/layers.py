@@ -54,7 +54,8 @@ ON_THEIR_OWN = ["surefoot/solve/policy_search.hpp"]
 SYSTEM_HEADERS = {
     "": ["immintrin.h"],  # intrinsics, behind the compiler's own macros
     "core": ["fcntl.h", "sys/stat.h", "unistd.h"],  # to flush files to the disk, behind the system's own macros
-    "forest": ["smmintrin.h", "avxintrin.h", "avx2intrin.h"],  # parts of immintrin.h
+    "forest": ["smmintrin.h", "avxintrin.h", "avx2intrin.h",  # parts of immintrin.h
+               "sys/mman.h"],  # to ask for large pages, behind the system's own macro
     "mpi": ["mpi.h", "pthread.h", "unistd.h"],
 }
 MOST_LINES = 300
