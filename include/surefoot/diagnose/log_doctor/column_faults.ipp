@@ -39,8 +39,8 @@ SUREFOOT_INLINE double measured_cells(const ResidualRows& residuals) {
 /// Variance, by chance alone, of the logarithm of the root mean square of n independent residuals: a quarter of the
 /// trigamma function of n / 2, by the first terms of its series.
 SUREFOOT_INLINE double variance_of_log_size(double n) {
-  constexpr double third_term = 1.0 / 6;
-  const double x = std::max(n, 1.0) / 2, trigamma = (1 + (0.5 + third_term / x) / x) / x;
+  constexpr double second = 0.5, third = 1.0 / 6;  // coefficients of the series
+  const double x = std::max(n, 1.0) / 2, trigamma = (1 + (second + third / x) / x) / x;
   return trigamma / (2 * 2);
 }
 
