@@ -93,7 +93,8 @@ struct Cart {
             .kind = SimulatorKind::map,
             .states = {{"x", "m"}, {"last", "m"}},
             .inputs = {{"step", "m"}},
-            .outputs = {{"x_m", "m"}}};
+            .outputs = {{"x_m", "m"}},
+            .parameters = {}};
   }
   State next(const State& x, const Input& u, const Eigen::VectorXd& /*p*/) const {
     return {x[0] + 0.8 * u[0] + 0.2 * x[1], u[0]};

@@ -47,7 +47,8 @@ struct Sluggish {
             .kind = SimulatorKind::map,
             .states = {{"x", "m"}, {"last", "m"}, {"one_before", "m"}},
             .inputs = {{"step", "m"}},
-            .outputs = {{"x_m", "m"}}};
+            .outputs = {{"x_m", "m"}},
+            .parameters = {}};
   }
   State next(const State& x, const Input& u, const Eigen::VectorXd& /*p*/) const {
     return {x[0] + (u[0] + x[1] + x[2]) / 3, u[0], x[1]};

@@ -23,8 +23,9 @@ bool has_clocks(const LogFit& fit, const LogDoctorCriteria& criteria);
 /// within them).
 double scatter_by_chance(const std::vector<ClockEstimate>& estimates, const LogDoctorCriteria& criteria);
 
-/// Probability that estimate r lies so far from the others by chance (a t test, on the scatter of the others).
-double outlier_by_chance(const std::vector<ClockEstimate>& estimates, std::size_t r);
+/// Probability that estimate r lies so far from the others by chance: a t test, on its own standard error and on how
+/// much further the others scatter than theirs explain.
+double outlier_by_chance(const std::vector<ClockEstimate>& estimates, std::size_t r, const LogDoctorCriteria& criteria);
 
 std::optional<ClockFault> find_clock_fault(const LogDoctorInputs& inputs, const LogFit& fit);
 

@@ -51,19 +51,28 @@ SUREFOOT_INLINE double scatter_by_chance(const std::vector<ClockEstimate>& estim
   return f_tail(sum / (count - 1), count - 1, count * static_cast<double>(criteria.blocks - 1));
 }
 
-SUREFOOT_INLINE double outlier_by_chance(const std::vector<ClockEstimate>& estimates, std::size_t r) {
-  double mean = 0, squares = 0, count = 0;
+SUREFOOT_INLINE double outlier_by_chance(const std::vector<ClockEstimate>& estimates, std::size_t r,
+                                         const LogDoctorCriteria& criteria) {
+  const std::vector<double> variances = pooled_variances(estimates);
+  double mean = 0, squares = 0, within = 0, count = 0;
   for (std::size_t o = 0; o < estimates.size(); ++o) {
     if (o == r || !estimates[o].usable) continue;
     mean += estimates[o].value;
     squares += estimates[o].value * estimates[o].value;
+    within += variances[o];
     ++count;
   }
   if (!estimates[r].usable || count < 2) return 1;
   mean /= count;
-  const double between = std::max(squares / count - mean * mean, 0.0) * count / (count - 1);
-  const double variance = between * (1 + 1 / count) + pooled_variances(estimates)[r];
-  return variance > 0 ? t_tail((estimates[r].value - mean) / std::sqrt(variance), count - 1) : 1;
+  within /= count;
+  const double scatter = std::max(squares / count - mean * mean, 0.0) * count / (count - 1);
+  const double between = std::max(scatter - within, 0.0);  // recordings differ by more than each is known to
+  const double own = variances[r] + within / count, others = between * (1 + 1 / count), variance = own + others;
+  if (!(variance > 0)) return 1;
+  // degrees of freedom of a sum of two estimated variances (Welch and Satterthwaite)
+  const double blocks = static_cast<double>(criteria.blocks) - 1;
+  const double degrees = variance * variance / (own * own / blocks + others * others / (count - 1));
+  return t_tail((estimates[r].value - mean) / std::sqrt(variance), degrees);
 }
 
 SUREFOOT_INLINE double median_value(const std::vector<ClockEstimate>& estimates) {
@@ -104,7 +113,8 @@ SUREFOOT_INLINE void compare_single(const Clocks& clocks, LogFaultKind kind, con
   for (std::size_t r = 0; r < clocks.estimates.size(); ++r) {
     const ClockEstimate& one = clocks.estimates[r];
     if (!one.usable) continue;
-    const double chance = outlier_by_chance(clocks.estimates, r) * static_cast<double>(clocks.estimates.size()) * kinds;
+    const double chance =
+        outlier_by_chance(clocks.estimates, r, criteria) * static_cast<double>(clocks.estimates.size()) * kinds;
     const double ratio = error_at(clocks.profiles[r], common) / one.error;
     const double least = kind == LogFaultKind::offset ? criteria.decisive : criteria.skew_gain;
     if (!(chance < criteria.significance && ratio > least)) continue;
@@ -145,7 +155,7 @@ SUREFOOT_INLINE double common_amount(const Clocks& clocks) {
 /// Takes offsets out and calibrates in turn, until neither moves much: each recording's own, or one for all.
 SUREFOOT_INLINE WithoutOffsets take_offsets_out(const LogDoctorInputs& inputs, const LogFit& fit, WithoutOffsets start,
                                                 bool own) {
-  constexpr int rounds = 10;         // parameters that follow a delay make it slow
+  constexpr int rounds = 10;        // parameters that follow a delay make it slow
   constexpr double settled = 0.05;  // of an interval between rows: no offset moves further
   const double interval = median_interval(fit.bound.recordings.front());
   for (int round = 0; round < rounds; ++round) {
@@ -158,8 +168,8 @@ SUREFOOT_INLINE WithoutOffsets take_offsets_out(const LogDoctorInputs& inputs, c
       start.amounts[r] += more;
       move = std::max(move, std::abs(more));
     }
-    start.fit = fit_log(inputs, with_amounts(fit, LogFaultKind::offset, start.amounts),
-                        start.fit.hypothesis.parameters);
+    start.fit =
+        fit_log(inputs, with_amounts(fit, LogFaultKind::offset, start.amounts), start.fit.hypothesis.parameters);
     if (move < settled * interval) break;
   }
   return start;

@@ -30,17 +30,35 @@ SUREFOOT_INLINE double log_likelihood(double n, double squares, double scatter) 
   return -n * low - 0.5 * squares * std::exp(-2 * low) - 0.5 * precision * low * low;
 }
 
+SUREFOOT_INLINE double measured_cells(const ResidualRows& residuals) {
+  double count = 0;
+  for (Eigen::Index i = 0; i < residuals.size(); ++i) count += std::isnan(residuals.data()[i]) ? 0 : 1;
+  return count;
+}
+
+/// Variance, by chance alone, of the logarithm of the root mean square of n independent residuals: a quarter of the
+/// trigamma function of n / 2, by the first terms of its series.
+SUREFOOT_INLINE double variance_of_log_size(double n) {
+  constexpr double second = 0.5, third = 1.0 / 6;  // coefficients of the series
+  const double x = std::max(n, 1.0) / 2, trigamma = (1 + (second + third / x) / x) / x;
+  return trigamma / (2 * 2);
+}
+
+/// By how much recordings differ in the size of their residuals beyond chance: standard deviation of its logarithm.
 SUREFOOT_INLINE double scatter_of_sizes(const LogFit& fit) {
   constexpr double normal = 1.4826;  // standard deviation over median absolute deviation of a normal distribution
-  constexpr double least = 0.2;      // recordings of one kind scatter by chance; few alone cannot tell less
-  std::vector<double> logarithms;
+  constexpr double least = 0.2;      // few recordings alone cannot tell less
+  std::vector<double> logarithms, by_chance;
   for (const ResidualRows& residuals : fit.residuals) {
     const double square = mean_square(residuals, fit.typical);
-    if (square > 0 && std::isfinite(square)) logarithms.push_back(0.5 * std::log(square));
+    if (!(square > 0 && std::isfinite(square))) continue;
+    logarithms.push_back(0.5 * std::log(square));
+    by_chance.push_back(variance_of_log_size(independent_share(residuals, fit.typical) * measured_cells(residuals)));
   }
   const double middle = median_of(logarithms);
   for (double& value : logarithms) value = std::abs(value - middle);
-  return std::max(normal * median_of(logarithms), least);
+  const double observed = normal * median_of(logarithms);
+  return std::sqrt(std::max(observed * observed - median_of(by_chance), least * least));
 }
 
 /// Residuals of the outputs that repairs touch; of all where they touch inputs or the time.
@@ -58,12 +76,6 @@ SUREFOOT_INLINE ResidualRows touched(ResidualRows residuals, const Repairs& repa
     }
   }
   return residuals;
-}
-
-SUREFOOT_INLINE double measured_cells(const ResidualRows& residuals) {
-  double count = 0;
-  for (Eigen::Index i = 0; i < residuals.size(); ++i) count += std::isnan(residuals.data()[i]) ? 0 : 1;
-  return count;
 }
 
 /// Logarithm of how much denser readings lie after they were multiplied by something (the Jacobian of that change).

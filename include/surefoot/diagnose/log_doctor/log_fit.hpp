@@ -44,6 +44,10 @@ double independent_share(const ResidualRows& residuals, const Eigen::VectorXd& u
 
 double median_of(std::vector<double> values);
 
+/// By output, how much it moves: the standard deviation of the median recording, or of single steps where each starts
+/// anew.
+Eigen::VectorXd output_sizes(const BoundSimulator& bound);
+
 /// A simulation of recording r in another version, which starts from that version's initial state.
 struct Resimulation {
   SimulatedRun run;

@@ -98,7 +98,6 @@ SUREFOOT_INLINE Resimulation resimulate(const LogFit& fit, std::size_t r, const 
   return result;
 }
 
-/// How much outputs move in a recording: their standard deviation, or that of single steps where each starts anew.
 SUREFOOT_INLINE Eigen::VectorXd output_sizes(const BoundSimulator& bound) {
   constexpr double smallest = 1e-12;  // in place of 0, so that a size may be divided by
   const bool steps = bound.integration.restart > 0;

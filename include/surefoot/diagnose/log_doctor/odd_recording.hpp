@@ -14,7 +14,7 @@ struct OddRecording {
   double ratio = 1;  // of root mean square errors
 };
 
-std::optional<OddRecording> find_odd_recording(const LogDoctorInputs& inputs, const LogFit& fit);
+std::optional<OddRecording> find_odd_recording(const LogDoctorInputs& inputs, const LogFit& logged);
 
 }  // namespace surefoot::diagnosis
 

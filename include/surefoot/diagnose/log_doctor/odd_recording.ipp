@@ -48,46 +48,101 @@ SUREFOOT_INLINE double relative_error(const LogFit& fit, const Recording& record
 SUREFOOT_INLINE std::vector<double> errors_of(const LogFit& fit, const LogFit& like, bool relative) {
   std::vector<double> errors;
   for (std::size_t r = 0; r < fit.residuals.size(); ++r) {
-    const bool own = relative && like.bound.integration.restart == 0;
-    errors.push_back(own ? relative_error(like, fit.bound.recordings[r], fit.residuals[r])
-                         : mean_square(fit.residuals[r], like.size));
+    errors.push_back(relative ? relative_error(like, fit.bound.recordings[r], fit.residuals[r])
+                              : mean_square(fit.residuals[r], like.size));
   }
   return errors;
 }
 
-/// The recording that stands out, if any does.
+/// The recording that is far off and further than all others, if any is.
 SUREFOOT_INLINE std::optional<std::size_t> outstanding(const std::vector<double>& errors,
                                                        const LogDoctorCriteria& criteria) {
-  constexpr double tests = 2;  // relative to the motion of each recording and of most
   const auto worst = static_cast<std::size_t>(std::ranges::max_element(errors) - errors.begin());
   double others = 0;
   for (std::size_t o = 0; o < errors.size(); ++o) others = std::max(others, o == worst ? 0 : errors[o]);
-  const double chance = error_by_chance(errors, worst) * static_cast<double>(errors.size()) * tests;
   const bool far_off = errors[worst] > criteria.decisive * others && errors[worst] > criteria.odd;
-  return far_off && chance < criteria.significance ? std::optional(worst) : std::nullopt;
+  return far_off ? std::optional(worst) : std::nullopt;
+}
+
+/// Whether a recording is further off than the scatter of the others' errors explains.
+SUREFOOT_INLINE bool beyond_scatter(const std::vector<double>& errors, std::size_t r,
+                                    const LogDoctorCriteria& criteria) {
+  constexpr double tests = 2;  // relative to the motion of each recording and of most
+  return error_by_chance(errors, r) * static_cast<double>(errors.size()) * tests < criteria.significance;
+}
+
+/// Squared correlation of what was measured with what is simulated, as far as it is positive, of the output where it
+/// is largest.
+SUREFOOT_INLINE double alikeness(const Recording& recording, const ResidualRows& residuals) {
+  double most = 0;
+  for (Eigen::Index k = 0; k < residuals.rows(); ++k) {
+    double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
+    for (Eigen::Index row = 0; row < residuals.cols(); ++row) {
+      const double measured = recording.outputs(k, row), simulated = measured + residuals(k, row);
+      if (!std::isfinite(simulated)) continue;
+      n += 1, x += measured, y += simulated;
+      xx += measured * measured, yy += simulated * simulated, xy += measured * simulated;
+    }
+    const double across = n * xy - x * y, own = (n * xx - x * x) * (n * yy - y * y);
+    if (across > 0 && own > 0) most = std::max(most, across * across / own);
+  }
+  return most;
+}
+
+/// Simulates all recordings anew.
+SUREFOOT_INLINE void simulate_again(const LogDoctorInputs& inputs, LogFit& fit) {
+  const LogFit before = fit;
+  inputs.parallel(fit.error.size(), [&](std::size_t r) {
+    Resimulation one = resimulate(before, r, before.bound.recordings[r]);
+    fit.runs[r] = std::move(one.run);
+    fit.residuals[r] = std::move(one.residuals);
+  });
+  for (std::size_t r = 0; r < fit.error.size(); ++r) fit.error[r] = mean_square(fit.residuals[r], fit.size);
+}
+
+/// A fit to single steps as it simulates whole recordings: noise of the steps hides what recordings differ in.
+SUREFOOT_INLINE LogFit over_whole_recordings(const LogDoctorInputs& inputs, LogFit fit) {
+  if (fit.bound.integration.restart == 0) return fit;
+  fit.bound.integration.restart = 0;
+  fit.size = output_sizes(fit.bound);
+  simulate_again(inputs, fit);
+  return fit;
+}
+
+/// Whether the model, whatever its parameters, scales and signs, says nothing like what a recording holds: its readings
+/// do not belong to its inputs, which no missing physics brings about.
+SUREFOOT_INLINE bool is_unrelated(const LogDoctorInputs& inputs, const LogFit& fit, const LogFit& predicted,
+                                  std::size_t r) {
+  const LogDoctorCriteria& criteria = inputs.criteria;
+  const Recording& recording = fit.bound.recordings[r];
+  if (recording.rows() < static_cast<Eigen::Index>(criteria.fewest_rows)) return false;
+  if (alikeness(recording, predicted.residuals[r]) > 1 - criteria.odd) return false;
+  const LogFit own = over_whole_recordings(inputs, fit_log(inputs, {recording}, predicted.hypothesis.parameters));
+  const double left = relative_error(fit, own.bound.recordings.front(), own.residuals.front());
+  return left > criteria.poor_fit && alikeness(recording, own.residuals.front()) < 1 - criteria.poor_fit;
 }
 
 /// What a calibration without recording r predicts of all.
 SUREFOOT_INLINE LogFit predicted_without(const LogDoctorInputs& inputs, const LogFit& fit, std::size_t r) {
   std::vector<Recording> others = fit.bound.recordings;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(r));
-  LogFit without = fit_log(inputs, others, fit.hypothesis.parameters);
   LogFit all = fit;
-  all.hypothesis.parameters = without.hypothesis.parameters;
-  ResidualRows left_out = resimulate(all, r, fit.bound.recordings[r]).residuals;
-  all.residuals = std::move(without.residuals);
-  all.residuals.insert(all.residuals.begin() + static_cast<std::ptrdiff_t>(r), std::move(left_out));
+  all.hypothesis.parameters = fit_log(inputs, others, fit.hypothesis.parameters).hypothesis.parameters;
+  simulate_again(inputs, all);
   return all;
 }
 
-SUREFOOT_INLINE std::optional<OddRecording> find_odd_recording(const LogDoctorInputs& inputs, const LogFit& fit) {
+SUREFOOT_INLINE std::optional<OddRecording> find_odd_recording(const LogDoctorInputs& inputs, const LogFit& logged) {
   constexpr std::size_t fewest = 4;  // recordings, to say what most of them are like
-  if (fit.error.size() < fewest) return std::nullopt;
+  if (logged.error.size() < fewest) return std::nullopt;
+  const LogFit fit = over_whole_recordings(inputs, logged);
   for (const bool relative : {false, true}) {
     const auto odd = outstanding(errors_of(fit, fit, relative), inputs.criteria);
     if (!odd) continue;
-    const std::vector<double> errors = errors_of(predicted_without(inputs, fit, *odd), fit, relative);
+    const LogFit predicted = predicted_without(inputs, fit, *odd);
+    const std::vector<double> errors = errors_of(predicted, fit, relative);
     if (outstanding(errors, inputs.criteria) != odd) continue;
+    if (!beyond_scatter(errors, *odd, inputs.criteria) && !is_unrelated(inputs, fit, predicted, *odd)) continue;
     double next = 0;
     for (std::size_t o = 0; o < errors.size(); ++o) next = std::max(next, o == *odd ? 0 : errors[o]);
     return OddRecording{*odd, std::sqrt(errors[*odd] / next)};
