@@ -80,7 +80,7 @@ TEST_CASE("the terms that made the errors are chosen, with their sizes, and no o
   const Eigen::VectorXd found = fit_linear(model, set).change, error = standard_errors(model, set);
   CHECK(std::abs(found[1] - 0.8) < 4 * error[1]);
   CHECK(error[1] == doctest::Approx(0.05).epsilon(0.2));
-  CHECK(held_out_gain(model, set).share[1] > 0.1);
+  CHECK(held_out_gain(model, set, 1).share > 0.1);
   CHECK(evidence_of_terms(model, set)[4] > 20);
 }
 
@@ -91,6 +91,40 @@ TEST_CASE("noise alone gives no term") {
       chosen += in;
   }
   CHECK(chosen == 0);
+}
+
+TEST_CASE("a term for which one block alone speaks stays uncertain, and one for which all speak does not") {
+  LinearModel model = made_up(Eigen::VectorXd::Zero(1), 8);
+  const auto speaks = [&](std::size_t block, double gain) {  // errors that the term takes away, of `gain` units
+    Sums& sums = model.sums[0][block];
+    sums.slope[0] = -std::sqrt(gain * sums.gram(0, 0));
+    sums.square = sums.rows + gain;
+  };
+  const TermSet with{1}, without{0};
+  for (std::size_t b = 0; b < 4; ++b) speaks(b, 9);
+  add_up(model);
+  const double all = evidence_between(model, with, without);
+  for (std::size_t b = 0; b < 4; ++b) speaks(b, b == 0 ? 36 : 0);
+  add_up(model);
+  const double one = evidence_between(model, with, without);
+  CHECK(all > 5.99);
+  CHECK(one < all - 3);
+}
+
+TEST_CASE("a term that refines another is not chosen without it") {
+  LinearModel model = made_up(Eigen::VectorXd{{0.0, 0.6}}, 9);
+  model.refines = {{}, {0}};
+  CHECK(choose_terms(model, TermSet(2, 0), TermSet(2, 1)) == TermSet{0, 0});
+  model = made_up(Eigen::VectorXd{{0.7, 0.6}}, 9);
+  model.refines = {{}, {0}};
+  CHECK(choose_terms(model, TermSet(2, 0), TermSet(2, 1)) == TermSet{1, 1});
+}
+
+TEST_CASE("a size far beyond its prior is rare, but costs no more than evidence can pay") {
+  const LinearModel model = made_up(Eigen::VectorXd::Zero(1), 10);
+  CHECK(prior_cost(model, 0, 0) == 0);
+  CHECK(prior_cost(model, 0, 5) > prior_cost(model, 0, 1));
+  CHECK(prior_cost(model, 0, 10 * 5) < 10);
 }
 
 TEST_CASE("a term that is not needed any more is taken away, and its size goes to zero") {
@@ -110,6 +144,10 @@ TEST_CASE("rows that repeat what the ones before said count less") {
   }
   CHECK(independent_errors(white) == doctest::Approx(4000).epsilon(0.15));
   CHECK(independent_errors(slow) == doctest::Approx(4000 * 0.1 / 1.9).epsilon(0.4));
+  Eigen::VectorXd wave(4000);  // a damped oscillation that noise keeps going
+  for (Eigen::Index k = 0; k < 4000; ++k)
+    wave[k] = k < 2 ? 0 : 1.9 * std::cos(0.3) * wave[k - 1] - 0.9025 * wave[k - 2] + white[k];
+  CHECK(independent_errors(wave) < 1000);
 }
 
 TEST_CASE("columns that were swapped are told by what each is told to do") {

@@ -95,6 +95,7 @@ std::string place_in_mjcf(Property p) {
     case Property::sensor_bias:
       return "actuator biasprm; subtract it from readings";
     case Property::link_mass:
+    case Property::link_inertia:
       return "body inertial mass, inertia";
     case Property::link_com_x:
     case Property::link_com_y:
@@ -143,7 +144,7 @@ std::string saved(const mjModel* model) {
 }  // namespace
 
 AugmentedModel augmented_model(const Robot& robot, const RobotPhysics& physics, double step,
-                               const std::filesystem::path& folder) {
+                               const std::filesystem::path& folder, int integrator) {
   std::string complaint;
   const ModelPointer last =
       compile_model(robot.model.text, folder, is_urdf(robot.model.text), complaint);  // what is saved next
@@ -156,7 +157,7 @@ AugmentedModel augmented_model(const Robot& robot, const RobotPhysics& physics, 
     m->dof_armature[dof] = last->dof_armature[dof];
   }
   m->opt.timestep = step;
-  m->opt.integrator = mjINT_IMPLICIT;
+  m->opt.integrator = integrator;
   for (std::size_t j = 0; j < robot.joints.size(); ++j) set_joint(m, robot.joints[j], physics[j]);
   AugmentedModel augmented;
   augmented.xml = with_actuators(saved(m), robot, physics);

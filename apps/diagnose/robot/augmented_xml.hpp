@@ -11,18 +11,18 @@
 
 namespace diagnose_robot {
 
-/// Steps of MuJoCo, which are of first order, for one of ours.
-inline constexpr double steps_of_ours = 8;
+/// Steps of MuJoCo (Runge-Kutta of fourth order, but drives and friction change at whole steps) for one of ours.
+inline constexpr double steps_of_ours = 4;
 
 struct AugmentedModel {
   std::string xml, header;
   std::vector<AugmentedEntry> table;
 };
 
-/// `step`: of the model [s]. `folder`: of the model file. Throws surefoot::DiagnoseError if MuJoCo cannot write the
-/// model.
+/// `step`: of the model [s]; `integrator`: mjINT_RK4, or that of the file. `folder`: of the model file. Throws
+/// surefoot::DiagnoseError if MuJoCo cannot write the model.
 AugmentedModel augmented_model(const Robot& robot, const RobotPhysics& physics, double step,
-                               const std::filesystem::path& folder);
+                               const std::filesystem::path& folder, int integrator = mjINT_RK4);
 
 /// Angles from MuJoCo's own step over the recording: row x joint. Contacts are switched off.
 Eigen::MatrixXd replay(const Robot& robot, const AugmentedModel& augmented, const RobotPhysics& physics,

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/core/rng.hpp"
+
 namespace diagnose_robot {
 namespace {
 
@@ -30,83 +32,201 @@ Eigen::Index negligible_term(const LinearModel& model, const LinearFit& fit, con
   return -1;
 }
 
-Best best_change(const LinearModel& model, const TermSet& set, const TermSet& allowed, bool add) {
-  Best best;
+// Whether each term that refines another one has it.
+bool is_nested(const LinearModel& model, const TermSet& set) {
+  for (std::size_t t = 0; t < set.size() && !model.refines.empty(); ++t) {
+    const std::vector<Eigen::Index>& bases = model.refines[t];
+    if (set[t] == 0 || bases.empty()) continue;
+    if (std::ranges::none_of(bases, [&](Eigen::Index base) { return set[static_cast<std::size_t>(base)] != 0; }))
+      return false;
+  }
+  return true;
+}
+
+// Sets with one term more or less, the most probable first.
+std::vector<Best> changes(const LinearModel& model, const TermSet& set, const TermSet& allowed, bool add) {
+  std::vector<Best> result;
   for (std::size_t t = 0; t < set.size(); ++t) {
+    const auto term = static_cast<Eigen::Index>(t);
     const bool may = add ? set[t] == 0 && allowed[t] != 0 : set[t] != 0;
-    if (!may) continue;
-    const LinearFit fit = fit_linear(model, changed(set, static_cast<Eigen::Index>(t), add));
-    if (add && is_negligible(model, fit, static_cast<Eigen::Index>(t))) continue;
-    const double criterion = fit.criterion;
-    if (criterion < best.criterion) best = {static_cast<Eigen::Index>(t), criterion};
+    if (!may || !is_nested(model, changed(set, term, add))) continue;
+    const LinearFit fit = fit_linear(model, changed(set, term, add));
+    if (!add || !is_negligible(model, fit, term)) result.push_back({term, fit.criterion});
+  }
+  std::ranges::stable_sort(result, {}, &Best::criterion);
+  return result;
+}
+
+// The most probable term to add that is worth it.
+Best best_addition(const LinearModel& model, const TermSet& set, const TermSet& allowed,
+                   const ChoiceCriteria& criteria) {
+  int tried = 0;
+  for (const Best& one : changes(model, set, allowed, true)) {
+    if (tried++ == criteria.tried) break;
+    if (worth_of(model, changed(set, one.term, true), one.term, criteria) > 1) return one;
+  }
+  return {};
+}
+
+bool share_joint(const LinearModel& model, Eigen::Index a, Eigen::Index b) {
+  const auto& first = model.acts_on[static_cast<std::size_t>(a)];
+  const auto& second = model.acts_on[static_cast<std::size_t>(b)];
+  return std::ranges::any_of(first, [&](int j) { return std::ranges::find(second, j) != second.end(); });
+}
+
+// Two terms of which neither is worth it without the other, as more dry friction and less damping than stated: the most
+// probable pair that is worth it, or the set as it was.
+TermSet with_best_pair(const LinearModel& model, const TermSet& set, const TermSet& allowed,
+                       const ChoiceCriteria& criteria) {
+  std::vector<Best> first = changes(model, set, allowed, true);
+  if (first.size() > static_cast<std::size_t>(criteria.paired)) first.resize(static_cast<std::size_t>(criteria.paired));
+  struct Pair {
+    Eigen::Index a = 0, b = 0;
+    double criterion = 0;
+  };
+  std::vector<Pair> pairs;
+  for (const Best& one : first) {
+    const TermSet more = changed(set, one.term, true);
+    for (const Best& other : changes(model, more, allowed, true)) {
+      if (!share_joint(model, one.term, other.term)) continue;
+      pairs.push_back({one.term, other.term, other.criterion});
+      break;
+    }
+  }
+  std::ranges::stable_sort(pairs, {}, &Pair::criterion);
+  for (const Pair& pair : pairs) {
+    const TermSet both = changed(changed(set, pair.a, true), pair.b, true);
+    if (evidence_between(model, both, set) > 2 * criteria.needed && worth_of(model, both, pair.a, criteria) > 1 &&
+        worth_of(model, both, pair.b, criteria) > 1)
+      return both;
+  }
+  return set;
+}
+
+// One term in the place of two, where that is more probable.
+TermSet with_one_for_two(const LinearModel& model, const TermSet& set, const TermSet& allowed) {
+  double least = fit_linear(model, set).criterion;
+  TermSet best = set;
+  for (std::size_t a = 0; a < set.size(); ++a) {
+    for (std::size_t b = a + 1; b < set.size() && set[a] != 0; ++b) {
+      const auto one = static_cast<Eigen::Index>(a), two = static_cast<Eigen::Index>(b);
+      if (set[b] == 0 || !share_joint(model, one, two)) continue;
+      const TermSet less = changed(changed(set, one, false), two, false);
+      const std::vector<Best> instead = changes(model, less, allowed, true);
+      if (instead.empty() || instead.front().criterion >= least) continue;
+      least = instead.front().criterion;
+      best = changed(less, instead.front().term, true);
+    }
   }
   return best;
 }
 
+// Sums of squares that terms take away, by block (row) and joint, in units of `size`, each independent error once.
+Eigen::MatrixXd taken_by_block(const LinearModel& model, const LinearFit& with, const LinearFit& without,
+                               const Eigen::VectorXd& independent, const Eigen::VectorXd& size) {
+  const auto joints = static_cast<Eigen::Index>(model.sums.size());
+  const auto blocks = static_cast<Eigen::Index>(model.sums.front().size());
+  Eigen::MatrixXd taken(blocks, joints);
+  for (Eigen::Index j = 0; j < joints; ++j) {
+    const auto joint = static_cast<std::size_t>(j);
+    const double weight = independent[j] / (size[j] * std::max(1.0, model.whole[joint].rows));
+    for (Eigen::Index b = 0; b < blocks; ++b) {
+      const Sums& sums = model.sums[joint][static_cast<std::size_t>(b)];
+      taken(b, j) = weight * (square_after(sums, without.change) - square_after(sums, with.change));
+    }
+  }
+  return taken;
+}
+
 }  // namespace
 
-TermSet choose_terms(const LinearModel& model, TermSet set, const TermSet& allowed, const ChoiceCriteria& criteria) {
-  double now = fit_linear(model, set).criterion;
-  for (int added = 0; added < criteria.most_new; ++added) {
-    const Best best = best_change(model, set, allowed, true);
-    if (best.term < 0 || best.criterion > now - criteria.needed) break;
-    set = changed(set, best.term, true);
-    now = best.criterion;
+double evidence_between(const LinearModel& model, const TermSet& with, const TermSet& without) {
+  constexpr int rounds = 400;  // of the bootstrap: probabilities are off by 2.5 % at most
+  const LinearFit more = fit_linear(model, with), less = fit_linear(model, without);
+  const Eigen::VectorXd size = pooled_squares(model, more.square);
+  const Eigen::VectorXd ratio = (pooled_squares(model, less.square).array() / size.array()).log();
+  const Eigen::VectorXd independent = independent_after(model, with);
+  const double likelihood = independent.dot(ratio);
+  const double cost = model.independent.dot(ratio) - (less.criterion - more.criterion);
+  const Eigen::MatrixXd taken = taken_by_block(model, more, less, independent, size);
+  const double all = taken.sum();
+  if (!(all > 0) || !(likelihood > 0)) return likelihood - cost;
+  surefoot::Rng rng(1);  // the same draws for all
+  double probability = 0;
+  for (int round = 0; round < rounds; ++round) {
+    double sum = 0, weights = 0;
+    for (const double cell : taken.reshaped()) {
+      const double weight = -std::log(1 - rng.uniform());
+      sum += weight * cell;
+      weights += weight;
+    }
+    const double drawn = sum / weights * static_cast<double>(taken.size()) / all * likelihood - cost;
+    probability += 1 / (1 + std::exp(-drawn / 2)) / rounds;
   }
+  constexpr double certain = 1e-12;
+  return 2 * std::log(std::max(probability, certain) / std::max(1 - probability, certain));
+}
+
+TermSet choose_terms(const LinearModel& model, TermSet set, const TermSet& allowed, const ChoiceCriteria& criteria) {
+  const TermSet begin = set;
+  for (int added = 0; added < criteria.most_new; ++added) {
+    const Best best = best_addition(model, set, allowed, criteria);
+    if (best.term < 0) break;
+    set = changed(set, best.term, true);
+  }
+  if (set == begin && criteria.most_new > 0) set = with_best_pair(model, set, allowed, criteria);
+  if (set == begin && criteria.most_new > 0) set = with_one_for_two(model, set, allowed);
   for (int swap = 0; swap < criteria.most_new; ++swap) {
     const std::vector<TermAlternative> others = alternatives_of(model, set, allowed);
     const auto best = std::ranges::min_element(others, {}, &TermAlternative::criterion);
     if (best == others.end() || best->criterion > -criteria.better) break;
     set = changed(changed(set, best->instead, false), best->other, true);
-    now += best->criterion;
   }
   for (;;) {
-    const Best best = best_change(model, set, allowed, false);
-    if (best.term < 0) return set;
+    const std::vector<Best> less = changes(model, set, allowed, false);
+    if (less.empty()) return set;
     const LinearFit fit = fit_linear(model, set);
-    if (best.criterion > now + criteria.needed && !is_negligible(model, fit, best.term)) {
-      const Eigen::Index other = negligible_term(model, fit, set);
-      if (other < 0) return set;
-      set = changed(set, other, false);
-      now = fit_linear(model, set).criterion;
-      continue;
-    }
-    set = changed(set, best.term, false);
-    now = best.criterion;
+    Eigen::Index out = less.front().term;
+    const TermSet without = changed(set, out, false);
+    if (!is_negligible(model, fit, out) && evidence_between(model, set, without) > criteria.needed)
+      out = negligible_term(model, fit, set);
+    if (out < 0) return set;
+    set = changed(set, out, false);
   }
 }
 
 Eigen::VectorXd evidence_of_terms(const LinearModel& model, const TermSet& set) {
   Eigen::VectorXd result = Eigen::VectorXd::Constant(model.theta.size(), std::nan(""));
-  const double now = fit_linear(model, set).criterion;
   for (Eigen::Index t = 0; t < result.size(); ++t) {
-    if (set[static_cast<std::size_t>(t)] != 0) result[t] = fit_linear(model, changed(set, t, false)).criterion - now;
+    if (set[static_cast<std::size_t>(t)] != 0) result[t] = evidence_between(model, set, changed(set, t, false));
   }
   return result;
 }
 
-HeldOutGain held_out_gain(const LinearModel& model, const TermSet& set) {
-  HeldOutGain result;
-  result.share = result.taken = Eigen::VectorXd::Constant(model.theta.size(), std::nan(""));
-  const std::size_t blocks = model.sums.front().size();
-  std::vector<Eigen::VectorXd> with;
-  for (std::size_t b = 0; b < blocks; ++b) with.push_back(fit_linear(model, set, static_cast<int>(b)).change);
-  for (Eigen::Index t = 0; t < model.theta.size(); ++t) {
-    if (set[static_cast<std::size_t>(t)] == 0) continue;
-    double before = 0, after = 0, rows = 0;
-    for (std::size_t b = 0; b < blocks; ++b) {
-      const Eigen::VectorXd without = fit_linear(model, changed(set, t, false), static_cast<int>(b)).change;
-      for (const int j : model.acts_on[static_cast<std::size_t>(t)]) {
-        const Sums& sums = model.sums[static_cast<std::size_t>(j)][b];
-        before += square_after(sums, without);
-        after += square_after(sums, with[b]);
-        rows += sums.rows;
-      }
+HeldOutGain held_out_gain(const LinearModel& model, const TermSet& set, Eigen::Index term) {
+  double before = 0, after = 0, rows = 0;
+  for (std::size_t b = 0; b < model.sums.front().size(); ++b) {
+    const int block = static_cast<int>(b);
+    const Eigen::VectorXd with = fit_linear(model, set, block).change,
+                          without = fit_linear(model, changed(set, term, false), block).change;
+    for (const int j : model.acts_on[static_cast<std::size_t>(term)]) {
+      const Sums& sums = model.sums[static_cast<std::size_t>(j)][b];
+      before += square_after(sums, without);
+      after += square_after(sums, with);
+      rows += sums.rows;
     }
-    result.share[t] = 1 - std::sqrt(std::max(0.0, after) / std::max(before, 1e-300));
-    result.taken[t] = std::sqrt(std::max(0.0, before - after) / std::max(1.0, rows));
   }
-  return result;
+  return {1 - std::sqrt(std::max(0.0, after) / std::max(before, 1e-300)),
+          std::sqrt(std::max(0.0, before - after) / std::max(1.0, rows))};
+}
+
+double worth_of(const LinearModel& model, const TermSet& set, Eigen::Index term, const ChoiceCriteria& criteria) {
+  const HeldOutGain gain = held_out_gain(model, set, term);
+  double worth = gain.share / criteria.smallest_gain;
+  if (model.least_taken.size() > 0 && model.least_taken[term] > 0)
+    worth = std::min(worth, gain.taken / model.least_taken[term]);
+  if (worth < 1) return worth;
+  return std::min(worth, evidence_between(model, set, changed(set, term, false)) / criteria.needed);
 }
 
 std::vector<TermAlternative> alternatives_of(const LinearModel& model, const TermSet& set, const TermSet& allowed) {
@@ -117,7 +237,9 @@ std::vector<TermAlternative> alternatives_of(const LinearModel& model, const Ter
     const TermSet without = changed(set, static_cast<Eigen::Index>(t), false);
     for (std::size_t other = 0; other < set.size(); ++other) {
       if (set[other] != 0 || allowed[other] == 0) continue;
-      const LinearFit fit = fit_linear(model, changed(without, static_cast<Eigen::Index>(other), true));
+      const TermSet exchanged = changed(without, static_cast<Eigen::Index>(other), true);
+      if (!is_nested(model, exchanged)) continue;
+      const LinearFit fit = fit_linear(model, exchanged);
       const double criterion = fit.criterion - now;
       if (criterion < indistinguishable && !is_negligible(model, fit, static_cast<Eigen::Index>(other)))
         result.push_back({static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(other), criterion});

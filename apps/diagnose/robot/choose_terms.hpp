@@ -10,24 +10,36 @@ struct ChoiceCriteria {
   double needed = 5.99;
   /// The same before a term takes the place of another: odds of 3, so that twins do not take turns.
   double better = 2.2;
-  int most_new = 3;  // terms that one linearization may add; farther off, it no longer holds
+  int tried = 6;                // terms, the most probable first, that may turn out to be worth too little
+  int paired = 20;              // terms, the most probable first, that are tried together with another one
+  double smallest_gain = 0.02;  // of the error of its joints on held-out blocks that a term must take away, as for one
+                                // joint
+  int most_new = 3;             // terms that one linearization may add; farther off, it no longer holds
 };
 
 /// Adds and takes away terms of `allowed` until neither makes the set more probable.
 TermSet choose_terms(const LinearModel& model, TermSet set, const TermSet& allowed,
                      const ChoiceCriteria& criteria = {});
 
-/// -2 log of the odds for having the term, the others fitted again; by term, NaN where it is not in the set.
+/// -2 log of the odds for `with` against `without`, which has fewer terms: the posterior probability, averaged over
+/// blocks and joints that are drawn anew (Bayesian bootstrap), so that what a few of them alone decide stays uncertain.
+/// As many errors count as are independent in what `with` leaves.
+double evidence_between(const LinearModel& model, const TermSet& with, const TermSet& without);
+
+/// The same for having each term, the others fitted again; NaN where it is not in the set.
 Eigen::VectorXd evidence_of_terms(const LinearModel& model, const TermSet& set);
 
-/// What terms take off the errors of the joints that they act on, on blocks that were not used to fit; by term, NaN
-/// where it is not in the set.
+/// What a term takes off the errors of the joints that it acts on, on blocks that were not used to fit.
 struct HeldOutGain {
-  Eigen::VectorXd share;  // of the root mean square error
-  Eigen::VectorXd taken;  // root mean square of what goes, in the unit of the errors
+  double share = 0;  // of the root mean square error
+  double taken = 0;  // root mean square of what goes, in the unit of the errors
 };
 
-HeldOutGain held_out_gain(const LinearModel& model, const TermSet& set);
+HeldOutGain held_out_gain(const LinearModel& model, const TermSet& set, Eigen::Index term);
+
+/// How much more a term of the set is worth than it must be, by the strictest of: its share of the errors on held-out
+/// blocks, what it takes away against the difference of two simulations of one model, and the evidence for it.
+double worth_of(const LinearModel& model, const TermSet& set, Eigen::Index term, const ChoiceCriteria& criteria = {});
 
 struct TermAlternative {
   Eigen::Index instead = 0, other = 0;  // terms

@@ -65,24 +65,6 @@ void draw_worst(const Evidence& evidence, RobotDiagnosis& d) {
   }
 }
 
-double noise_of(const Eigen::Ref<const Eigen::VectorXd>& readings) {
-  constexpr double gain = 70;           // sum of squares of 1, -4, 6, -4, 1
-  constexpr double of_median = 0.6745;  // median of |x| of a normal distribution
-  std::vector<double> differences;
-  double square = 0;
-  for (Eigen::Index k = 4; k < readings.size(); ++k) {
-    const double d = readings[k] - 4 * readings[k - 1] + 6 * readings[k - 2] - 4 * readings[k - 3] + readings[k - 4];
-    differences.push_back(std::abs(d));
-    square += d * d;
-  }
-  if (differences.empty()) return 0;
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::ranges::nth_element(differences, middle);
-  const double robust = *middle / of_median;
-  const double plain = std::sqrt(square / static_cast<double>(differences.size()));
-  return (robust > 0 ? robust : plain) / std::sqrt(gain);  // readings that mostly stay the same have a median of 0
-}
-
 Eigen::VectorXd noise_by_joint(const Evidence& evidence, const RobotPhysics& physics, std::uint64_t seed) {
   const auto joints = static_cast<Eigen::Index>(evidence.robot.joints.size());
   Eigen::VectorXd square = Eigen::VectorXd::Zero(joints);
@@ -102,8 +84,9 @@ Eigen::VectorXd noise_by_joint(const Evidence& evidence, const RobotPhysics& phy
           noisy.torque(k, j) += torque[j] * rng.normal();
         }
       }
-      const Eigen::MatrixXd change = torque_residual(evidence.robot, smooth(noisy), physics) -
-                                     torque_residual(evidence.robot, evidence.motions[r], physics);
+      const Eigen::MatrixXd change =
+          torque_residual(evidence.robot, smooth(noisy, {evidence.motions[r].half_window}), physics) -
+          torque_residual(evidence.robot, evidence.motions[r], physics);
       for (Eigen::Index j = 0; j < joints; ++j) {
         double sum = 0, rows = 0;
         for (const double x : change.col(j)) {

@@ -14,7 +14,4 @@ RobotDiagnosis refuse_log(const Evidence& evidence, const std::vector<surefoot::
 /// Replaces the figures of held-out blocks by those of recordings that were used for nothing.
 void hold_out(const Evidence& test, RobotDiagnosis& diagnosis);
 
-/// Standard deviation of a sensor's white noise from fourth differences, in which the motion hardly shows.
-double noise_of(const Eigen::Ref<const Eigen::VectorXd>& readings);
-
 }  // namespace diagnose_robot

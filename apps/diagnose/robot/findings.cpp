@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "../wording.hpp"
+#include "uncertain_bodies.hpp"
 
 namespace diagnose_robot {
 namespace {
@@ -39,9 +40,8 @@ double overall(const Evidence& evidence, const Eigen::VectorXd& rms) {
 }
 
 void name_effects(const Evidence& evidence, const SearchResult& found, RobotDiagnosis& d) {
-  const Eigen::VectorXd error = standard_errors(found.linear, found.set),
+  const Eigen::VectorXd error = standard_errors_with_bodies(evidence, found),
                         odds = evidence_of_terms(found.linear, found.set);
-  const Eigen::VectorXd gain = held_out_gain(found.linear, found.set).share;
   for (std::size_t t = 0; t < found.set.size(); ++t) {
     if (found.set[t] == 0) continue;
     const auto at = static_cast<Eigen::Index>(t);
@@ -61,7 +61,7 @@ void name_effects(const Evidence& evidence, const SearchResult& found, RobotDiag
     effect.sentence = sentence_of(evidence, term, value_now, error[at]);
     effect.parameters = {value};
     effect.parameters.front().name = info.parameter;
-    effect.evidence.gain = gain[at];
+    effect.evidence.gain = held_out_gain(found.linear, found.set, at).share;
     effect.evidence.confidence = 1 / (1 + std::exp(-odds[at] / 2));
     effect.evidence.p_value = std::exp(-odds[at] / 2);
     effect.form = term.group == single_joint ? "joint" : term.group == all_joints ? "all" : "group";

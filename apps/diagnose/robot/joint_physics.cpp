@@ -28,11 +28,13 @@ const std::array<PropertyInfo, property_count>& property_table() {
       {delay, "input_delay", "delay", "s", "goal that arrives late", 0, 40, true, false, false},
       {backlash, "backlash", "half_width", "rad", "backlash", 0, 40, true, false, false},
       {constant_torque, "constant_force", "torque", "N m", "constant torque", -20, 20, true, true, false},
-      {sensor_bias, "sensor_bias", "bias", "rad", "offset of the encoder", -40, 40, true, true, false},
+      {sensor_bias, "sensor_bias", "bias", "rad", "offset of the encoder", -10, 10, true, true, false},
       {link_mass, "link_mass", "mass_error", "1", "mass of the link other than stated", -8, 30, true, true, true},
       {link_com_x, "link_com", "shift_x", "m", "centre of mass of the link elsewhere", -10, 10, true, true, true},
       {link_com_y, "link_com", "shift_y", "m", "centre of mass of the link elsewhere", -10, 10, true, true, true},
       {link_com_z, "link_com", "shift_z", "m", "centre of mass of the link elsewhere", -10, 10, true, true, true},
+      {link_inertia, "link_inertia", "inertia_error", "1", "inertia of the link other than stated", -8, 30, false,
+       false, true},
       {payload, "payload", "mass", "kg", "payload at the tip", 0, 50, true, true, true},
       {pair_coulomb, "coupled_coulomb_friction", "level", "N m", "dry friction on the sum of two speeds", 0, 40, false,
        true, false},
@@ -48,7 +50,7 @@ double typical_size(Property property, const JointScale& scale) {
   constexpr double share = 0.1;         // of the torque of the drive: what friction or inertia easily takes
   constexpr double relative = 0.1;      // error of a gain or a mass
   constexpr double time = 0.005;        // [s] of a bus or a filter
-  constexpr double angle_share = 0.02;  // of the angle: backlash and offsets
+  constexpr double angle_share = 0.02;  // of the angle: backlash
   switch (property) {
     case Property::viscous:
     case Property::pair_viscous:
@@ -65,13 +67,15 @@ double typical_size(Property property, const JointScale& scale) {
     case Property::torque_limit:
     case Property::load_friction:
     case Property::link_mass:
+    case Property::link_inertia:
       return relative;
     case Property::lag:
     case Property::delay:
       return time;
     case Property::backlash:
-    case Property::sensor_bias:
       return angle_share * scale.angle;
+    case Property::sensor_bias:
+      return scale.offset;
     case Property::link_com_x:
     case Property::link_com_y:
     case Property::link_com_z:

@@ -29,6 +29,7 @@ enum class Property : unsigned char {
   link_com_x,       // shift of its centre of mass in the frame of the link [m]
   link_com_y,
   link_com_z,
+  link_inertia,   // relative, inertia about the centre of mass alone: never searched, see uncertain_bodies.hpp [1]
   payload,        // point mass at the tip of the link [kg]
   pair_coulomb,   // on the sum of the speeds of this joint and the one before it [N m]
   pair_viscous,   // the same [N m s/rad]
@@ -64,12 +65,21 @@ struct PropertyInfo {
 const std::array<PropertyInfo, property_count>& property_table();
 inline const PropertyInfo& info_of(Property p) { return property_table()[static_cast<std::size_t>(p)]; }
 
+inline double sign_of(double x) { return x > 0 ? 1.0 : x < 0 ? -1.0 : 0.0; }
+
+/// Mass, centre of mass or payload of a link.
+inline bool is_of_body(Property p) { return p >= Property::link_mass && p <= Property::payload; }
+
+/// On the sum of the speeds of two joints.
+inline bool is_of_pair(Property p) { return p >= Property::pair_coulomb && p <= Property::pair_armature; }
+
 /// Of rotor, drive and link of one joint, from which typical sizes of properties follow.
 struct JointScale {
   double torque = 1, speed = 1, acceleration = 1, angle = 1;  // root mean squares over the recordings
   double reading = 1;      // root mean square of the recorded torque, on its own scale
   double link_size = 0.1;  // [m]
   double link_mass = 1;    // [kg]
+  double offset = 0.05;    // [rad] by which encoders are mounted or zeroed wrongly
 };
 
 /// A size that the property might well have at this joint: bounds and steps of finite differences are measured in it.

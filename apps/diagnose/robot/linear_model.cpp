@@ -10,6 +10,7 @@ namespace {
 constexpr double fewest_independent = 4;   // errors of a joint, however slowly they change
 constexpr double smallest_square = 1e-24;  // errors of nothing have no logarithm
 constexpr int bound_changes = 60;          // of the active set
+constexpr Eigen::Index most_lags = 600;    // longer correlations are not told apart
 
 using Places = std::vector<Eigen::Index>;
 
@@ -78,7 +79,8 @@ void normal_equations(const LinearModel& model, const std::vector<Sums>& joints,
   }
   for (Eigen::Index i = 0; i < terms; ++i) {
     const Eigen::Index t = of[static_cast<std::size_t>(i)];
-    const double precision = 1 / (model.prior[t] * model.prior[t]);
+    const double share = model.theta[t] / model.prior[t];
+    const double precision = 2 / (model.prior[t] * model.prior[t] * (1 + share * share));  // of Cauchy's density, here
     q(i, i) += precision;
     c[i] += precision * model.theta[t];
   }
@@ -93,6 +95,37 @@ std::vector<Eigen::Index> members(const TermSet& set) {
 }
 
 }  // namespace
+
+double prior_cost(const LinearModel& model, Eigen::Index term, double size) {
+  const double share = size / model.prior[term];
+  return 2 * std::log1p(share * share);
+}
+
+Eigen::VectorXd independent_after(const LinearModel& model, const TermSet& set) {
+  Eigen::VectorXd result = model.independent;
+  if (model.columns.empty()) return result;
+  TermSet all = set;
+  for (std::size_t t = 0; t < all.size(); ++t) all[t] = set[t] != 0 || model.of_groups[t] != 0 ? 1 : 0;
+  const Eigen::VectorXd change = fit_linear(model, all).change;
+  const int pools = 1 + *std::ranges::max_element(model.pool);
+  for (int p = 0; p < pools; ++p) {
+    std::vector<Eigen::VectorXd> series;
+    for (std::size_t j = 0; j < model.pool.size(); ++j) {
+      if (model.pool[j] == p) series.emplace_back(model.errors[j] + model.columns[j] * change(model.terms[j]));
+    }
+    const double time = correlation_time(series);
+    for (std::size_t j = 0; j < model.pool.size(); ++j) {
+      if (model.pool[j] != p) continue;
+      const auto rows = static_cast<double>(model.errors[j].array().isFinite().count());
+      result[static_cast<Eigen::Index>(j)] = std::max(fewest_independent, rows / time);
+    }
+  }
+  return result;
+}
+
+Eigen::VectorXd pooled_squares(const LinearModel& model, const Eigen::VectorXd& square) {
+  return pooled(model, model.whole, square);
+}
 
 double square_after(const Sums& sums, const Eigen::VectorXd& change) {
   return sums.square + 2 * sums.slope.dot(change) + change.dot(sums.gram * change);
@@ -194,10 +227,10 @@ LinearFit fit_linear(const LinearModel& model, const TermSet& set, int without_b
   }
   fit.change = Eigen::VectorXd::Zero(model.theta.size());
   put(change, of, fit.change);
-  fit.criterion = model.independent.dot(pooled(model, by_joint, fit.square).array().log().matrix());
+  const Eigen::VectorXd mean = pooled(model, by_joint, fit.square);
+  fit.criterion = model.independent.dot(mean.array().log().matrix());
   for (const Eigen::Index t : members(set)) {
-    const double share = (model.theta[t] + fit.change[t]) / model.prior[t];
-    fit.criterion += model.cost[t] + share * share;
+    fit.criterion += model.cost[t] + prior_cost(model, t, model.theta[t] + fit.change[t]);
   }
   return fit;
 }
@@ -225,29 +258,38 @@ Eigen::VectorXd standard_errors(const LinearModel& model, const TermSet& set) {
   return result;
 }
 
-double independent_errors(const Eigen::Ref<const Eigen::VectorXd>& errors) {
-  double square = 0, rows = 0;
-  for (const double e : errors) {
-    if (!std::isfinite(e)) continue;
-    square += e * e;
-    rows += 1;
+double correlation_time(const std::vector<Eigen::VectorXd>& series) {
+  std::vector<Eigen::VectorXd> known;  // of size 1
+  double rows = 0;
+  for (const Eigen::VectorXd& one : series) {
+    const Eigen::VectorXd finite = one.unaryExpr([](double e) { return std::isfinite(e) ? e : 0.0; });
+    if (finite.isZero(0)) continue;
+    known.push_back(finite.normalized());
+    rows += static_cast<double>(one.array().isFinite().count());
   }
-  if (!(square > 0)) return std::max(fewest_independent, rows);
+  if (known.empty()) return 1;
   const auto correlation = [&](Eigen::Index lag) {
     double sum = 0;
-    for (Eigen::Index k = lag; k < errors.size(); ++k) {
-      const double product = errors[k] * errors[k - lag];
-      if (std::isfinite(product)) sum += product;
+    for (const Eigen::VectorXd& one : known) {
+      if (one.size() > lag) sum += one.head(one.size() - lag).dot(one.tail(one.size() - lag));
     }
-    return sum / square;
+    return sum / static_cast<double>(known.size());
   };
-  double time = 1;
-  for (Eigen::Index lag = 1; lag + 1 < errors.size() / 2; lag += 2) {
-    const double pair = correlation(lag) + correlation(lag + 1);
-    if (!(pair > 0)) break;
-    time += 2 * pair;
+  double slow = 1, oscillating = 1;
+  bool positive = true;
+  const Eigen::Index last = std::min(most_lags, known.front().size() / 2);
+  for (Eigen::Index lag = 1; lag + 1 < last; lag += 2) {
+    const double one = correlation(lag), other = correlation(lag + 1);
+    positive = positive && one + other > 0;
+    if (positive) slow += 2 * (one + other);
+    oscillating += 2 * (one * one + other * other - 2 / rows);  // less what chance alone gives
   }
-  return std::max(fewest_independent, rows / time);
+  return std::max({1.0, slow, oscillating});
+}
+
+double independent_errors(const Eigen::Ref<const Eigen::VectorXd>& errors) {
+  const auto rows = static_cast<double>(errors.array().isFinite().count());
+  return std::max(fewest_independent, rows / correlation_time(std::vector<Eigen::VectorXd>{Eigen::VectorXd(errors)}));
 }
 
 }  // namespace diagnose_robot

@@ -15,22 +15,30 @@ struct Sums {
   double rows = 0;
 };
 
+using TermSet = std::vector<char>;  // by term: is it there
+
 struct LinearModel {
   std::vector<std::vector<Sums>> sums;  // joint, block
   std::vector<Sums> whole;              // by joint, over all blocks; see add_up()
   Eigen::VectorXd independent;          // by joint: how many of its errors count as independent
   std::vector<int> pool;  // by joint: joints of one pool have errors of one size, since their motors are equal
   Eigen::VectorXd theta, low, high;       // by term
-  Eigen::VectorXd prior;                  // standard deviation of the term before anything is seen
+  Eigen::VectorXd prior;                  // scale of the term before anything is seen: Cauchy's density, large is rare
+                                          // but possible
   Eigen::VectorXd smallest;               // size of the term below which nobody would correct a model
   Eigen::VectorXd cost;                   // of having the term, in -2 log of its odds
   std::vector<std::vector<int>> acts_on;  // by term: joints
+  Eigen::VectorXd least_taken;  // by term: errors that it must take away, since simulations of one model differ by that
+                                // much; empty: none
+  std::vector<Eigen::MatrixXd> columns;            // by joint: row x place in `terms`; empty: rows are not known
+  std::vector<Eigen::VectorXd> errors;             // by joint; NaN: unknown
+  std::vector<std::vector<Eigen::Index>> terms;    // by joint: those that move it
+  TermSet of_groups;                               // by term: tied over a group
+  std::vector<std::vector<Eigen::Index>> refines;  // by term: those of which one must be there too; empty: none
 };
 
 /// Fills `whole`.
 void add_up(LinearModel& model);
-
-using TermSet = std::vector<char>;  // by term: is it there
 
 struct LinearFit {
   Eigen::VectorXd change;  // of theta, by term
@@ -40,6 +48,16 @@ struct LinearFit {
 
 /// The minimum over the terms of `set`, within bounds; others go to 0. `without_block` is left out (-1: none).
 LinearFit fit_linear(const LinearModel& model, const TermSet& set, int without_block = -1);
+
+/// -2 log of the prior density of a term's size, up to a constant.
+double prior_cost(const LinearModel& model, Eigen::Index term, double size);
+
+/// Independent errors by joint, of those that the terms of `set` and all of groups leave, fitted together: what known
+/// physics of whole groups takes away is no noise, however slowly it changes. Joints of a pool share the correlation.
+Eigen::VectorXd independent_after(const LinearModel& model, const TermSet& set);
+
+/// Mean squares of errors by joint, each that of its pool.
+Eigen::VectorXd pooled_squares(const LinearModel& model, const Eigen::VectorXd& square);
 
 /// Sum of squares of a joint in a block after a change.
 double square_after(const Sums& sums, const Eigen::VectorXd& change);
@@ -51,8 +69,12 @@ Eigen::VectorXd standard_errors(const LinearModel& model, const TermSet& set);
 Eigen::VectorXd bounded_minimum(const Eigen::MatrixXd& q, const Eigen::VectorXd& c, const Eigen::VectorXd& low,
                                 const Eigen::VectorXd& high);
 
-/// Errors that count as independent in a series with gaps (NaN): rows over the autocorrelation time (Geyer's initial
-/// positive sequence).
+/// Autocorrelation time of some series with gaps (NaN), each of its own size [rows], at least 1: the larger of that of
+/// slow errors (Geyer's initial positive sequence) and that of oscillating ones (Bartlett's sum of squares). Cost: rows
+/// * lags.
+double correlation_time(const std::vector<Eigen::VectorXd>& series);
+
+/// Errors that count as independent in a series with gaps: rows over the autocorrelation time.
 double independent_errors(const Eigen::Ref<const Eigen::VectorXd>& errors);
 
 }  // namespace diagnose_robot

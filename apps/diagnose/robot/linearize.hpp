@@ -5,6 +5,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "derivatives.hpp"
 #include "linear_model.hpp"
 #include "motion.hpp"
 #include "robot.hpp"
@@ -24,6 +25,7 @@ struct Evidence {
   Eigen::VectorXd numerical;  // by joint: errors of simulation, see numerical_error(); empty: none
   std::vector<JointScale> scales;
   std::vector<Term> terms;
+  std::vector<PhysicsEntry> entries;  // all properties of single joints that terms are made of
   surefoot::Threads threads{1};
   std::stop_token stop;
 
@@ -40,17 +42,15 @@ Eigen::MatrixXd errors_of(const Evidence& evidence, const RobotPhysics& physics)
 /// Sets errors of a simulation to NaN while it still depends on how it began.
 void leave_out_start(const Robot& robot, const RobotRecording& recording, Eigen::Ref<Eigen::MatrixXd> errors);
 
-/// Derivatives of the errors by term, kept while parameters move: those of terms that are not in the model change
-/// little.
-struct Derivatives {
-  std::vector<Eigen::MatrixXd> of;  // by term: row x joint; empty: not known
-  TermSet fresh;                    // taken where the parameters are now
+/// Derivatives of the rigid bodies' torque along the recordings, which stay as long as bodies and encoders do.
+struct RigidCache {
+  RobotPhysics physics;
+  std::vector<std::vector<JointDerivatives>> by_recording;
 };
 
-/// Sums at `theta`, where `errors` are those of all rows. Derivatives of `renewed` terms are taken anew, those of other
-/// `wanted` terms where they are not known yet; the rest are 0.
+/// Sums at `theta`, where `errors` are those of all rows, for all terms.
 LinearModel linearize(const Evidence& evidence, const Eigen::VectorXd& theta, const Eigen::MatrixXd& errors,
-                      const TermSet& wanted, const TermSet& renewed, Derivatives& derivatives);
+                      RigidCache& cache);
 
 /// Root mean square by joint, of the rows of a block (-1: all).
 Eigen::VectorXd rms_by_joint(const Evidence& evidence, const Eigen::MatrixXd& errors, int block = -1);

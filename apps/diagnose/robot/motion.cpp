@@ -3,6 +3,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
 namespace diagnose_robot {
 namespace {
@@ -29,21 +32,68 @@ void smooth_row(const RobotRecording& r, Eigen::Index k, double reach, Eigen::In
   motion.q.row(k) = filter.row(0) * block;
   motion.v.row(k) = filter.row(1) * block / scale;
   motion.a.row(k) = 2 * filter.row(2) * block / (scale * scale);
+  motion.acceleration_noise += 2 * filter.row(2).norm() / (scale * scale) / static_cast<double>(rows);
   if (r.goal.size() > 0) motion.goal.row(k) = filter.row(0) * r.goal.middleRows(first, count);
   if (r.torque.size() > 0) motion.torque.row(k) = filter.row(0) * r.torque.middleRows(first, count);
 }
 
-}  // namespace
-
-Motion smooth(const RobotRecording& recording, const MotionCriteria& criteria) {
+Motion smooth_with(const RobotRecording& recording, double half_window, Eigen::Index fewest) {
   Motion motion;
   const Eigen::Index rows = recording.angle.rows(), joints = recording.angle.cols();
   for (Eigen::MatrixXd* matrix : {&motion.q, &motion.v, &motion.a}) matrix->resize(rows, joints);
   if (recording.goal.size() > 0) motion.goal.resize(rows, joints);
   if (recording.torque.size() > 0) motion.torque.resize(rows, joints);
-  const double reach =
-      std::max(criteria.half_window, static_cast<double>(criteria.fewest_rows) * recording.row_period());
-  for (Eigen::Index k = 0; k < rows; ++k) smooth_row(recording, k, reach, criteria.fewest_rows, motion);
+  const double reach = std::max(half_window, static_cast<double>(fewest) * recording.row_period());
+  for (Eigen::Index k = 0; k < rows; ++k) smooth_row(recording, k, reach, fewest, motion);
+  motion.half_window = half_window;
+  return motion;
+}
+
+// Whether a wider filter changes accelerations by no more than the noise that the narrower one leaves in them (Lepski's
+// rule), in every joint.
+bool differ_by_noise(const Motion& narrow, const Motion& wide, const Eigen::VectorXd& noise) {
+  constexpr double more = 1.1;  // estimates of noise are off by some percent
+  for (Eigen::Index j = 0; j < noise.size(); ++j) {
+    const double square = (wide.a.col(j) - narrow.a.col(j)).squaredNorm() / static_cast<double>(wide.a.rows());
+    if (!(std::sqrt(square) <= more * noise[j] * narrow.acceleration_noise)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+double noise_of(const Eigen::Ref<const Eigen::VectorXd>& readings) {
+  constexpr double gain = 70;           // sum of squares of 1, -4, 6, -4, 1
+  constexpr double of_median = 0.6745;  // median of |x| of a normal distribution
+  std::vector<double> differences;
+  double square = 0;
+  for (Eigen::Index k = 4; k < readings.size(); ++k) {
+    const double d = readings[k] - 4 * readings[k - 1] + 6 * readings[k - 2] - 4 * readings[k - 3] + readings[k - 4];
+    differences.push_back(std::abs(d));
+    square += d * d;
+  }
+  if (differences.empty()) return 0;
+  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::ranges::nth_element(differences, middle);
+  const double robust = *middle / of_median;
+  const double plain = std::sqrt(square / static_cast<double>(differences.size()));
+  return (robust > 0 ? robust : plain) / std::sqrt(gain);  // readings that mostly stay the same have a median of 0
+}
+
+Motion smooth(const RobotRecording& recording, const MotionCriteria& criteria) {
+  constexpr double narrowest = 0.02;  // [s]: motors and links of robots move at up to some 10 Hz
+  constexpr double widest = 0.2;      // [s]
+  constexpr double wider = 1.4;       // accelerations have less than half of the noise then
+  if (criteria.half_window > 0) return smooth_with(recording, criteria.half_window, criteria.fewest_rows);
+  Eigen::VectorXd noise(recording.angle.cols());
+  for (Eigen::Index j = 0; j < noise.size(); ++j) noise[j] = noise_of(recording.angle.col(j));
+  Motion motion = smooth_with(recording, narrowest, criteria.fewest_rows), accepted = motion;
+  for (double half_window = narrowest * wider; half_window < widest; half_window *= wider) {
+    Motion next = smooth_with(recording, half_window, criteria.fewest_rows);
+    if (!differ_by_noise(accepted, next, noise)) break;
+    motion = std::move(accepted);  // one step less, so that what goes unnoticed is small beside the noise
+    accepted = std::move(next);
+  }
   return motion;
 }
 

@@ -77,7 +77,7 @@ void change_body(mjModel* m, const ModelJoint& joint, const JointPhysics& physic
   mjtNum* position = m->body_ipos + 3 * b;
   mjtNum* inertia = m->body_inertia + 3 * b;
   m->body_mass[b] *= scale;
-  for (int i = 0; i < 3; ++i) inertia[i] *= scale;
+  for (int i = 0; i < 3; ++i) inertia[i] *= scale * std::max(0.05, 1 + physics[Property::link_inertia]);
   position[0] += physics[Property::link_com_x];
   position[1] += physics[Property::link_com_y];
   position[2] += physics[Property::link_com_z];
@@ -101,11 +101,9 @@ void change_body(mjModel* m, const ModelJoint& joint, const JointPhysics& physic
 }  // namespace
 
 bool changes_bodies(const JointPhysics& joint) {
-  for (const Property p :
-       {Property::link_mass, Property::link_com_x, Property::link_com_y, Property::link_com_z, Property::payload}) {
-    if (joint[p] != 0) return true;
-  }
-  return false;
+  return std::ranges::any_of(property_table(), [&](const PropertyInfo& info) {
+    return is_of_body(info.property) && joint[info.property] != 0;
+  });
 }
 
 ModelPointer model_with_bodies(const Robot& robot, const RobotPhysics& physics) {

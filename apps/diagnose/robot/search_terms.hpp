@@ -1,5 +1,4 @@
-// The search for what a robot's model leaves out: linearize, choose terms, move there; groups first, single joints
-// then.
+// The search for what a robot's model leaves out: linearize, choose terms, move there.
 #pragma once
 
 #include <functional>
@@ -11,12 +10,7 @@
 namespace diagnose_robot {
 
 struct SearchCriteria {
-  int most_rounds = 60;   // each one linearization, most of few terms
-  int most_halvings = 5;  // of a step that raises the errors
-  double smallest_gain =
-      0.02;  // of the error on held-out blocks of its joints that a term must take away: as for one joint
-  double times_numerical = 2;  // the difference of two simulations of one model: what a term takes away must be more
-  double settled = 0.05;       // decrease of the criterion below which parameters no longer move
+  int most_rounds = 60;  // each one linearization, most of few terms
 };
 
 struct SearchResult {

@@ -2,7 +2,7 @@
 //
 // Steps of second order: half a step of position, a step of velocity with the forces of mid-step, the other half.
 // Damping (of joints and drives) is implicit, dry friction of all joints sticks and slips together
-// (coupled_dry_friction.hpp).
+// (coupled_dry_friction.hpp); a step is divided where a joint comes to rest and its friction turns.
 #pragma once
 
 #include <Eigen/Core>

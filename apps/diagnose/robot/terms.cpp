@@ -1,13 +1,11 @@
 #include "terms.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace diagnose_robot {
 namespace {
-
-bool is_body(Property p) { return p >= Property::link_mass && p <= Property::payload; }
-bool is_pair(Property p) { return p >= Property::pair_coulomb && p <= Property::pair_armature; }
 
 // An assembly error, unlike in every joint.
 bool is_of_one_joint(Property p) { return p == Property::constant_torque || p == Property::sensor_bias; }
@@ -22,13 +20,32 @@ bool is_considered(const Robot& robot, const PropertyInfo& info, int joint) {
   const bool position = robot.setup.drive == DriveKind::position;
   const RobotJoint& at = robot.joints[static_cast<std::size_t>(joint)];
   if (!(position ? info.position_drive : info.torque_drive)) return false;
-  if (is_body(info.property)) return robot.setup.calibrate_bodies;
-  if (!is_body(info.property) && (info.calibration || info.property == Property::torque_gain) &&
+  if (is_of_body(info.property)) return robot.setup.calibrate_bodies;
+  if (!is_of_body(info.property) && (info.calibration || info.property == Property::torque_gain) &&
       !robot.setup.calibrate_gains)
     return false;
   if (info.property == Property::torque_limit) return at.setup.limit > 0;
   if (info.property == Property::kd_error) return at.setup.kd > 0;
-  return !is_pair(info.property) || at.before >= 0;
+  return !is_of_pair(info.property) || at.before >= 0;
+}
+
+// Whether links have the same mass and inertia, so that an error of the model is that of all of them.
+bool are_alike(const Robot& robot, const std::vector<int>& joints) {
+  constexpr double same = 0.01;  // relative
+  const mjModel* m = robot.model.model.get();
+  const auto differ = [&](double a, double b) { return std::abs(a - b) > same * std::max(std::abs(a), std::abs(b)); };
+  const int first = robot.joints[static_cast<std::size_t>(joints.front())].model.body;
+  return std::ranges::none_of(joints, [&](int j) {
+    const int body = robot.joints[static_cast<std::size_t>(j)].model.body;
+    return differ(m->body_mass[first], m->body_mass[body]) ||
+           differ(m->body_inertia[3 * first], m->body_inertia[3 * body]);
+  });
+}
+
+// Whether a group may have one size of this.
+bool may_be_tied(const Robot& robot, const PropertyInfo& info, const std::vector<int>& joints) {
+  if (joints.size() == 1) return true;
+  return !is_of_one_joint(info.property) && (!is_of_body(info.property) || are_alike(robot, joints));
 }
 
 Term make_term(const std::vector<int>& joints, int group, const PropertyInfo& info,
@@ -58,7 +75,7 @@ std::vector<Term> all_terms(const Robot& robot, const std::vector<JointScale>& s
       for (const int j : robot.groups[g]) {
         if (is_considered(robot, info, j)) joints.push_back(j);
       }
-      if (!joints.empty() && (joints.size() == 1 || !is_of_one_joint(info.property)))
+      if (!joints.empty() && may_be_tied(robot, info, joints))
         terms.push_back(make_term(joints, static_cast<int>(g), info, scales));
     }
   }
@@ -77,6 +94,17 @@ std::vector<Term> all_terms(const Robot& robot, const std::vector<JointScale>& s
     }
   }
   return terms;
+}
+
+std::vector<PhysicsEntry> entries_of(const std::vector<Term>& terms) {
+  std::vector<PhysicsEntry> entries;
+  for (const Term& term : terms) {
+    for (const int j : term.joints) {
+      const auto same = [&](const PhysicsEntry& entry) { return entry.property == term.property && entry.joint == j; };
+      if (std::ranges::none_of(entries, same)) entries.push_back({term.property, j});
+    }
+  }
+  return entries;
 }
 
 RobotPhysics physics_of(const std::vector<Term>& terms, const Eigen::VectorXd& theta, const RobotPhysics& nominal) {
@@ -103,7 +131,7 @@ double nominal_of(const Robot& robot, const Term& term) {
 
 std::string place_of(const Robot& robot, const Term& term) {
   if (term.group == all_joints) return "all joints";
-  if (term.group >= 0) return robot.setup.groups[static_cast<std::size_t>(term.group)].name;
+  if (term.group >= 0 && term.joints.size() > 1) return robot.setup.groups[static_cast<std::size_t>(term.group)].name;
   return robot.joints[static_cast<std::size_t>(term.joints.front())].setup.name;
 }
 

@@ -22,6 +22,15 @@ struct Term {
 /// Groups first, then what all joints may have alike, then single joints.
 std::vector<Term> all_terms(const Robot& robot, const std::vector<JointScale>& scales);
 
+/// A property of a joint, by which errors are derived.
+struct PhysicsEntry {
+  Property property{};
+  int joint = 0;
+};
+
+/// All that terms are made of, each once.
+std::vector<PhysicsEntry> entries_of(const std::vector<Term>& terms);
+
 /// What the file states and the sums of terms, by joint, each property within what is possible.
 RobotPhysics physics_of(const std::vector<Term>& terms, const Eigen::VectorXd& theta, const RobotPhysics& nominal);
 

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "inverse_dynamics.hpp"
+#include "robot_step.hpp"
+
 namespace diagnose_robot {
 namespace {
 
@@ -13,35 +16,18 @@ double rms(const Eigen::Ref<const Eigen::VectorXd>& x) {
   return std::sqrt(x.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, x.size())));
 }
 
-double sign_of(double v) { return v > 0 ? 1.0 : v < 0 ? -1.0 : 0.0; }
-
 }  // namespace
 
 Eigen::MatrixXd rigid_body_torque(const Robot& robot, const Motion& motion, const RobotPhysics& physics) {
   const ModelPointer model = model_with_bodies(robot, physics);
-  const mjModel* m = model.get();
-  const DataPointer data(mj_makeData(m));
-  mjData* d = data.get();
-  std::vector<double> force(static_cast<std::size_t>(m->nv));
+  const DataPointer data(mj_makeData(model.get()));
   Eigen::MatrixXd torque(motion.q.rows(), motion.q.cols());
+  Eigen::VectorXd bias(motion.q.cols()), at;
+  for (Eigen::Index j = 0; j < bias.size(); ++j) bias[j] = physics[static_cast<std::size_t>(j)][Property::sensor_bias];
   for (Eigen::Index k = 0; k < motion.q.rows(); ++k) {
-    for (std::size_t j = 0; j < robot.joints.size(); ++j) {
-      const ModelJoint& joint = robot.joints[j].model;
-      const auto c = static_cast<Eigen::Index>(j);
-      d->qpos[joint.position] = motion.q(k, c) - physics[j][Property::sensor_bias];
-      d->qvel[joint.dof] = motion.v(k, c);
-      d->qacc[joint.dof] = motion.a(k, c);
-    }
-    mj_kinematics(m, d);
-    mj_comPos(m, d);
-    mj_comVel(m, d);
-    mj_rne(m, d, 1, force.data());
-    for (std::size_t j = 0; j < robot.joints.size(); ++j) {
-      const ModelJoint& joint = robot.joints[j].model;
-      torque(k, static_cast<Eigen::Index>(j)) =
-          force[static_cast<std::size_t>(joint.dof)] +
-          m->jnt_stiffness[joint.id] * (d->qpos[joint.position] - m->qpos_spring[joint.position]);
-    }
+    rigid_body_torque(robot, model.get(), data.get(), motion.q.row(k).transpose() - bias, motion.v.row(k),
+                      motion.a.row(k), at);
+    torque.row(k) = at;
   }
   return torque;
 }
@@ -77,9 +63,9 @@ Eigen::MatrixXd torque_residual(const Robot& robot, const Motion& motion, const 
     const JointPhysics& p = physics[j];
     const int before = robot.joints[j].before;
     for (Eigen::Index k = 0; k < needed.rows(); ++k) {
-      const double v = motion.v(k, c), slow = v / stribeck_speed;
-      const double dry = p[Property::coulomb] + p[Property::breakaway] * std::exp(-slow * slow) +
-                         p[Property::load_friction] * load(k, c);
+      const double v = motion.v(k, c);
+      const double dry =
+          p[Property::coulomb] + p[Property::breakaway] * stribeck_share(v) + p[Property::load_friction] * load(k, c);
       needed(k, c) += dry * sign_of(v) + p[Property::viscous] * v + p[Property::drag] * v * std::abs(v) +
                       p[Property::armature] * motion.a(k, c) - p[Property::constant_torque];
       if (before < 0) continue;

@@ -25,11 +25,13 @@ void draw_arm(RobotCase& robot, std::size_t count, plants::Random& random) {
   }
 }
 
-void draw_legs(RobotCase& robot, plants::Random& random) {
+void draw_legs(RobotCase& robot, std::size_t legs, plants::Random& random) {
   const double lengths[] = {random.uniform(0.05, 0.1), random.uniform(0.18, 0.25), random.uniform(0.18, 0.25)};
   const double masses[] = {random.uniform(0.5, 0.8), random.uniform(0.8, 1.3), random.uniform(0.2, 0.4)};
   const char* parts[] = {"hip", "thigh", "calf"};
-  for (const std::string leg : {"FL", "FR", "RL", "RR"}) {
+  static const std::vector<std::string> places{"FL", "FR", "RL", "RR", "ML", "MR", "BL", "BR"};
+  for (std::size_t number = 0; number < legs; ++number) {
+    const std::string& leg = places.at(number);
     for (std::size_t p = 0; p < 3; ++p) {
       Joint joint;
       joint.name = leg + "_" + parts[p];
@@ -107,7 +109,7 @@ std::pair<std::string, std::vector<std::size_t>> draw_place(const RobotCase& rob
   if (!what.groups || where < 0.4) {
     const bool last = what.where == &HiddenJoint::payload;  // at the end of an arm or a leg
     std::size_t joint = chosen;
-    if (last) joint = robot.family == "legs12" ? 3 * (chosen / 3) + 2 : robot.joints.size() - 1;
+    if (last) joint = robot.family.starts_with("legs") ? 3 * (chosen / 3) + 2 : robot.joints.size() - 1;
     return {robot.joints[joint].name, {joint}};
   }
   std::vector<std::size_t> joints;
@@ -144,8 +146,8 @@ RobotCase draw_robot(plants::Random& random, const std::string& family, bool non
   RobotCase robot;
   robot.family = family;
   robot.truth = nlohmann::ordered_json::array();
-  if (family == "legs12") {
-    draw_legs(robot, random);
+  if (family.starts_with("legs")) {
+    draw_legs(robot, std::stoul(family.substr(4)) / 3, random);
   } else {
     draw_arm(robot, static_cast<std::size_t>(family[3] - '0'), random);
     robot.torque_driven = random.chance(0.5);

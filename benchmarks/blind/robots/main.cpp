@@ -10,8 +10,9 @@
 namespace {
 
 constexpr const char* usage =
-    "usage: concealed_robots OUT CASES SEED\n"
-    "writes OUT/cases/case_0001/{robot.xml,robot.toml,rec_1.csv,...} and OUT/truth/case_0001.json\n";
+    "usage: concealed_robots OUT CASES SEED [FAMILY]\n"
+    "writes OUT/cases/case_0001/{robot.xml,robot.toml,rec_1.csv,...} and OUT/truth/case_0001.json\n"
+    "FAMILY: arm2 to arm7, or legs3, legs6, ... legs24; without it arm2, arm6, arm7 and legs12 take turns\n";
 constexpr int recordings = 3;
 
 void write(const std::filesystem::path& file, const std::string& text) {
@@ -22,13 +23,14 @@ void write(const std::filesystem::path& file, const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4) {
+  if (argc != 4 && argc != 5) {
     std::fputs(usage, stderr);
     return 2;
   }
   try {
     const std::filesystem::path out = argv[1];
-    const std::vector<std::string> families{"arm2", "arm6", "arm7", "legs12"};
+    const std::vector<std::string> families =
+        argc == 5 ? std::vector<std::string>{argv[4]} : std::vector<std::string>{"arm2", "arm6", "arm7", "legs12"};
     for (unsigned long i = 1; i <= std::stoul(argv[2]); ++i) {
       plants::Random random(1000003 * std::stoull(argv[3]) + i);
       const std::string family = families[i % families.size()];

@@ -86,7 +86,9 @@ std::string record(const RobotCase& robot, plants::Random& random) {
       for (std::size_t j = 0; j < n; ++j) {
         const Joint& joint = robot.joints[j];
         const HiddenJoint& hidden = joint.hidden;
-        told[j].push_back(goal[j]);
+        // Torques that are logged come from a controller whose goals are not: it moves them at every step.
+        const double within = static_cast<double>(step) * m->opt.timestep;
+        told[j].push_back(robot.torque_driven && t >= 0 ? goals[j](t + within) : goal[j]);
         const auto late = static_cast<std::size_t>(std::lround(hidden.delay / m->opt.timestep));
         while (told[j].size() > late + 1) told[j].pop_front();
         const double q = d->qpos[at[j]], v = d->qvel[at[j]];

@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
   }
   const std::filesystem::path cases = argv[1], results = argv[2];
   std::size_t hidden = 0, found = 0, tied = 0, none = 0, false_alarms = 0, extra = 0, complete = 0, robots = 0,
-              contradicted = 0;
+              contradicted = 0, replays = 0, replayed = 0;
   std::vector<double> errors;
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(cases / "truth")) files.push_back(entry.path());
@@ -117,6 +117,12 @@ int main(int argc, char** argv) {
     }
     const json& ratio = diagnosis["noise_ratio"];
     contradicted += ratio.is_number() && double(ratio) > 1.5 && diagnosis["verdict"] != "unexplained" ? 1 : 0;
+    const json &after = diagnosis["robot"]["rmse_after"], &again = diagnosis["robot"]["rmse_replayed"];
+    if (after.is_number() && again.is_number()) {
+      constexpr double same = 0.02;  // of the stated error
+      ++replays;
+      replayed += std::abs(double(again) / double(after) - 1) <= same ? 1 : 0;
+    }
     std::printf("%s %s (%.0f s, noise ratio %.2f)\n", file.stem().c_str(), line.c_str(), double(diagnosis["seconds"]),
                 ratio.is_number() ? double(ratio) : NAN);
   }
@@ -124,7 +130,8 @@ int main(int argc, char** argv) {
   std::printf(
       "robots %zu; hidden %zu: found %zu, in a stated tie %zu; without fault and without extras %zu of %zu; extras "
       "%zu; "
-      "false alarms %zu of %zu; verdicts against the noise floor %zu; parameters off by %.1f %% in the median\n",
+      "false alarms %zu of %zu; verdicts against the noise floor %zu; parameters off by %.1f %% in the median; "
+      "replayed to the stated error %zu of %zu\n",
       robots, hidden, found, tied, complete, robots - none, extra, false_alarms, none, contradicted,
-      errors.empty() ? NAN : 100 * errors[errors.size() / 2]);
+      errors.empty() ? NAN : 100 * errors[errors.size() / 2], replayed, replays);
 }

@@ -1,0 +1,103 @@
+#include "other_starts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace diagnose_robot {
+namespace {
+
+constexpr std::array<double, 3> sizes{1, 3, 9};  // typical ones
+
+bool is_of_joint(const Term& term, int joint) { return term.joints.size() == 1 && term.joints.front() == joint; }
+
+// Without what this joint has for itself.
+Point without_joint(const Evidence& evidence, const Point& point, int joint) {
+  Point bare{point.theta, point.set, {}};
+  for (std::size_t t = 0; t < evidence.terms.size(); ++t) {
+    if (!is_of_joint(evidence.terms[t], joint)) continue;
+    bare.set[t] = 0;
+    bare.theta[static_cast<Eigen::Index>(t)] = 0;
+  }
+  return bare;
+}
+
+struct Start {
+  Point point;
+  std::size_t term = 0;
+  double misfit = 0;
+};
+
+std::vector<Start> starts_at(const Evidence& evidence, const LinearModel& model, const Point& bare, int joint) {
+  std::vector<Start> starts;
+  for (std::size_t t = 0; t < evidence.terms.size(); ++t) {
+    const Term& term = evidence.terms[t];
+    if (!is_of_joint(term, joint) || is_of_body(term.property)) continue;
+    for (const double size : sizes) {
+      for (const double side : {1.0, -1.0}) {
+        const double value = side * size * term.typical;
+        const auto at = static_cast<Eigen::Index>(t);
+        if (value < model.low[at] || value > model.high[at]) continue;
+        Start start{bare, t, 0};
+        start.point.set[t] = 1;
+        start.point.theta[at] = value;
+        starts.push_back(std::move(start));
+      }
+    }
+  }
+  const auto errors = surefoot::map(
+      evidence.threads, starts.size(), [&](std::size_t i) { return errors_at(evidence, starts[i].point.theta); },
+      evidence.stop);
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    starts[i].point.errors = errors[i];
+    starts[i].misfit = errors[i].size() > 0 ? misfit(evidence, model, starts[i].point) : 0;
+  }
+  std::ranges::stable_sort(starts, {}, &Start::misfit);
+  return starts;
+}
+
+}  // namespace
+
+int OtherStarts::worst_joint(const Evidence& evidence, const Point& point) const {
+  const Eigen::VectorXd rms = rms_by_joint(evidence, point.errors);
+  int worst = -1;
+  double most = criteria_.beyond_noise;
+  for (Eigen::Index j = 0; j < rms.size(); ++j) {
+    double noise = evidence.numerical.size() > 0 ? evidence.numerical[j] * evidence.numerical[j] : 0;
+    for (const RobotRecording& recording : evidence.recordings)
+      noise = std::max(noise, std::pow(noise_of(recording.angle.col(j)), 2));
+    const double ratio = rms[j] / std::max(1e-12, std::sqrt(noise));
+    if (ratio <= most || std::ranges::find(tried_, static_cast<int>(j)) != tried_.end()) continue;
+    most = ratio;
+    worst = static_cast<int>(j);
+  }
+  return worst;
+}
+
+bool OtherStarts::try_next(const Evidence& evidence, const LinearModel& model, RigidCache& cache, Point& point) {
+  if (evidence.robot.setup.drive == DriveKind::torque) return false;
+  const double now = misfit(evidence, model, point) + cost_of(model, point.set);
+  while (static_cast<int>(tried_.size()) < criteria_.most_joints && !evidence.stop.stop_requested()) {
+    const int joint = worst_joint(evidence, point);
+    if (joint < 0) return false;
+    tried_.push_back(joint);
+    std::vector<Start> starts = starts_at(evidence, model, without_joint(evidence, point, joint), joint);
+    std::vector<std::size_t> seen;  // terms that were fitted
+    for (Start& start : starts) {
+      if (static_cast<int>(seen.size()) == criteria_.finalists || evidence.stop.stop_requested()) break;
+      if (std::ranges::find(seen, start.term) != seen.end()) continue;
+      seen.push_back(start.term);
+      for (int fit = 0; fit < criteria_.fits; ++fit) {
+        const LinearModel here = linearize(evidence, start.point.theta, start.point.errors, cache);
+        if (!move(evidence, here, start.point.set, {}, start.point)) break;
+      }
+      if (misfit(evidence, model, start.point) + cost_of(model, start.point.set) > now - ChoiceCriteria().needed)
+        continue;
+      point = start.point;
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace diagnose_robot

@@ -1,0 +1,32 @@
+// A point of the search: terms and their sizes, with the errors that a simulation leaves there.
+#pragma once
+
+#include "choose_terms.hpp"
+#include "linearize.hpp"
+
+namespace diagnose_robot {
+
+struct Point {
+  Eigen::VectorXd theta;
+  TermSet set;
+  Eigen::MatrixXd errors;
+};
+
+struct MoveCriteria {
+  int most_halvings = 5;  // of a step that raises the errors
+  double settled = 0.5;   // decrease of -2 log probability below which parameters no longer move: odds of 1.3
+};
+
+Eigen::MatrixXd errors_at(const Evidence& evidence, const Eigen::VectorXd& theta);
+
+/// What steps must lower: as the criterion of the linear model, without the cost of having terms.
+double misfit(const Evidence& evidence, const LinearModel& model, const Point& point);
+
+/// Cost of having the terms.
+double cost_of(const LinearModel& model, const TermSet& set);
+
+/// Along the linear model's change to this set, as far as errors fall. False if they do not.
+bool move(const Evidence& evidence, const LinearModel& model, const TermSet& set, const MoveCriteria& criteria,
+          Point& point);
+
+}  // namespace diagnose_robot
