@@ -57,9 +57,10 @@ struct SimulatorInfo {
 
 /// How an ODE is integrated.
 struct Integration {
-  int order = 4;    // 4, or 2
-  double step = 0;  // longest step [s]; 0: one step per row
-  int restart = 0;  // begin again from the measured state every so many rows; 0: never (all states must be measured)
+  int order = 4;      // 4, or 2
+  double step = 0;    // longest step [s]; 0: one step per row
+  int restart = 0;    // begin again from the measured state every so many rows; 0: never (all states must be measured)
+  double follow = 0;  // share of their distance to the readings by which measured states move in each row; 0: never
 };
 
 /// A simulated recording; states are those before each restart.

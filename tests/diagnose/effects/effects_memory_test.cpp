@@ -83,6 +83,9 @@ TEST_CASE("the path of hysteresis does not depend on how it is cut into steps") 
     CHECK(bouc_wen_1(bouc_wen_1(z, a, width), b, width) == doctest::Approx(bouc_wen_1(z, a + b, width)));
     CHECK(bouc_wen_2(bouc_wen_2(z, a, width), b, width) == doctest::Approx(bouc_wen_2(z, a + b, width)));
     CHECK(std::abs(bouc_wen_2(z, a, width)) <= width * (1 + 1e-12));
+    const double shape = uniform(rng, -2, 2), once = bouc_wen_asymmetric(z, a + b, width, shape);
+    CHECK(bouc_wen_asymmetric(bouc_wen_asymmetric(z, a, width, shape), b, width, shape) == doctest::Approx(once));
+    CHECK(bouc_wen_asymmetric(z, a, width, 0) == doctest::Approx(bouc_wen_1(z, a, width)));
   }
 }
 
@@ -95,6 +98,11 @@ TEST_CASE("hysteresis solves its differential equation") {
       CHECK(slope == doctest::Approx(1 - side * z / width).epsilon(1e-4));
       const double squared = (bouc_wen_2(z, side * small, width) - z) / (side * small);
       CHECK(squared == doctest::Approx(side * z > 0 ? 1 - z * z / (width * width) : 1).epsilon(1e-4));
+      for (const double shape : {-1.0, -0.4, 0.6, 1.0, 1.5}) {
+        const double bent = (bouc_wen_asymmetric(z, side * small, width, shape) - z) / (side * small);
+        const double away = std::abs(z) / width;
+        CHECK(bent == doctest::Approx(side * z > 0 ? 1 - (1 - shape) * away : 1 + (1 + shape) * away).epsilon(1e-4));
+      }
     }
   }
 }

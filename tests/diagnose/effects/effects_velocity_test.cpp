@@ -16,6 +16,7 @@
 #include "surefoot/diagnose/effects/cubic_stiffness.hpp"
 #include "surefoot/diagnose/effects/end_stop.hpp"
 #include "surefoot/diagnose/effects/gravity_offset.hpp"
+#include "surefoot/diagnose/effects/hysteresis.hpp"
 #include "surefoot/diagnose/effects/load_dependent_friction.hpp"
 #include "surefoot/diagnose/effects/quadratic_drag.hpp"
 #include "surefoot/diagnose/effects/stribeck_friction.hpp"
@@ -123,6 +124,25 @@ TEST_CASE("friction that depends on the load takes its share of the force") {
   CHECK(effect.dry(m, p) == doctest::Approx(1.5));
   CHECK(effects::load_dependent_friction_under_load().dry(m, p) == doctest::Approx(2.5));
   CHECK(effects::load_dependent_friction_in_gears().dry(m, p) == doctest::Approx(2.0));
+}
+
+TEST_CASE("a friction with presliding has all of its level after some travel, and none where it reversed") {
+  const Effect effect = effects::with_presliding(effects::load_dependent_friction());
+  CHECK(effect.form == "drive, presliding");
+  CHECK_NOTHROW(check(effect));
+  const std::vector<double> p = {0.25, 0.01};
+  EffectContext m;
+  m.drive = 4;
+  std::vector<double> hidden(2);
+  effect.start(m, p, hidden);
+  CHECK(effect.force(m, p, hidden) == 0);
+  m.position = 0.01;
+  CHECK(effect.force(m, p, hidden) == doctest::Approx(-(1 - std::exp(-1.0))));
+  m.position = 0.2;
+  CHECK(effect.force(m, p, hidden) == doctest::Approx(-1));
+  effect.advance(m, p, hidden);
+  m.position = 0.1;
+  CHECK(effect.force(m, p, hidden) == doctest::Approx(1).epsilon(1e-3));
 }
 
 TEST_CASE("friction never adds energy") {

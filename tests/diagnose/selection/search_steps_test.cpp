@@ -67,14 +67,28 @@ TEST_CASE("the search begins a second time from the nominal parameters, with the
   TankBench bench({rate_in_tank});
   Search search = bench.search();
   search.problem.fit.weighting.sigma[0] = 0.001;
-  const auto children = extended_from_nominal(search);
+  const auto children = extended_from(search, bench.problem.nominal);
   REQUIRE_FALSE(children.empty());
   const EvaluatedHypothesis& best = children[best_of(children, bench.problem.criteria)];
   CHECK(names_in(best) == "constant_rate");
   CHECK(best.loss < 1);  // in units of what the nominal parameters leave
   CHECK(search.problem.fit.weighting.sigma[0] == 0.001);
   search.problem.stopped = [] { return true; };
-  CHECK(extended_from_nominal(search).empty());
+  CHECK(extended_from(search, bench.problem.nominal).empty());
+}
+
+TEST_CASE("from the parameters of two effects that stand in for one, that one is found") {
+  const TankBench bench({rate_in_tank});
+  const SelectionCriteria& criteria = bench.problem.criteria;
+  const Search search = bench.search();
+  std::vector<EvaluatedHypothesis> pool{bench.with({}), bench.with({"sensor_drift", "sensor_bias"})};
+  REQUIRE(search.effects(pool[best_of(pool, criteria)]) == 2);
+  begin_anew(search, pool);
+  CHECK(names_in(pool[best_of(pool, criteria)]) == "constant_rate");
+
+  std::vector<EvaluatedHypothesis> single{bench.with({}), bench.with({"sensor_drift"})};
+  begin_anew(search, single);
+  CHECK(single.size() == 2);  // the search began with single effects
 }
 
 TEST_CASE("a pool grows as long as a further effect makes the best structure better") {

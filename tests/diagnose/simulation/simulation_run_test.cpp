@@ -101,6 +101,22 @@ TEST_CASE("a restart begins from the measured state, and only where one was meas
   CHECK(run.outputs(0, 11) == doctest::Approx(2.0 + 0.3));  // the speed, not measured in row 10, stays 3
 }
 
+TEST_CASE("a simulation that follows its readings comes to them, and unmeasured speeds with them") {
+  Recording recording = blank_recording(SlidingBlock{}.info(), 400, 0.1);
+  for (Eigen::Index row = 0; row < 400; ++row) recording.outputs(0, row) = 5 + 0.2 * static_cast<double>(row);
+  recording.outputs.row(1).setConstant(std::numeric_limits<double>::quiet_NaN());
+  const auto end_of = [&](double follow) {
+    Augmented plain = machine({});
+    plain.integration.follow = follow;
+    return simulate_augmented(SlidingBlock{}, plain, recording).outputs.col(399).eval();
+  };
+  CHECK(end_of(0)[0] == 0);
+  CHECK(end_of(0.2)[0] == doctest::Approx(recording.outputs(0, 399)));
+  CHECK(end_of(0.01)[0] < 0.98 * recording.outputs(0, 399));  // it forgets within 100 rows
+  recording.outputs.row(1).setConstant(2);
+  CHECK(end_of(0.2)[1] == doctest::Approx(2));
+}
+
 TEST_CASE("an input that is late by parts of a row gives the response to the shifted input") {
   Recording recording = blank_recording(SlidingBlock{}.info(), 60, 0.05);
   Rng rng(3);

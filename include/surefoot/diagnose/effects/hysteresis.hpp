@@ -1,15 +1,18 @@
 // Hysteresis: a force that depends on the way and not on the speed, as of rubber, cables and pre-sliding friction.
 // R. Bouc, 1967; Y.-K. Wen: "Method for random vibration of hysteretic systems", J. Eng. Mech. 102, 1976:
 //   z' = v - |v| z / width  (exponent 1, beta alone),   force = -force * z / width.
-// Form "n = 2" has exponent 2 and beta = gamma: dz/dq = 1 - (z/width)^2 on the way up, 1 on the way back. Both are
-// functions of the distance travelled since the last step, so they are evaluated in closed form and stable for any
-// step. HiddenStates: z, position after the last step. With a width far below the travel it is dry friction that is
-// reached after some presliding (P. R. Dahl, 1968), and called so; confusable with backlash, which also forgets the way
-// at each reversal.
+// Form "n = 2" has exponent 2 and beta = gamma: dz/dq = 1 - (z/width)^2 on the way up, 1 on the way back. Form
+// "asymmetric" has exponent 1 and any gamma: dz/dq = 1 - (1 - shape) |z|/width on the way out, 1 + (1 + shape)
+// |z|/width on the way back, with shape = -gamma / beta; beyond 1 it stiffens on the way out. All are functions of the
+// distance travelled since the last step, so they are evaluated in closed form and stable for any step. HiddenStates:
+// z, position after the last step. With a width far below the travel it is dry friction that is reached after some
+// presliding (P. R. Dahl, 1968), and called so; confusable with backlash, which also forgets the way at each reversal.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
@@ -34,8 +37,42 @@ inline double bouc_wen_2(double z, double way, double width) {
   return side * width * (a + b) / (1 + a * b);  // addition theorem of tanh
 }
 
+/// Falloff per width below which a path is straight: what it bends is rounding.
+inline constexpr double straight_path = 1e-6;
+
+/// After `way` along dz/dq = 1 - falloff * z, from z on.
+inline double exponential_path(double z, double way, double falloff) {
+  if (std::abs(falloff) < straight_path) return z + way;
+  return z * std::exp(-falloff * way) - std::expm1(-falloff * way) / falloff;
+}
+
+inline double bouc_wen_asymmetric(double z, double way, double width, double shape) {
+  const double side = way < 0 ? -1 : 1, back = 1 + shape;
+  double up = side * z / width, left = std::abs(way) / width;  // seen in the direction of motion
+  if (up < 0) {
+    const double slope = 1 - back * up;  // at least 0 unless it stiffens on the way back, too
+    const double to_zero = std::abs(back) < straight_path ? -up : slope > 0 ? std::log(slope) / back : left;
+    const double share = std::min(left, to_zero);
+    up = share < to_zero ? exponential_path(up, share, back) : 0;
+    left -= share;
+  }
+  return side * width * exponential_path(up, left, 1 - shape);
+}
+
 /// Share of the typical travel up to which a width is that of presliding.
 inline constexpr double presliding_width = 0.05;
+
+/// Travel after which a friction with presliding has about two thirds of its level.
+inline EffectParameter presliding_width_parameter(std::vector<double> starts) {
+  return {
+      .name = "width", .measure = {.position = 1}, .low = 0.001, .high = presliding_width, .starts = std::move(starts)};
+}
+
+/// HiddenStates of a path that begins: z, and the position.
+inline void start_of_path(const EffectContext& m, Values /*p*/, HiddenStates hidden) {
+  hidden[0] = 0;
+  hidden[1] = m.position;
+}
 
 template <double (*Move)(double, double, double)>
 Effect hysteresis_of(std::string form) {
@@ -52,11 +89,7 @@ Effect hysteresis_of(std::string form) {
       .hidden_states = 2,
       .force = +[](const EffectContext& m, Values p,
                    Values hidden) { return -p[0] * Move(hidden[0], m.position - hidden[1], p[1]) / p[1]; },
-      .start =
-          +[](const EffectContext& m, Values, HiddenStates hidden) {
-            hidden[0] = 0;
-            hidden[1] = m.position;
-          },
+      .start = start_of_path,
       .advance =
           +[](const EffectContext& m, Values p, HiddenStates hidden) {
             hidden[0] = Move(hidden[0], m.position - hidden[1], p[1]);
@@ -71,12 +104,45 @@ inline Effect coulomb_friction_presliding() {
   Effect effect = hysteresis_of<bouc_wen_1>("presliding");
   effect.name = "coulomb_friction";
   effect.sentence = "dry friction of {force}, reached after {width} of presliding, at {at}";
-  effect.parameters[1].low = 0.001;
-  effect.parameters[1].high = presliding_width;
-  effect.parameters[1].starts = {0.005, 0.02};
+  effect.parameters[1] = presliding_width_parameter({0.005, 0.02});
   effect.confusable_with =
       names_of({"stribeck_friction", "load_dependent_friction", "hysteresis", "viscous_friction", "dead_zone"});
   effect.experiment = "a slow ramp with reversals, at a few speeds down to the slowest that still moves";
+  return effect;
+}
+
+/// A dry friction that is reached after some travel, in a form of its own: after a reversal it has the share of its
+/// level that the hysteresis of exponent 1 has of its force.
+inline Effect with_presliding(Effect friction) {
+  friction.sentence += ", reached after {width} of presliding";
+  friction.parameters[0].starts = {0.1};
+  friction.parameters.push_back(presliding_width_parameter({0.01}));
+  friction.form += friction.form.empty() ? "presliding" : ", presliding";
+  friction.hidden_states = 2;
+  friction.force = [level = std::exchange(friction.dry, {})](const EffectContext& m, Values p, Values hidden) {
+    return -level(m, p) * bouc_wen_1(hidden[0], m.position - hidden[1], p.back()) / p.back();
+  };
+  friction.start = start_of_path;
+  friction.advance = +[](const EffectContext& m, Values p, HiddenStates hidden) {
+    hidden[0] = bouc_wen_1(hidden[0], m.position - hidden[1], p.back());
+    hidden[1] = m.position;
+  };
+  return friction;
+}
+
+inline Effect hysteresis_asymmetric() {
+  Effect effect = hysteresis();
+  effect.sentence = "hysteresis of {force} and shape {shape}, reached after {width} of travel, at {at}";
+  effect.parameters[0].starts = {0.1};
+  effect.parameters.push_back({.name = "shape", .low = -2, .high = 2, .starts = {-0.7, 1.2}});
+  effect.form = "asymmetric";
+  effect.force = +[](const EffectContext& m, Values p, Values hidden) {
+    return -p[0] * bouc_wen_asymmetric(hidden[0], m.position - hidden[1], p[1], p[2]) / p[1];
+  };
+  effect.advance = +[](const EffectContext& m, Values p, HiddenStates hidden) {
+    hidden[0] = bouc_wen_asymmetric(hidden[0], m.position - hidden[1], p[1], p[2]);
+    hidden[1] = m.position;
+  };
   return effect;
 }
 

@@ -16,6 +16,7 @@
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
 #include "surefoot/diagnose/estimation/growing_horizon.hpp"
+#include "surefoot/diagnose/estimation/guided_fit.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
 
@@ -93,8 +94,8 @@ SUREFOOT_INLINE Fit calibrate(const BoundSimulator& bound, const Hypothesis& nom
   FitProblem first = problem;
   first.max_iterations = search_iterations;
   Fit best = fit(bound, nominal, first, parallel);
-
   best = grown_fit(bound, best, nominal, first, parallel);
+  best = guided_fit(bound, best, nominal, first, parallel);
   best = scattered_fit(bound, best, nominal, first, points, seed, parallel);
   if (!best.ok) {
     throw DiagnoseError(

@@ -28,9 +28,9 @@ void reweight(Search& search, const EvaluatedHypothesis& best);
 /// for what a hypothesis leaves; true if it is finer now.
 bool refine_integration(Search& search, const EvaluatedHypothesis& best);
 
-/// The children of the nominal parameters: what is missing may have pushed the calibrated ones where no fit finds back
-/// from, and where signatures look otherwise.
-std::vector<EvaluatedHypothesis> extended_from_nominal(Search search);
+/// The children of the model without effects, but with the parameters and initial states of `start`: what is missing
+/// may have pushed the calibrated ones where no fit finds back from, and where signatures look otherwise.
+std::vector<EvaluatedHypothesis> extended_from(Search search, Hypothesis start);
 
 /// Extends the best structures of a pool, as long as that makes the best one better.
 void grow(Search& search, std::vector<EvaluatedHypothesis>& pool);
@@ -43,6 +43,10 @@ void refit_best(const Search& search, std::vector<EvaluatedHypothesis>& pool);
 
 /// Takes each effect of the best structure away, and puts others in its place.
 void swap_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool);
+
+/// Single effects and pairs once more, from the parameters of the best structure on: these are nearest to the truth,
+/// whatever effects led there, and an early choice that only led there is left behind.
+void begin_anew(const Search& search, std::vector<EvaluatedHypothesis>& pool);
 
 /// Recordings that the search looks at: of many only some, which differ in how far the calibrated model misses them.
 std::vector<std::size_t> informative(const BoundSimulator& bound, const Hypothesis& calibrated,

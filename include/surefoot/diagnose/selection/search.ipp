@@ -15,6 +15,7 @@
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/growing_horizon.hpp"
+#include "surefoot/diagnose/estimation/guided_fit.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/restarts.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
@@ -82,14 +83,15 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> extended(const Search& search,
   return children;
 }
 
-SUREFOOT_INLINE std::vector<EvaluatedHypothesis> extended_from_nominal(Search search) {
+SUREFOOT_INLINE std::vector<EvaluatedHypothesis> extended_from(Search search, Hypothesis start) {
   std::vector<EvaluatedHypothesis> children;
   if (search.problem.stopped()) return children;
-  const Fit start{search.problem.nominal, 0, true};
-  const EvaluatedHypothesis nominal = evaluate_fit(search.bound, start, search.problem, search.parallel);
-  reweight(search, nominal);
+  start.effects.resize(search.problem.known);
+  start.values.resize(search.problem.known);
+  const EvaluatedHypothesis bare = evaluate_fit(search.bound, Fit{start, 0, true}, search.problem, search.parallel);
+  reweight(search, bare);
   search.problem.scatter = false;
-  extend(search, nominal, children);
+  extend(search, bare, children);
   return children;
 }
 
@@ -118,7 +120,9 @@ SUREFOOT_INLINE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool
     std::erase_if(beam, [&](const EvaluatedHypothesis& one) { return search.effects(one) >= most; });
     std::vector<EvaluatedHypothesis> children = extended(search, beam);
     if (depth == 0) {
-      for (const EvaluatedHypothesis& child : extended_from_nominal(search)) keep_best_form(children, child, criteria);
+      for (const EvaluatedHypothesis& child : extended_from(search, search.problem.nominal)) {
+        keep_best_form(children, child, criteria);
+      }
       const bool leaves_something =
           criteria.max_effects > 1 && !children.empty() &&
           search.problem.structured(children[best_of(children, criteria)].hypothesis, search.problem.fit.integration);
@@ -168,6 +172,7 @@ SUREFOOT_INLINE void refit_best(const Search& search, std::vector<EvaluatedHypot
     Fit again =
         restarted_fit(search.bound, fitted, problem.fit, quick, problem.effort.restarts, restart_seed, search.parallel);
     again = grown_fit(search.bound, again, again.hypothesis, problem.fit, search.parallel);
+    again = guided_fit(search.bound, again, again.hypothesis, problem.fit, search.parallel);
     if (!(again.loss < fitted.loss)) continue;
     keep_best_form(pool, evaluate_fit(search.bound, again, problem, search.parallel), problem.criteria);
   }
@@ -190,6 +195,15 @@ SUREFOOT_INLINE void swap_effects(const Search& search, std::vector<EvaluatedHyp
                       problem.effort.compared_finalists)) {
       keep_best_form(pool, other, problem.criteria);
     }
+  }
+}
+
+SUREFOOT_INLINE void begin_anew(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
+  const SelectionCriteria& criteria = search.problem.criteria;
+  const EvaluatedHypothesis best = pool[best_of(pool, criteria)];
+  if (search.effects(best) < 2) return;  // the search began with single effects
+  for (const EvaluatedHypothesis& child : extended_from(search, best.hypothesis)) {
+    keep_best_form(pool, child, criteria);
   }
 }
 
@@ -220,6 +234,7 @@ SUREFOOT_INLINE Selection select_effects(const BoundSimulator& bound, const Fit&
     reweight(search, pool[best_of(pool, criteria)]);
     refit_best(search, pool);
     swap_effects(search, pool);
+    begin_anew(search, pool);
     if (same_structure(pool[best_of(pool, criteria)].hypothesis, best)) break;
   }
   if (search.problem.fit.recordings.size() < all.size()) {

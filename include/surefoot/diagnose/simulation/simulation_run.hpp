@@ -10,9 +10,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
+#include "surefoot/core/pose2.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/simulation/integrate.hpp"
 #include "surefoot/diagnose/simulation/step_updates.hpp"
@@ -64,6 +66,7 @@ class SimulationRun {
       }
       if (row + 1 == rows) break;
       if (integration_.restart > 0 && row > 0 && row % integration_.restart == 0) restart(now, row);
+      if (integration_.follow > 0 && row > 0) follow(now, result.outputs, row);
       if (!m_.slots.drifts.empty()) drift(row);
       advance_row(now, row);
     }
@@ -182,6 +185,28 @@ class SimulationRun {
       if (output < 0) continue;
       const double measured = recording_.outputs(output, row);
       if (std::isfinite(measured)) now.x[static_cast<Eigen::Index>(i)] = measured;
+    }
+  }
+
+  /// Moves measured states towards their readings, and unmeasured speeds of measured states with them: an alpha-beta
+  /// tracker (T. R. Benedict, G. W. Bordner, IRE Trans. Automatic Control 7, 1962), which forgets within 1 / follow
+  /// rows.
+  void follow(Point<S>& now, const Eigen::MatrixXd& outputs, Eigen::Index row) const {
+    const double alpha = integration_.follow, beta = alpha * alpha / (2 - alpha);
+    const double interval = is_ode<S> ? recording_.time[row] - recording_.time[row - 1] : 1;
+    const auto off = [&](int state) {  // NaN where it is not measured
+      const int output = state < 0 ? -1 : m_.structure.output_of[static_cast<std::size_t>(state)];
+      if (output < 0) return std::numeric_limits<double>::quiet_NaN();
+      const double distance = recording_.outputs(output, row) - outputs(output, row);
+      return info_.outputs[static_cast<std::size_t>(output)].unit == "rad" ? wrap_angle(distance) : distance;
+    };
+    for (int i = 0; i < static_cast<int>(info_.states.size()); ++i) {
+      const double own = off(i), of_position = off(m_.structure.position_of[static_cast<std::size_t>(i)]);
+      if (std::isfinite(own)) {
+        now.x[i] += alpha * own;
+      } else if (std::isfinite(of_position)) {
+        now.x[i] += beta / interval * of_position;
+      }
     }
   }
 
