@@ -55,7 +55,7 @@ struct BusSensorsOptions {
   double newton_per_count = 1;                                // of a cell
   std::array<double, 2> unloaded_counts{};                    // of all four cells of a foot in the air, left and right
   std::array<double, 4> cell_x = {0.06, 0.06, -0.06, -0.06};  // ahead of the foot's middle [m]
-  double longest_s = 2e-3;                                    // that reading all of them may take [s]
+  double longest_s = 4.5e-3;                                  // that reading all of them may take [s]
 };
 
 /// `SensorBus` is a Bus of Protocol 1.0. A device that does not answer is asked again in the next cycle.
