@@ -1,6 +1,7 @@
 // The robot in MuJoCo. Its walk is chaotic and differs between machines: statistics are compared, not trajectories.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <string>
@@ -170,6 +171,46 @@ TEST_CASE("on a slippery ground a turn comes to less") {
   CHECK(mean_cycle(with(&TwinSwitches::slippery_radius, 50), {0, 0, 0.15})[2] < 0.9 * mean_cycle({}, {0, 0, 0.15})[2]);
 }
 
+TEST_CASE("stabilised walks under pushes: the centre of pressure comes to the middle of the feet, and fewer fall") {
+  WalkingTwinOptions options;
+  options.pushes.impulse = 1;
+  const auto commands = surefoot::plan_commands(surefoot::CommandBounds(), 12, 12, 5);
+  const auto falls = [&](bool stabilized) {
+    options.stabilized = stabilized;
+    const auto walks = record_sequences(options, commands, 5, surefoot::Threads());
+    return std::ranges::count_if(walks, &TwinSequence::fell);
+  };
+  const auto without = falls(false);
+  CHECK(without >= 4);
+  CHECK(falls(true) <= without / 2);
+}
+
+TEST_CASE("the feet carry the robot, and its sensors say so") {
+  Twin twin;
+  const auto stand = SplineWalk(twin_walk()).step({.enabled = 0}, 0);
+  REQUIRE(stand);
+  twin.reset(*stand);
+  for (int i = 0; i < 200; ++i) twin.drive(*stand);
+  const BodyReading& reading = twin.reading();
+  CHECK(reading.loads[0] + reading.loads[1] == doctest::Approx(4.2 * 9.81).epsilon(0.01));
+  CHECK(reading.pressure_x[0] > 0.01);  // it stands over its toes
+  CHECK(reading.accelerometer.norm() == doctest::Approx(9.81).epsilon(0.01));
+  CHECK(reading.accelerometer.x() < -1);  // leaning forwards
+  CHECK(reading.gyro.norm() < 0.01);
+  twin.push({20, 0, 0});
+  twin.drive(*stand);
+  CHECK(reading.gyro.y() > 0.01);
+}
+
+TEST_CASE("a robot sinks into soft ground and still walks") {
+  const WalkingTwinOptions soft = with(&TwinSwitches::soft_ground, 0.03);
+  Twin twin({}, soft.switches);
+  const Twin hard;
+  for (int i = 0; i < 50; ++i) twin.drive({});
+  CHECK(twin.height() < hard.height() - 0.0005);
+  CHECK(mean_cycle(soft, {0.02, 0, 0})[0] > 0.02);
+}
+
 TEST_CASE("switches by name: a usual value, a given one, and what is no switch") {
   TwinSwitches switches;
   set_switch(switches, "backlash");
@@ -178,7 +219,7 @@ TEST_CASE("switches by name: a usual value, a given one, and what is no switch")
   CHECK(switches.slope_left == -0.05);
   CHECK(refusal("wind") ==
         "switch wind: there is no such switch; there are backlash, servo_friction, order_delay, "
-        "slope_forward, slope_left, short_left_leg, battery_drop, slippery_radius");
+        "slope_forward, slope_left, short_left_leg, battery_drop, soft_ground, slippery_radius");
   CHECK(refusal("backlash=much").find("a number was expected") != std::string::npos);
   CHECK(refusal("backlash=-1").find("from 0 to 0.1 rad, got -1") != std::string::npos);
   CHECK(refusal("order_delay=1.5").find("whole number") != std::string::npos);

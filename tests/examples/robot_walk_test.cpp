@@ -121,16 +121,39 @@ TEST_CASE("joints files: the defaults come back, mistakes are named") {
     return read_joints(file);
   };
   CHECK(joints_to_json(read(joints_to_json(default_joints()))) == joints_to_json(default_joints()));
-  const auto joints = read(R"({"left_knee": {"id": 40, "sign": -1, "zero_rad": 0.1}})");
-  CHECK(joints[3].id == 40);
-  CHECK(joints[3].sign == -1);
-  CHECK(joints[3].zero_rad == 0.1);
+  const auto robot = read(R"({"left_knee": {"id": 40, "sign": -1, "zero_rad": 0.1}})");
+  REQUIRE(robot.joints.size() == 12);
+  CHECK(robot.joints[3].id == 40);
+  CHECK(robot.joints[3].sign == -1);
+  CHECK(robot.joints[3].zero_rad == 0.1);
   CHECK_THROWS_WITH_AS(read("[]"), doctest::Contains("no JSON object"), example::UsageError);
   CHECK_THROWS_WITH_AS(read(R"({"tail": {}})"), doctest::Contains("no joint \"tail\""), example::UsageError);
-  CHECK_THROWS_WITH_AS(read(R"({"left_knee": {"id": 300}})"), doctest::Contains("left_knee.id"), example::UsageError);
-  CHECK_THROWS_WITH_AS(read(R"({"left_knee": {"sign": 0}})"), doctest::Contains("left_knee.sign"), example::UsageError);
+  CHECK_THROWS_WITH_AS(read(R"({"left_knee": {"id": 300}})"), doctest::Contains("left_knee: \"id\" must be 0 to 252"),
+                       example::UsageError);
+  CHECK_THROWS_WITH_AS(read(R"({"left_knee": {"sign": 0}})"), doctest::Contains("left_knee: \"sign\" must be 1 or -1"),
+                       example::UsageError);
+  CHECK_THROWS_WITH_AS(read(R"({"left_knee": {"port": 8}})"), doctest::Contains("\"port\" must be 0 to 7"),
+                       example::UsageError);
+  CHECK_THROWS_WITH_AS(read(R"({"left_knee": {"pose_rad": 1}})"), doctest::Contains("\"pose_rad\" is not known"),
+                       example::UsageError);
   CHECK_THROWS_WITH_AS(read(R"({"left_knee": {"max": 2}})"), doctest::Contains("left_knee: \"max\" is not known"),
                        example::UsageError);
+}
+
+TEST_CASE("joints files: of neck and arms those that are named, with their poses and ports") {
+  const ScratchFolder folder;
+  const auto file = folder.path() / "joints.json";
+  std::ofstream(file) << joints_to_json(default_joints(true));
+  CHECK(joints_to_json(read_joints(file)) == joints_to_json(default_joints(true)));
+  CHECK(read_joints(file).joints.size() == 20);
+  std::ofstream(file) << R"({"right_elbow": {"id": 30, "port": 2, "pose_rad": -0.7}, "right_knee": {"port": 1}})";
+  const RobotJoints robot = read_joints(file);
+  REQUIRE(robot.joints.size() == 13);
+  CHECK(robot.joints[12].id == 30);
+  CHECK(robot.poses_rad == std::vector{-0.7});
+  CHECK(robot.ports[12] == 2);
+  CHECK(robot.ports[9] == 1);
+  CHECK(robot.ports[0] == 0);
 }
 
 /// Column names, and all rows as numbers (empty cells: NaN).

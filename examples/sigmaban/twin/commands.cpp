@@ -12,6 +12,7 @@ void add_twin_options(CLI::App& command, TwinOptions& options) {
   command.add_option("--noise", options.noise, "[rad] standard deviation of noise on every joint target")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
+  command.add_flag("--stabilize", options.stabilized, "the walk feels gyroscope, accelerometer and load cells");
   command.add_option("--seed", options.seed, "of all randomness")->capture_default_str();
   command.add_option("--threads", options.threads, "0: as many as the machine has; results do not depend on it")
       ->check(CLI::Range(0, 1024))
@@ -29,6 +30,7 @@ WalkingTwinOptions walking_twin_options(const TwinOptions& options) {
   WalkingTwinOptions result;
   for (const std::string& text : options.switches) set_switch(result.switches, text);
   result.target_noise = options.noise;
+  result.stabilized = options.stabilized;
   return result;
 }
 

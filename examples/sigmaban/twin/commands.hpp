@@ -14,6 +14,7 @@ namespace sigmaban {
 
 void add_record(CLI::App& program);
 void add_gains(CLI::App& program);
+void add_stability(CLI::App& program);
 void add_play(CLI::App& program);
 void add_picture(CLI::App& program);
 void add_table4(CLI::App& program);
@@ -21,12 +22,13 @@ void add_table4(CLI::App& program);
 /// Which twin, and how it is run.
 struct TwinOptions {
   std::vector<std::string> switches;
-  double noise = 0;  // [rad]
+  double noise = 0;         // [rad]
+  bool stabilized = false;  // the walk
   std::uint64_t seed = 1;
   std::size_t threads = 0;
 };
 
-/// --switch, --noise, --seed, --threads.
+/// --switch, --noise, --stabilize, --seed, --threads.
 void add_twin_options(CLI::App& command, TwinOptions& options);
 
 /// --sequences, --cycles.

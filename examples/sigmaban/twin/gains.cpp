@@ -21,28 +21,13 @@ struct GainsOptions {
   int sequences = 200, cycles = 25;
 };
 
-/// Root mean square of what the gains leave unexplained in a cycle [m, m, rad].
-surefoot::Vec<3> residual_deviation(const std::vector<TwinSequence>& sequences,
-                                    const Eigen::Matrix<double, 3, 4>& gains) {
-  surefoot::Vec<3> squares = surefoot::Vec<3>::Zero();
-  double cycles = 0;
-  for (const TwinSequence& sequence : sequences) {
-    for (std::size_t i = 0; i < sequence.moved.size(); ++i, ++cycles) {
-      const surefoot::Vec<3> expected =
-          gains.leftCols<1>() + gains.rightCols<3>() * (steps_per_cycle * sequence.commands[i]);
-      squares += (sequence.moved[i].vec() - expected).cwiseAbs2();
-    }
-  }
-  return (squares / cycles).cwiseSqrt();
-}
-
 void print(const std::vector<TwinSequence>& sequences, double cpu_seconds) {
   const auto falls = static_cast<std::size_t>(std::ranges::count_if(sequences, &TwinSequence::fell));
   const Share upright{sequences.size() - falls, sequences.size()};
   std::printf("without a fall: %zu of %zu sequences, %.1f %% (95 %%: %.1f to %.1f)\n", upright.yes, upright.trials,
               100 * upright.value(), 100 * upright.low(), 100 * upright.high());
   const auto gains = walk_gains(sequences);
-  const surefoot::Vec<3> rest = residual_deviation(sequences, gains);
+  const surefoot::Vec<3> rest = gains_residual(sequences, gains);
   std::printf("displacement of a cycle = A (1, commands of the cycle):  [m, m, rad]\n");
   constexpr const char* names[] = {"forward", "left", "turn"};
   for (Eigen::Index i = 0; i < 3; ++i) {

@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
   program.footer(usage);
   sigmaban::add_record(program);
   sigmaban::add_gains(program);
+  sigmaban::add_stability(program);
   sigmaban::add_play(program);
   sigmaban::add_picture(program);
   sigmaban::add_table4(program);

@@ -115,7 +115,8 @@ std::string defaults(const TwinParameters& p, const TwinSwitches& switches) {
          "/></default>\n<default class=\"cleat\"><geom type=\"sphere\" contype=\"1\" condim=\"6\"" +
          attribute("size", p.cleats.radius) +
          attribute("friction", text({p.contact.friction, p.contact.torsional_friction, p.contact.rolling_friction})) +
-         attribute("solref", text({p.contact.time_constant, 1})) + " rgba=\"0.2 0.2 0.2 1\"/></default>\n</default>\n";
+         attribute("solref", text({p.contact.time_constant + switches.soft_ground, 1})) +
+         " rgba=\"0.2 0.2 0.2 1\"/></default>\n</default>\n";
 }
 
 std::string actuators(const TwinParameters& p, const TwinSwitches& switches) {
@@ -141,7 +142,7 @@ std::string mjcf(const TwinParameters& p, const TwinSwitches& switches) {
          // The larger friction of two geoms counts: the ground has none, the cleats decide.
          std::string(surroundings) + "<worldbody>\n" + std::string(light) +
          "<geom name=\"ground\" material=\"field\" type=\"plane\" size=\"0 0 1\" conaffinity=\"1\" friction=\"0 0 0\"" +
-         attribute("solref", text({p.contact.time_constant, 1})) +
+         attribute("solref", text({p.contact.time_constant + switches.soft_ground, 1})) +
          "/>\n<body name=\"trunk\">\n<freejoint name=\"trunk\"/>\n" + inertia(p.upper_body) +
          std::string(upper_body_shape) + leg("left", 1, p.leg.knee_to_ankle - switches.short_left_leg, p, switches) +
          leg("right", -1, p.leg.knee_to_ankle, p, switches) + "</body>\n</worldbody>\n" + actuators(p, switches) +

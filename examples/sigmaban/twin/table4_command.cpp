@@ -17,10 +17,12 @@
 #include "../approach/motion.hpp"
 #include "../approach/results.hpp"
 #include "../robot/policy_option.hpp"
+#include "../robot/walk/walk_run.hpp"
 #include "commands.hpp"
 #include "progress_line.hpp"
 #include "table4.hpp"
 #include "table4_policies.hpp"
+#include "table4_robot.hpp"
 
 namespace sigmaban {
 namespace {
@@ -34,6 +36,8 @@ struct Table4Options {
   int runs = 5;                   // from each start
   double longest = 120;           // of an approach [s]
   std::vector<double> published;  // [s]
+  WalkRun robot;                  // where it has ports, a robot walks in place of the twin
+  bool on_robot() const { return !robot.ports.empty(); }
 };
 
 /// What the figures depend on, but for the number of runs.
@@ -41,7 +45,7 @@ std::string settings_text(const Table4Options& o) {
   const nlohmann::ordered_json json{
       {"switches", o.work.twin.switches}, {"noise_rad", o.work.twin.noise},    {"seed", o.work.twin.seed},
       {"sequences", o.work.sequences},    {"tune_budget", o.work.tune_budget}, {"train_budget", o.work.train_budget},
-      {"longest_s", o.longest},           {"sighted", o.camera.seen}};
+      {"longest_s", o.longest},           {"sighted", o.camera.seen},          {"robot", o.on_robot()}};
   return json.dump(1) + "\n";
 }
 
@@ -106,10 +110,29 @@ void walk_missing(const Table4Options& options, const std::filesystem::path& fil
   });
 }
 
+/// One after the other, each when the robot is in its place.
+void walk_missing_on_robot(const Table4Options& options, const std::filesystem::path& file,
+                           const Table4Approaches& all) {
+  std::string text = table4_header;
+  for (const Table4Row& row : all.done) text += to_csv(row);
+  for (Table4Row row : all.missing) {
+    const Results results{options.work.folder};
+    WalkRun run = options.robot;
+    run.problem = row.problem;
+    run.motion = options.work.motion();
+    run.seconds = options.longest;
+    if (row.policy == "CMA-ES") run.policy = results.tuned(row.problem);
+    if (row.policy == "RFPI") run.policy = results.rfpi(row.problem);
+    row.approach = walk_on_robot(row, run);
+    text += to_csv(row);
+    example::write_text(file, text);
+  }
+}
+
 void print(const std::vector<Table4Row>& rows, const Table4Options& options) {
   std::printf("\nMean time until the robot stands still where it may kick [s], 95 %% bounds; starts reached of 12\n");
-  std::printf("%-8s %-12s %16s %9s %6s %6s %6s %10s\n", "problem", "policy", "twin", "reached", "runs", "fell", "lost",
-              "published");
+  std::printf("%-8s %-12s %16s %9s %6s %6s %6s %10s\n", "problem", "policy", options.on_robot() ? "robot" : "twin",
+              "reached", "runs", "fell", "lost", "published");
   std::size_t i = 0;
   for (const std::string_view problem : table4_problems) {
     for (const std::string_view policy : table4_policies) {
@@ -145,6 +168,9 @@ nlohmann::ordered_json to_json(const std::vector<Table4Row>& rows, const Table4O
 }
 
 void run(const Table4Options& options) {
+  if (options.on_robot() && options.work.given_motion.empty()) {
+    throw UsageError("--port: give the walk of that robot, too, as surefoot-calibrate fit wrote it: --motion FILE");
+  }
   example::prepare_output(options.work.folder / "table4.json");
   keep_settings(options);
   make_table4_policies(options.work);
@@ -154,7 +180,7 @@ void run(const Table4Options& options) {
   if (!all.missing.empty()) {
     std::printf("== walking, %zu approaches\n", all.missing.size());
     std::fflush(stdout);
-    walk_missing(options, file, all);
+    options.on_robot() ? walk_missing_on_robot(options, file, all) : walk_missing(options, file, all);
     all = in_file();  // in the same order as if nothing had ever been stopped
   }
   print(all.done, options);
@@ -166,7 +192,27 @@ constexpr const char* footer =
     "tuned\n"
     "by CMA-ES, and RFPI, in both problems. The robot knows of the ball what a camera sees: not in every cycle, with\n"
     "noise, and at times something else. Time runs from the first command until it has not moved for a walk cycle in\n"
-    "the kick area; > marks a mean with approaches that did not get there. Ctrl-C stops; the same command goes on.";
+    "the kick area; with --port a robot walks, and says when to put it into its place. > marks a mean with approaches "
+    "that did not get there. Ctrl-C stops; the same command goes on.";
+
+/// What makes it an experiment on a robot.
+void add_robot_options(CLI::App& command, Table4Options& options) {
+  options.robot.ports.clear();
+  auto* port = command
+                   .add_option("--port", options.robot.ports,
+                               "a robot walks in place of the twin: its serial ports, with commas; virtual: simulated "
+                               "servos, and the ball as the motion model has it")
+                   ->delimiter(',');
+  const auto of_robot = [&](CLI::Option* option) { option->needs(port); };
+  of_robot(command.add_option("--motion", options.work.given_motion, "motion.json of the robot's walk")
+               ->check(CLI::ExistingFile));
+  of_robot(command.add_option("--joints", options.robot.joints_file, "as for surefoot-walk")->check(CLI::ExistingFile));
+  of_robot(command.add_option("--ball-from", options.robot.ball_from, "as for surefoot-walk"));
+  of_robot(command.add_option("--baud", options.robot.bits_per_s, "[bit/s]")->capture_default_str());
+  of_robot(command.add_option("--protocol", options.robot.protocol, "of the servos")
+               ->check(CLI::IsMember({1, 2}))
+               ->capture_default_str());
+}
 
 }  // namespace
 
@@ -204,6 +250,7 @@ void add_table4(CLI::App& program) {
           "for ANHA")
       ->expected(6);
   add_twin_options(*command, options->work.twin);
+  add_robot_options(*command, *options);
   command->callback([options] { run(*options); });
 }
 

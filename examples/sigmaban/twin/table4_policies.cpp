@@ -27,6 +27,7 @@ void say(const std::string& what) {
 
 void calibrate(const Table4Work& work) {
   if (exists(work.motion())) return;
+  if (!work.given_motion.empty()) return example::write_text(work.motion(), example::read_text(work.given_motion));
   say("recording and calibrating the twin");
   const auto commands = surefoot::plan_commands(surefoot::CommandBounds(), work.sequences, work.cycles, work.twin.seed);
   calibrate_program::until_interrupted(work.twin.threads, [&](const calibrate_program::StoppableThreads& threads) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include "commands.hpp"
 
@@ -15,6 +16,7 @@ struct Table4Work {
   double tune_budget = 30;          // for each problem [s] of one nominal core
   double train_budget = 60;         // for each problem [s] of one nominal core
   std::filesystem::path folder;
+  std::string given_motion{};  // motion.json of a robot, in place of the twin's
 
   std::filesystem::path motion() const { return folder / "motion.json"; }
 };

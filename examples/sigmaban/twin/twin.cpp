@@ -88,15 +88,42 @@ void Twin::reset(const JointTargets& stand) {
   d->qpos[2] -= lowest;
   set_frictions();
   mj_forward(m, d);
+  reading_ = {};
 }
 
 void Twin::drive(const JointTargets& targets) {
   if (!all_finite(targets)) throw TwinError("Twin::drive: a joint target is not finite");
   const auto angles = targets.array();
   std::copy(angles.begin(), angles.end(), data_->ctrl);
+  using surefoot::Vec;
+  const Vec<3> velocity = Vec<3>::Map(data_->qvel);
+  reading_ = {};
   for (int i = 0; i < steps_per_order_; ++i) {
     set_frictions();
     mj_step(model_.get(), data_.get());
+    reading_.gyro += Vec<3>::Map(data_->qvel + 3) / steps_per_order_;  // of a free joint: in the body's frame
+    add_loads();
+  }
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (reading_.loads[side] > 0) reading_.pressure_x[side] /= reading_.loads[side];
+  }
+  const Vec<3> acceleration = (Vec<3>::Map(data_->qvel) - velocity) / parameters_.order_period;
+  const Vec<3> felt = acceleration - gravity();
+  mju_rotVecMatT(reading_.accelerometer.data(), felt.data(), data_->xmat + 9 * trunk_);
+}
+
+void Twin::push(const surefoot::Vec<3>& force) { mju_copy3(data_->xfrc_applied + 6 * trunk_, force.data()); }
+
+void Twin::add_loads() {
+  for (int i = 0; i < data_->ncon; ++i) {
+    const mjContact& contact = data_->contact[i];
+    if (contact.efc_address < 0) continue;
+    const int cleat = std::max(contact.geom1, contact.geom2);  // the ground comes first
+    const std::size_t side = cleat >= cleat_[4] ? 1 : 0;
+    const double load = data_->efc_force[contact.efc_address] / steps_per_order_;  // of elliptic cones: the normal
+    const bool front = (cleat - cleat_[4 * side]) < 2;
+    reading_.loads[side] += load;
+    reading_.pressure_x[side] += load * (front ? parameters_.cleats.x : -parameters_.cleats.x);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 
+#include "../robot/balance/body_reading.hpp"
 #include "../robot/walk_engine/joint_targets.hpp"
 #include "surefoot/core/pose2.hpp"
 #include "surefoot/core/vec.hpp"
@@ -30,7 +31,13 @@ class Twin {
   /// One command period with these targets. Throws TwinError for targets that are not finite.
   void drive(const JointTargets& targets);
 
+  /// On the trunk's centre of mass, in the ground's frame, until it is changed or the twin is reset [N].
+  void push(const surefoot::Vec<3>& force);
+
   surefoot::Pose2 pose() const;
+
+  /// What the trunk's sensors and load cells in the feet measure, as means over the last command period.
+  const BodyReading& reading() const { return reading_; }
 
   /// Of the point between the hips above the ground [m].
   double height() const;
@@ -65,6 +72,7 @@ class Twin {
   };
 
   void set_frictions();
+  void add_loads();
 
   TwinParameters parameters_;
   TwinSwitches switches_;
@@ -74,6 +82,7 @@ class Twin {
   std::array<int, 2> foot_{};       // bodies
   std::array<int, 12> position_{};  // of the joints among all coordinates
   std::array<int, 8> cleat_{};      // geoms
+  BodyReading reading_;
   int steps_per_order_ = 1;
 };
 

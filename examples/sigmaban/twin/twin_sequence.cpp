@@ -86,4 +86,36 @@ Eigen::Matrix<double, 3, 4> walk_gains(std::span<const TwinSequence> sequences) 
   return commanded.colPivHouseholderQr().solve(moved).transpose();
 }
 
+surefoot::Vec<3> gains_residual(std::span<const TwinSequence> sequences, const Eigen::Matrix<double, 3, 4>& gains) {
+  surefoot::Vec<3> squares = surefoot::Vec<3>::Zero();
+  double cycles = 0;
+  for (const TwinSequence& sequence : sequences) {
+    for (std::size_t i = 0; i < sequence.moved.size(); ++i, ++cycles) {
+      const surefoot::Vec<3> expected =
+          gains.leftCols<1>() + gains.rightCols<3>() * (steps_per_cycle * sequence.commands[i]);
+      squares += (sequence.moved[i].vec() - expected).cwiseAbs2();
+    }
+  }
+  return (squares / cycles).cwiseSqrt();
+}
+
+surefoot::Vec<3> displacement_noise(std::span<const TwinSequence> sequences) {
+  constexpr Eigen::Index unknowns = 7;
+  Eigen::Index cycles = 0;
+  for (const TwinSequence& sequence : sequences) cycles += static_cast<Eigen::Index>(sequence.moved.size());
+  if (cycles < unknowns) throw TwinError("the noise of a walk needs seven cycles or more, walk more sequences");
+  Eigen::MatrixXd commanded(cycles, unknowns), moved(cycles, 3);
+  Eigen::Index row = 0;
+  for (const TwinSequence& sequence : sequences) {
+    surefoot::Vec<3> before = surefoot::Vec<3>::Zero();
+    for (std::size_t i = 0; i < sequence.moved.size(); ++i, ++row) {
+      commanded.row(row) << 1, sequence.commands[i].transpose(), before.transpose();
+      moved.row(row) = sequence.moved[i].vec();
+      before = sequence.commands[i];
+    }
+  }
+  const Eigen::MatrixXd rest = moved - commanded * commanded.colPivHouseholderQr().solve(moved);
+  return (rest.colwise().squaredNorm().transpose() / static_cast<double>(cycles)).cwiseSqrt();
+}
+
 }  // namespace sigmaban

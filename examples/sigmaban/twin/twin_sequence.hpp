@@ -71,4 +71,11 @@ std::string sequences_csv(std::span<const TwinSequence> sequences);
 /// TwinError for fewer than four cycles.
 Eigen::Matrix<double, 3, 4> walk_gains(std::span<const TwinSequence> sequences);
 
+/// Root mean square of what these gains leave unexplained in a cycle [m, m, rad].
+surefoot::Vec<3> gains_residual(std::span<const TwinSequence> sequences, const Eigen::Matrix<double, 3, 4>& gains);
+
+/// Root mean square of what the best gains for the commands of a cycle and of the one before it leave unexplained
+/// [m, m, rad]. Throws TwinError for fewer than seven cycles.
+surefoot::Vec<3> displacement_noise(std::span<const TwinSequence> sequences);
+
 }  // namespace sigmaban

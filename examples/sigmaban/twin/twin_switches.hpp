@@ -24,6 +24,7 @@ struct TwinSwitches {
   double slope_left = 0;       // the ground falls to the left of that direction [rad]
   double short_left_leg = 0;   // by how much the left shin is shorter [m]
   double battery_drop = 0;     // below the nominal voltage: stiffness and torque limit fall in proportion [V]
+  double soft_ground = 0;      // by which the ground gives way more slowly: time constant of its contacts [s]
   double slippery_radius = 0;  // of a slippery disc on the ground, its centre 0.4 m ahead of the start [m]
 };
 
@@ -36,7 +37,7 @@ struct TwinSwitch {
   double TwinSwitches::*member = nullptr;
 };
 
-inline constexpr std::array<TwinSwitch, 8> twin_switches{{
+inline constexpr std::array<TwinSwitch, 9> twin_switches{{
     {"backlash", "rad", 0.012, 0.1, false, &TwinSwitches::backlash},
     {"servo_friction", "N m", 0.15, 2, false, &TwinSwitches::servo_friction},
     {"order_delay", "cycles", 1, 20, false, &TwinSwitches::order_delay},
@@ -44,6 +45,7 @@ inline constexpr std::array<TwinSwitch, 8> twin_switches{{
     {"slope_left", "rad", 0.02, 0.3, true, &TwinSwitches::slope_left},
     {"short_left_leg", "m", 0.002, 0.05, true, &TwinSwitches::short_left_leg},
     {"battery_drop", "V", 2, 11, false, &TwinSwitches::battery_drop},
+    {"soft_ground", "s", 0.03, 0.2, false, &TwinSwitches::soft_ground},
     {"slippery_radius", "m", 0.3, 100, false, &TwinSwitches::slippery_radius},
 }};
 

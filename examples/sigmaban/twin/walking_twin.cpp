@@ -23,10 +23,12 @@ JointTargets with_noise(const JointTargets& targets, double deviation, surefoot:
 WalkingTwin::WalkingTwin(const WalkingTwinOptions& options, surefoot::Rng noise)
     : target_noise_(options.target_noise),
       twin_(options.twin, options.switches),
-      engine_(options.walk),
+      stabilized_(options.stabilized),
+      engine_(SplineWalk(options.walk), HandedReading{}, options.twin.order_period, options.stabilizer),
       noise_(std::move(noise)),
+      pusher_(options.pushes, noise_.stream(1)),
       waiting_(static_cast<std::size_t>(options.switches.order_delay), surefoot::Vec<3>::Zero()) {
-  SplineWalk standing = engine_;
+  SplineWalk standing(options.walk);
   const auto stand = standing.step({.enabled = 0}, 0);
   if (!stand) throw TwinError("WalkingTwin: the feet cannot get where these walk parameters put them");
   twin_.reset(*stand);
@@ -44,8 +46,10 @@ WalkOrders WalkingTwin::delayed(const surefoot::Vec<3>& commands) {
 }
 
 void WalkingTwin::tick(const WalkOrders& commands) {
+  if (stabilized_) engine_.body().newest = twin_.reading();
   const auto targets = engine_.step(commands, twin_.parameters().order_period);
   if (!targets) throw TwinError("WalkingTwin: these commands put a foot out of reach, make them smaller");
+  twin_.push(pusher_.force(twin_.time()));
   twin_.drive(target_noise_ > 0 ? with_noise(*targets, target_noise_, noise_) : *targets);
 }
 

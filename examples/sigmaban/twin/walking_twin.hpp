@@ -4,7 +4,9 @@
 #include <deque>
 #include <optional>
 
+#include "../robot/balance/stabilized_walk.hpp"
 #include "../robot/walk_engine/spline_walk.hpp"
+#include "pusher.hpp"
 #include "surefoot/core/pose2.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
@@ -19,6 +21,9 @@ struct WalkingTwinOptions {
   double target_noise = 0;  // standard deviation, on every joint target [rad]
   int cycles_on_spot = 3;   // before anything is commanded
   double standing = 0.5;    // before that [s]
+  PushOptions pushes;
+  bool stabilized = false;  // the walk feels the body's sensors
+  StabilizerOptions stabilizer;
 };
 
 class WalkingTwin {
@@ -47,8 +52,10 @@ class WalkingTwin {
 
   double target_noise_;
   Twin twin_;
-  SplineWalk engine_;
+  bool stabilized_;
+  StabilizedWalk<SplineWalk, HandedReading> engine_;
   surefoot::Rng noise_;
+  Pusher pusher_;
   std::deque<surefoot::Vec<3>> waiting_;  // commands given that are not in effect yet, oldest first
 };
 
@@ -62,7 +69,7 @@ surefoot::Pose2 WalkingTwin::cycle(const surefoot::Vec<3>& commands, EachTick&& 
     phase = engine_.phase();
     tick(now);
     each_tick(twin_);
-  } while (engine_.phase() > phase);
+  } while (engine_.phase() >= phase);
   return start.inverse() * twin_.pose();
 }
 

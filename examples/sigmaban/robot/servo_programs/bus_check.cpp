@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <iomanip>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
@@ -20,7 +21,7 @@
 #include "../bus/background_port.hpp"
 #include "../bus/realtime.hpp"
 #include "../bus/serial_port.hpp"
-#include "../servos/servo_group.hpp"
+#include "../servos/joint_lines.hpp"
 #include "../virtual_bus/virtual_bus.hpp"
 #include "stall_watch.hpp"
 
@@ -31,6 +32,7 @@ using namespace dynamixel;
 struct Options {
   double seconds = 60;
   int servos = 20;
+  int ports = 1;
   double rate_hz = 100;
   double latency_s = 1.5e-3;
   double memory_s = 60e-3;
@@ -57,41 +59,90 @@ struct Findings {
 
 using ServoBus = Bus<Protocol2, BackgroundPort<SerialPort>>;
 
-/// Runs the cycles. A servo in the middle of the bus is silent for a while, from a third of the time on.
-Findings run(const Options& options, VirtualBus<Protocol2>& line, ServoBus& bus, std::vector<Joint> joints,
+/// Some of the servos, behind a port of their own.
+struct Line {
+  Line(const Options& options, std::vector<Joint> made, std::uint64_t number)
+      : joints(std::move(made)),
+        simulated(Answerer<Protocol2>(
+            servos(joints),
+            {.bits_per_s = options.bits_per_s, .faults = options.faults, .seed = options.seed + number})),
+        bus(BackgroundPort(SerialPort(simulated.path(), options.bits_per_s)),
+            {.return_delay_s = 0, .latency_s = options.latency_s, .memory_s = options.memory_s}),
+        group(bus, mx_64_protocol_2, joints, {.listen_s = 0.7 / options.rate_hz, .care = {.silent_longest_s = 1e9}}) {}
+
+  static std::vector<VirtualServo> servos(const std::vector<Joint>& joints) {
+    std::vector<VirtualServo> made;
+    for (const Joint& joint : joints) made.emplace_back(mx_64_protocol_2, joint.id, 0.01 * (joint.id - 1));
+    return made;
+  }
+
+  std::vector<Joint> joints;
+  VirtualBus<Protocol2> simulated;
+  ServoBus bus;
+  ServoGroup<ServoBus> group;
+};
+
+/// Every so manieth servo on each port.
+std::vector<std::unique_ptr<Line>> make_lines(const Options& options, std::vector<std::size_t>& line_of) {
+  std::vector<std::vector<Joint>> joints(static_cast<std::size_t>(options.ports));
+  for (int i = 0; i < options.servos; ++i) {
+    const auto id = static_cast<std::uint8_t>(i + 1);
+    line_of.push_back(static_cast<std::size_t>(i % options.ports));
+    joints[line_of.back()].push_back({.name = "joint " + std::to_string(id), .id = id});
+  }
+  std::vector<std::unique_ptr<Line>> lines;
+  for (std::size_t i = 0; i < joints.size(); ++i) lines.push_back(std::make_unique<Line>(options, joints[i], i));
+  return lines;
+}
+
+/// Answers of this cycle that are not what the servo sent. `first` has the number of its first instruction.
+std::uint64_t wrong_answers(Line& line, std::uint64_t first) {
+  std::uint64_t wrong = 0;
+  for (std::size_t i = 0; i < line.joints.size(); ++i) {
+    if (!line.group.states()[i].fresh) continue;
+    const bool right = line.simulated.with(
+        [&](const auto& answerer) { return answerer.gave(line.joints[i].id, line.group.received(i), first); });
+    wrong += right ? 0 : 1;
+  }
+  return wrong;
+}
+
+/// Runs the cycles. A servo in the middle is silent for a while, from a third of the time on.
+Findings run(const Options& options, std::vector<std::unique_ptr<Line>>& lines, const std::vector<std::size_t>& line_of,
              StallWatch& watch, const example::Interrupt& interrupt) {
   Findings found;
   const Time period = from_seconds(1 / options.rate_hz);
-  ServoGroup<ServoBus> group(bus, mx_64_protocol_2, std::move(joints),
-                             {.listen_s = 0.7 / options.rate_hz, .care = {.silent_longest_s = 1e9}});
-  group.start();
-  const std::size_t victim = group.joints().size() / 2;
-  const std::uint8_t victim_id = group.joints()[victim].id;
-  const Time begin = bus.port().now() + period;
+  std::vector<ServoGroup<ServoBus>*> groups;
+  for (const auto& line : lines) groups.push_back(&line->group);
+  JointLines all(groups, line_of);
+  all.start();
+  const std::size_t victim = line_of.size() / 2;
+  const auto victim_id = static_cast<std::uint8_t>(victim + 1);
+  const auto silence = [&](bool silent) {
+    lines[line_of[victim]]->simulated.with([&](auto& answerer) { answerer.set_silent(victim_id, silent); });
+  };
+  const Time begin = all.now() + period;
   const Time silent_from = begin + from_seconds(options.seconds / 3);
   const Time silent_to = silent_from + from_seconds(options.silent_for_s);
   bool silenced = false, heard_again = false;
-  std::vector<double> goals(group.joints().size());
+  std::vector<double> goals(line_of.size());
+  std::vector<std::uint64_t> first(lines.size());
   std::vector<std::array<Time, 2>> missed;
   for (Time start = begin; start < begin + from_seconds(options.seconds) && !interrupt.requested(); start += period) {
     std::this_thread::sleep_until(std::chrono::steady_clock::time_point(start));
-    if (!silenced && start >= silent_from) {
-      line.with([&](auto& answerer) { answerer.set_silent(victim_id, true); });
-      silenced = true;
+    if (!silenced && start >= silent_from) silence(silenced = true);
+    if (!heard_again && start >= silent_to) silence(!(heard_again = true));
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      first[i] = lines[i]->simulated.with([](const auto& answerer) { return answerer.instructions() + 1; });
     }
-    if (!heard_again && start >= silent_to) {
-      line.with([&](auto& answerer) { answerer.set_silent(victim_id, false); });
-      heard_again = true;
-    }
-    const auto first = line.with([](const auto& answerer) { return answerer.instructions() + 1; });
     for (std::size_t i = 0; i < goals.size(); ++i) {
       goals[i] = 0.5 * std::sin(3 * to_seconds(start - begin) + static_cast<double>(i));
     }
-    const Time work = bus.port().now();
+    const Time work = all.now();
     found.latest_s = std::max(found.latest_s, to_seconds(work - start));
-    group.set_goals(goals);
-    const std::size_t answered = group.update(start + from_seconds(0.7 / options.rate_hz));
-    const Time end = bus.port().now();
+    all.set_goals(goals);
+    const std::size_t answered = all.update();
+    const Time end = all.now();
 
     ++found.cycles;
     if (end > start + period) missed.push_back({start - period, end});
@@ -99,7 +150,7 @@ Findings run(const Options& options, VirtualBus<Protocol2>& line, ServoBus& bus,
     found.accepted += answered;
     found.longest_s = std::max(found.longest_s, to_seconds(end - start));
     found.spent_s += to_seconds(end - work);
-    for (const ServoEvent& event : group.events()) {
+    for (const ServoEvent& event : all.events()) {
       if (event.kind == ServoEventKind::silent) {
         if (event.joint != victim || found.reported_s || !silenced) {
           ++found.false_reports;
@@ -111,12 +162,7 @@ Findings run(const Options& options, VirtualBus<Protocol2>& line, ServoBus& bus,
         found.back_s = to_seconds(end - silent_to);
       }
     }
-    for (std::size_t i = 0; i < goals.size(); ++i) {
-      if (!group.states()[i].fresh) continue;
-      const bool right = line.with(
-          [&](const auto& answerer) { return answerer.gave(group.joints()[i].id, group.received(i), first); });
-      found.wrong += right ? 0 : 1;
-    }
+    for (std::size_t i = 0; i < lines.size(); ++i) found.wrong += wrong_answers(*lines[i], first[i]);
   }
   found.missed = missed.size();
   for (const auto& [from, to] : missed) found.stalled += watch.any(from, to) ? 1 : 0;
@@ -135,29 +181,23 @@ std::string milliseconds(std::optional<double> seconds) {
 int check(const Options& options) {
   const example::Interrupt interrupt;
   const bool realtime = ask_for_realtime();
-  std::vector<VirtualServo> servos;
-  std::vector<Joint> joints;
-  for (int i = 0; i < options.servos; ++i) {
-    const auto id = static_cast<std::uint8_t>(i + 1);
-    servos.emplace_back(mx_64_protocol_2, id, 0.01 * i);
-    joints.push_back({.name = "joint " + std::to_string(id), .id = id});
-  }
-  VirtualBus<Protocol2> line{
-      Answerer<Protocol2>(servos, {.bits_per_s = options.bits_per_s, .faults = options.faults, .seed = options.seed})};
-  ServoBus bus(BackgroundPort(SerialPort(line.path(), options.bits_per_s)),
-               {.return_delay_s = 0, .latency_s = options.latency_s, .memory_s = options.memory_s});
-  std::cout << options.servos << " virtual servos at " << options.bits_per_s << " bit/s behind " << line.path() << ", "
-            << options.rate_hz << " Hz for " << options.seconds << " s, "
-            << (realtime ? "real-time priority" : "no real-time priority") << '\n'
+  std::vector<std::size_t> line_of;
+  auto lines = make_lines(options, line_of);
+  std::cout << options.servos << " virtual servos at " << options.bits_per_s << " bit/s behind " << options.ports
+            << (options.ports == 1 ? " port, " : " ports, ") << options.rate_hz << " Hz for " << options.seconds
+            << " s, " << (realtime ? "real-time priority" : "no real-time priority") << '\n'
             << std::flush;
   StallWatch watch;
-  const Findings found = run(options, line, bus, joints, watch, interrupt);
+  const Findings found = run(options, lines, line_of, watch, interrupt);
 
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  bus.listen();
   ServoStatistics ours;
-  for (const Joint& joint : joints) ours += bus.statistics(joint.id);
-  const FaultCounts made = line.with([](const auto& answerer) { return answerer.counts(); });
+  FaultCounts made;
+  for (const auto& line : lines) {
+    line->bus.listen();
+    for (const Joint& joint : line->joints) ours += line->bus.statistics(joint.id);
+    made += line->simulated.with([](const auto& answerer) { return answerer.counts(); });
+  }
   const std::uint64_t unheard = ours.lost + ours.skipped, unsent = made.lost + made.silent + made.withheld;
   const auto pair = [](std::uint64_t counted, std::uint64_t truth) {
     return std::to_string(counted) + " counted, " + std::to_string(truth) + " made";
@@ -175,19 +215,18 @@ int check(const Options& options) {
                "missed control cycles: " + std::to_string(found.missed) +
                    ", of them while the machine stood still: " + std::to_string(found.stalled) +
                    " (threads that only sleep woke late " + std::to_string(watch.count()) + " times)");
-  // An answer that the system hands over late may look like another fault at first; the sum is right in any case.
+  // An answer that the system hands over late may look like another fault.
   const bool comparable = ours.late == 0;
   const std::string note = comparable ? "" : "; kinds not compared, as the system handed over some answers late";
   right &= say(!comparable || ours.corrupted == made.corrupted,
                "corrupted answers: " + pair(ours.corrupted, made.corrupted) + note);
   right &= say(!comparable || ours.lost == made.lost + made.silent,
                "lost answers, with those of the silent servo: " + pair(ours.lost, made.lost + made.silent) + note);
-  right &= say(ours.corrupted + unheard == made.corrupted + unsent,
+  right &= say(!comparable || ours.corrupted + unheard == made.corrupted + unsent,
                "all of these, with those not sent behind a silent one: " +
-                   pair(ours.corrupted + unheard, made.corrupted + unsent));
-  right &= say(ours.wrong_id + ours.wrong_length + ours.duplicates + ours.refused == 0,
-               "faults counted but not made: " +
-                   std::to_string(ours.wrong_id + ours.wrong_length + ours.duplicates + ours.refused));
+                   pair(ours.corrupted + unheard, made.corrupted + unsent) + note);
+  const std::uint64_t others = ours.wrong_id + ours.wrong_length + ours.duplicates + ours.refused;
+  right &= say(!comparable || others == 0, "faults counted but not made: " + std::to_string(others) + note);
   right &= say(found.wrong == 0, "wrong values accepted: " + std::to_string(found.wrong));
   right &= say(found.false_reports == 0, "false reports of silence: " + std::to_string(found.false_reports));
   right &= say(found.reported_s && *found.reported_s <= 0.050,
@@ -203,6 +242,7 @@ int main(int argc, char** argv) {
   Options options;
   program.add_option("--seconds", options.seconds)->check(CLI::Range(1.0, 1e6))->capture_default_str();
   program.add_option("--servos", options.servos)->check(CLI::Range(2, 64))->capture_default_str();
+  program.add_option("--ports", options.ports, "that the servos share")->check(CLI::Range(1, 8))->capture_default_str();
   program.add_option("--rate", options.rate_hz, "[Hz]")->check(CLI::Range(1.0, 1000.0))->capture_default_str();
   program.add_option("--baud", options.bits_per_s, "[bit/s]")->capture_default_str();
   program.add_option("--latency", options.latency_s, "of the operating system, allowed for [s]")

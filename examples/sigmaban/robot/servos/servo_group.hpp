@@ -64,6 +64,12 @@ class ServoGroup {
   /// Torque on at the measured angles, which are the first goals. Throws BusError, torque off, where a servo does not
   /// answer or something is wrong with it; see why_not_to_start().
   void start() {
+    prepare();
+    switch_on();
+  }
+
+  /// The first half of start(): finds all servos and checks them, the torque stays off.
+  void prepare() {
     guarded([&] {
       sitting_since_.reset();
       limp_ = false;
@@ -80,6 +86,12 @@ class ServoGroup {
       for (std::size_t i = 0; i < joints_.size(); ++i) {
         check_before_start(*bus_, registers_, supply_, joints_[i], i, criteria, states_[i]);
       }
+    });
+  }
+
+  /// The second half, at once after the first.
+  void switch_on() {
+    guarded([&] {
       for (std::size_t i = 0; i < joints_.size(); ++i) {
         goals_.hold(i, states_[i].position_rad);
         goals_.begin_softly(i, states_[i].position_rad, bus_->port().now(), options_.soft_start_s);

@@ -31,6 +31,17 @@ struct FaultCounts {
   std::uint64_t wrong_id = 0;
   std::uint64_t silent = 0;    // not sent, because the servo was told to be silent
   std::uint64_t withheld = 0;  // not sent, because a servo before it in the chain sent nothing in its turn
+
+  FaultCounts& operator+=(const FaultCounts& other) {
+    lost += other.lost;
+    corrupted += other.corrupted;
+    late += other.late;
+    duplicated += other.duplicated;
+    wrong_id += other.wrong_id;
+    silent += other.silent;
+    withheld += other.withheld;
+    return *this;
+  }
 };
 
 enum class Fault : std::uint8_t { none, lost, corrupted, late, duplicated, wrong_id };

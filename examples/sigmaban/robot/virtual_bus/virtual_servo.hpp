@@ -82,7 +82,10 @@ class VirtualServo {
   bool hears(Time now) const { return !deaf && now >= starts_at_ && voltage_v >= least_supply_v; }
   bool torque_on() const { return value(known_.torque_enable) != 0; }
   bool watchdog_tripped() const { return watchdog() < 0; }
-  int status_return_level() const { return static_cast<int>(value(known_.status_return_level)); }
+  /// A device without that register answers all.
+  int status_return_level() const {
+    return known_.status_return_level != nullptr ? static_cast<int>(value(known_.status_return_level)) : 2;
+  }
   /// An instruction came, to it or to others.
   void note_instruction(Time now) { last_instruction_ = now; }
 
@@ -146,8 +149,11 @@ class VirtualServo {
     set(known_.registered, 0);
   }
 
-  bool overheated() const { return temperature_celsius > value(known_.temperature_limit); }
+  bool overheated() const {
+    return known_.temperature_limit != nullptr && temperature_celsius > value(known_.temperature_limit);
+  }
   bool voltage_is_wrong() const {
+    if (known_.min_voltage_limit == nullptr) return false;
     const double counts = voltage_v / 0.1;
     return counts < value(known_.min_voltage_limit) || counts > value(known_.max_voltage_limit);
   }

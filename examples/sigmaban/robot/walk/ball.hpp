@@ -1,25 +1,18 @@
 // Where the ball and the kick target are: simulated, or from whoever can see.
 #pragma once
 
-#include <fcntl.h>
-#include <poll.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <array>
 #include <atomic>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <concepts>
+#include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 
-#include "../../../../apps/common/usage_error.hpp"
+#include "line_reader.hpp"
 #include "surefoot/core/pose2.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
@@ -69,19 +62,8 @@ class SimulatedBall {
 class BallReader {
  public:
   /// Throws UsageError if the file cannot be opened.
-  explicit BallReader(const std::string& path, double valid_s = 0.6) : valid_s_(valid_s) {
-    file_ = path == "-" ? dup(STDIN_FILENO) : open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (file_ < 0) throw example::UsageError(path + ": cannot be read (" + std::strerror(errno) + ")");
-    thread_ = std::thread([this] { run(); });
-  }
-
-  ~BallReader() {
-    ending_ = true;
-    thread_.join();
-    close(file_);
-  }
-  BallReader(const BallReader&) = delete;
-  BallReader& operator=(const BallReader&) = delete;
+  explicit BallReader(const std::string& path, double valid_s = 0.6)
+      : valid_s_(valid_s), reader_(path, [this](const std::string& line) { take(line); }) {}
 
   std::optional<BallView> see(const surefoot::Vec<3>& /*speed*/, const surefoot::Vec<3>& /*before*/) {
     const std::lock_guard lock(mutex_);
@@ -93,28 +75,6 @@ class BallReader {
   std::uint64_t ignored() const { return ignored_; }
 
  private:
-  void run() {
-    std::string line;
-    std::array<char, 512> bytes{};
-    while (!ending_) {
-      pollfd waiting{file_, POLLIN, 0};
-      if (poll(&waiting, 1, 50) <= 0) continue;
-      const auto count = ::read(file_, bytes.data(), bytes.size());
-      if (count <= 0) {  // nobody writes now: somebody may later
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        continue;
-      }
-      for (const char c : std::string_view(bytes.data(), static_cast<std::size_t>(count))) {
-        if (c != '\n') {
-          if (line.size() < bytes.size()) line += c;
-          continue;
-        }
-        take(line);
-        line.clear();
-      }
-    }
-  }
-
   void take(const std::string& line) {
     BallView view;
     if (std::sscanf(line.c_str(), "%lf %lf %lf", &view.x, &view.y, &view.angle) != 3 || !std::isfinite(view.x) ||
@@ -127,14 +87,12 @@ class BallReader {
     time_ = std::chrono::steady_clock::now();
   }
 
-  int file_ = -1;
   double valid_s_;
   std::mutex mutex_;
   std::optional<BallView> newest_;
   std::chrono::steady_clock::time_point time_{};
   std::atomic<std::uint64_t> ignored_{0};
-  std::atomic<bool> ending_{false};
-  std::thread thread_;
+  LineReader reader_;  // the last one: its thread uses the others
 };
 
 }  // namespace sigmaban

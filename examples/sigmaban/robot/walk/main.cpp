@@ -1,5 +1,6 @@
 // surefoot-walk: a policy on the robot. Ball, policy, walk engine and servos, on hardware or on virtual servos.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -18,7 +19,12 @@ void add_run(CLI::App& program) {
   add_problem_option(*command, options->problem);
   add_motion_option(*command, options->motion);
   command->add_option("--policy", options->policy, policy_help)->capture_default_str();
-  command->add_option("--port", options->port, "such as /dev/ttyUSB0; virtual: simulated servos in this program")
+  command
+      ->add_option(
+          "--port", options->ports,
+          "such as /dev/ttyUSB0, several with commas, in the order that the joints file numbers them; virtual: "
+          "simulated servos in this program")
+      ->delimiter(',')
       ->capture_default_str();
   command->add_option("--baud", options->bits_per_s, "[bit/s]")->capture_default_str();
   command->add_option("--protocol", options->protocol, "of the servos")
@@ -33,6 +39,24 @@ void add_run(CLI::App& program) {
       ->add_option("--ball-from", options->ball_from,
                    "file, named pipe or -: a line x y kick [m, m, rad] for each sight of the ball; no simulated ball")
       ->excludes(ball);
+  auto* body =
+      command->add_option("--body-from", options->body.from,
+                          "file or named pipe: a line for each reading of gyroscope (x y z) [rad/s], "
+                          "accelerometer (x y z) [m/s^2], loads under the feet (left right) [N], their centres ahead "
+                          "of each foot's middle [m]; the walk is stabilised by them, and a fall ends it");
+  command
+      ->add_option("--body-port", options->body.port,
+                   "the same from an inertial unit and load cells in the feet on a port of their own, Protocol 1.0")
+      ->excludes(body);
+  command->add_option("--body-baud", options->body.bits_per_s, "[bit/s]")->capture_default_str();
+  command->add_option("--body-ids", options->body.devices.ids, "of inertial unit, left foot, right foot")
+      ->check(CLI::Range(0, 253))
+      ->capture_default_str();
+  command
+      ->add_option("--unloaded-counts", options->body.devices.unloaded_counts, "of the feet in the air, left and right")
+      ->capture_default_str();
+  command->add_option("--newton-per-count", options->body.devices.newton_per_count, "of the load cells")
+      ->capture_default_str();
   command->add_option("--seconds", options->seconds, "of walking at most")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
@@ -56,7 +80,28 @@ void add_run(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--seed", options->seed, "of the simulated ball")->capture_default_str();
   command->footer("First try without a robot: --port virtual. Then with the robot hanging in the air.");
-  command->callback([options] { run_walk_to_ball(*options); });
+  command->callback([options] {
+    if (run_walk_to_ball(*options).end == WalkEnd::fell) throw surefoot::Error("the robot fell; its torque is off");
+  });
+}
+
+void add_joints(CLI::App& program) {
+  struct Options {
+    bool all = false;
+    std::size_t ports = 1;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("joints", "Print the file that --joints takes, with the defaults");
+  command->add_flag("--all", options->all, "neck and arms, too, 20 joints: held in a pose");
+  command->add_option("--ports", options->ports, "left leg, right leg, and neck and arms on so many ports")
+      ->check(CLI::Range(1, 3))
+      ->capture_default_str();
+  command->callback([options] {
+    RobotJoints robot = default_joints(options->all);
+    for (std::size_t i = 0; i < robot.ports.size(); ++i)
+      robot.ports[i] = std::min<std::size_t>(i / 6, 2) % options->ports;
+    std::printf("%s", joints_to_json(robot).c_str());
+  });
 }
 
 }  // namespace
@@ -66,8 +111,6 @@ int main(int argc, char** argv) {
   CLI::App program{"A trained policy on the robot: ball, policy, walk engine, servos", "surefoot-walk"};
   program.require_subcommand(1);
   sigmaban::add_run(program);
-  program.add_subcommand("joints", "Print the file that --joints takes, with the defaults")->callback([] {
-    std::printf("%s", sigmaban::joints_to_json(sigmaban::default_joints()).c_str());
-  });
+  sigmaban::add_joints(program);
   return example::run_program(program, argc, argv);
 }

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "../../../../apps/common/files.hpp"
@@ -21,23 +22,28 @@
 
 namespace sigmaban {
 
+/// As many as there can be in a row of the log.
+inline constexpr std::size_t most_logged_joints = 20;
+
 /// One control cycle. What is not known is NaN, an empty cell in the file.
 struct LogRow {
-  double time = 0;                     // since the start [s]
-  std::array<double, 3> orders{};      // [m/step, m/step, rad/step]
-  double enabled = 0;                  // 0 stands, 1 walks
-  double phase = 0;                    // of the walk
-  std::array<double, 3> ball{};        // x, y, kick direction, as believed [m, m, rad]
-  std::array<double, 12> goals{};      // as sent [rad], as the next
-  std::array<double, 12> positions{};  // measured
-  std::array<double, 12> voltages{};   // [V]
-  double lateness = 0;                 // of the cycle's start [s]
+  double time = 0;                                     // since the start [s]
+  std::array<double, 3> orders{};                      // [m/step, m/step, rad/step]
+  double enabled = 0;                                  // 0 stands, 1 walks
+  double phase = 0;                                    // of the walk
+  std::array<double, 3> ball{};                        // x, y, kick direction, as believed [m, m, rad]
+  std::array<double, most_logged_joints> goals{};      // as sent [rad], as the next
+  std::array<double, most_logged_joints> positions{};  // measured
+  std::array<double, most_logged_joints> voltages{};   // [V]
+  double lateness = 0;                                 // of the cycle's start [s]
 };
 
 class WalkLog {
  public:
-  /// Nothing is written if `path` is empty. Throws UsageError if it cannot be.
-  explicit WalkLog(const std::filesystem::path& path) : rows_(path.empty() ? 0 : capacity) {
+  /// Nothing is written if `path` is empty. Throws UsageError if it cannot be. `joints` has at most most_logged_joints.
+  explicit WalkLog(const std::filesystem::path& path,
+                   std::vector<std::string> joints = {joint_names.begin(), joint_names.end()})
+      : joints_(std::move(joints)), rows_(path.empty() ? 0 : capacity) {
     if (path.empty()) return;
     example::prepare_output(path);
     file_ = std::fopen(path.c_str(), "w");
@@ -78,8 +84,8 @@ class WalkLog {
   void write_header() {
     std::string line = "t_s,order_dx_m,order_dy_m,order_dtheta_rad,enabled_1,phase_1,ball_x_m,ball_y_m,kick_rad";
     for (const char* what : {"goal", "position", "voltage"}) {
-      for (const std::string_view joint : joint_names) {
-        line += "," + std::string(what) + "_" + std::string(joint) + (*what == 'v' ? "_V" : "_rad");
+      for (const std::string& joint : joints_) {
+        line += "," + std::string(what) + "_" + joint + (*what == 'v' ? "_V" : "_rad");
       }
     }
     std::fprintf(file_, "%s,lateness_s\n", line.c_str());
@@ -113,12 +119,13 @@ class WalkLog {
     put(row.phase);
     for (const double value : row.ball) put(value);
     for (const auto* joints : {&row.goals, &row.positions, &row.voltages}) {
-      for (const double value : *joints) put(value);
+      for (std::size_t i = 0; i < joints_.size(); ++i) put((*joints)[i]);
     }
     put(row.lateness);
     std::fputc('\n', file_);
   }
 
+  std::vector<std::string> joints_;
   std::vector<LogRow> rows_;  // a ring: rows begin to end wait to be written
   std::atomic<std::size_t> begin_{0}, end_{0};
   std::uint64_t lost_ = 0;

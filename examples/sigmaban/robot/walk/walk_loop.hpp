@@ -1,6 +1,7 @@
 // The control loop of the robot: ball, policy, gait, walk engine, servos, at a fixed rate of the monotonic clock.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -26,14 +27,15 @@ namespace sigmaban {
 struct WalkLoopOptions {
   double rate_hz = 100;
   double longest_walk_s = std::numeric_limits<double>::infinity();  // after which it stops [s]
-  bool hold = false;  // a walk that ends as it should keeps the torque on and stands; others never do
+  bool hold = false;                   // a walk that ends as it should keeps the torque on and stands; others never do
+  std::vector<double> poses_rad = {};  // of the joints after the legs [rad]
   GaitOptions gait;
   FarBallCriteria far_ball;
   BallFilterCriteria ball = {};
 };
 
 /// Why a walk ended.
-enum class WalkEnd : std::uint8_t { asked, time, kick, lost, alarm, fault };
+enum class WalkEnd : std::uint8_t { asked, time, kick, lost, alarm, fault, fell };
 
 constexpr std::string_view in_words(WalkEnd end) {
   constexpr std::string_view words[] = {"stopped as asked",
@@ -41,7 +43,8 @@ constexpr std::string_view in_words(WalkEnd end) {
                                         "stands where it may kick",
                                         "lost the ball",
                                         "stopped: a servo is too hot or its voltage is wrong",
-                                        "gave up: something is wrong with a servo or the bus"};
+                                        "gave up: something is wrong with a servo or the bus",
+                                        "fell, and let go"};
   return words[static_cast<std::size_t>(end)];
 }
 
@@ -60,6 +63,7 @@ struct WalkReport {
   std::uint64_t overruns = 0;     // ticks that were not over when the next one was due
   std::uint64_t unreachable = 0;  // ticks in which the engine gave no targets: the servos kept theirs
   int walk_cycles = 0;            // with the policy in charge
+  double approach_s = 0;          // from the policy's first cycle until it stood still for one [s]
   Durations lateness;             // of the start of ticks
   Durations thinking;             // ball, policy, gait and engine
   Durations ticking;              // from the start to the end of a tick
@@ -81,7 +85,9 @@ class Walk {
         options_(options),
         report_(&report),
         gait_(options.gait) {
-    for (std::size_t i = 0; i < goals_.size(); ++i) goals_[i] = group.states()[i].position_rad;
+    for (const dynamixel::JointState& joint : group.states()) goals_.push_back(joint.position_rad);
+    const std::size_t legs = goals_.size() - options.poses_rad.size();
+    std::ranges::copy(options.poses_rad, goals_.begin() + static_cast<std::ptrdiff_t>(legs));
     report.events.reserve(100);
   }
 
@@ -108,16 +114,20 @@ class Walk {
     orders_ = gait_.advance(dt);
     phase_ = engine_.phase();
     const auto targets = engine_.step(orders_, stepping ? dt : 0);
-    if (targets) goals_ = targets->array();
+    if (targets) std::ranges::copy(targets->array(), goals_.begin());
     if (!targets) ++report_->unreachable;
     cycle_begins_ = engine_.phase() < phase_ || !stepping;
     if (gait_.walking() && (walked_ += dt) >= options_.longest_walk_s) end(WalkEnd::time);
+    if (approaching_) report_->approach_s += dt;
   }
 
   /// Goals to the servos, and what they say. `time` since the start [s].
   void act(double time) {
     group_->set_goals(goals_);
     group_->update();
+    if constexpr (requires { engine_.fallen(); }) {
+      if (engine_.fallen()) fall();
+    }
     for (const dynamixel::ServoEvent& event : group_->events()) {
       if (report_->events.size() < report_->events.capacity()) report_->events.push_back({time, event});
       using enum dynamixel::ServoEventKind;
@@ -159,8 +169,18 @@ class Walk {
     gait_.stop_quickly();
   }
 
+  /// Nothing that moves helps a robot that lies.
+  void fall() {
+    if (report_->end == WalkEnd::fell) return;
+    report_->end = WalkEnd::fell;
+    hurries_ = true;
+    gait_.stop_quickly();
+    group_->let_go();
+  }
+
   void begin_cycle() {
     const surefoot::Vec<3> speed = gait_.speed();
+    approaching_ = gait_.walking() || (approaching_ && !speed.isZero());
     pilot_.walked(speed, before_);
     if (const auto seen = ball_->see(speed, before_)) pilot_.sighted(*seen);
     view_ = pilot_.ball();
@@ -185,11 +205,12 @@ class Walk {
   Gait gait_;
   surefoot::Vec<3> before_ = surefoot::Vec<3>::Zero();  // speed of the cycle before
   std::optional<BallView> view_;
-  std::array<double, 12> goals_ = {};
+  std::vector<double> goals_;  // of the legs, then of the joints held in a pose [rad]
   WalkOrders orders_;
   double phase_ = 0, walked_ = 0;
   bool cycle_begins_ = true;
   bool hurries_ = false;
+  bool approaching_ = false;  // the policy is in charge, or the robot still moves after it
 };
 
 }  // namespace walk_loop_detail

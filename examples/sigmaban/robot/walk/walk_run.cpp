@@ -5,19 +5,17 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "../../../../apps/common/usage_error.hpp"
 #include "../../approach/motion.hpp"
-#include "../bus/background_port.hpp"
+#include "../balance/stabilized_walk.hpp"
 #include "../bus/realtime.hpp"
-#include "../bus/serial_port.hpp"
 #include "../policy_option.hpp"
-#include "../servos/torque_guard.hpp"
-#include "../virtual_bus/virtual_bus.hpp"
 #include "joints_file.hpp"
-#include "sitting_pose.hpp"
+#include "robot_lines.hpp"
 #include "stop_signals.hpp"
 #include "walk_loop.hpp"
 
@@ -32,8 +30,8 @@ BallView simulated_start(const Problem& problem, const WalkRun& options) {
   return {state[0] * std::cos(state[1]), state[0] * std::sin(state[1]), state[2]};
 }
 
-template <class Bus>
-void print(const WalkReport& report, Bus& bus, const std::vector<dynamixel::Joint>& joints, const WalkLog& log) {
+void print(const WalkReport& report, const dynamixel::ServoStatistics& sum, const std::vector<dynamixel::Joint>& joints,
+           const WalkLog& log) {
   std::printf("The robot %s.\n", std::string(in_words(report.end)).c_str());
   std::printf("%llu ticks, %d walk cycles by the policy; %llu overruns; %llu ticks without targets\n",
               static_cast<unsigned long long>(report.ticks), report.walk_cycles,
@@ -46,8 +44,6 @@ void print(const WalkReport& report, Bus& bus, const std::vector<dynamixel::Join
   line("lateness of a tick", report.lateness);
   line("ball, policy and walk engine", report.thinking);
   line("whole tick, with the bus", report.ticking);
-  dynamixel::ServoStatistics sum;
-  for (const dynamixel::Joint& joint : joints) sum += bus.statistics(joint.id);
   std::printf("servos asked %llu times: %llu answered, %llu lost, %llu corrupted\n",
               static_cast<unsigned long long>(sum.asked), static_cast<unsigned long long>(sum.answered),
               static_cast<unsigned long long>(sum.lost), static_cast<unsigned long long>(sum.corrupted));
@@ -73,90 +69,60 @@ std::string fault_in_words(const std::optional<dynamixel::ServoFault>& fault, Wa
          std::string(in_words(fault->finding));
 }
 
-dynamixel::ServoGroupOptions group_options(const WalkRun& options, const WalkLoopOptions& loop, bool is_virtual,
-                                           dynamixel::TorqueGuard* guard) {
-  dynamixel::ServoGroupOptions group;
-  group.soft_start_s = loop.gait.rise_s - 0.5;
-  group.listen_s = 0.75 / options.rate_hz;
-  group.care.poll_s = 0.2 / options.rate_hz;
-  group.bus_watchdog_s = options.bus_watchdog_s;
-  group.guard = guard;
-  if (is_virtual) group.watchdog_s = group.care.group.line_is_dead_s = 1;  // a machine that simulates may stand still
-  if (const auto sitting = sitting_pose(options.walk)) {
-    const auto angles = sitting->array();
-    group.sitting_rad.assign(angles.begin(), angles.end());
-  }
-  return group;
-}
-
-template <class Protocol>
-std::optional<dynamixel::VirtualBus<Protocol>> virtual_line(const WalkRun& options, const dynamixel::ServoModel& model,
-                                                            const std::vector<dynamixel::Joint>& joints) {
-  using namespace dynamixel;
-  if (options.port != "virtual") return std::nullopt;
-  std::vector<VirtualServo> servos;
-  for (const Joint& joint : joints) servos.emplace_back(model, joint.id, servo_angle(joint, 0));
-  return std::optional<VirtualBus<Protocol>>(
-      std::in_place, Answerer<Protocol>(servos, {.bits_per_s = options.bits_per_s, .seed = options.seed}));
-}
-
-template <class Protocol, class Problem, class Policy, BallSource Ball>
-void walk(const Problem& problem, const Policy& policy, Ball& ball, const WalkRun& options,
-          const std::vector<dynamixel::Joint>& joints, WalkLog& log, StopSignals& signals) {
-  using namespace dynamixel;
-  constexpr bool first = std::is_same_v<Protocol, Protocol1>;
-  const ServoModel& model = first ? mx_64_protocol_1 : mx_64_protocol_2;
-  const bool realtime = ask_for_realtime();
-  auto line = virtual_line<Protocol>(options, model, joints);
-  using Line = Bus<Protocol, BackgroundPort<SerialPort>>;
-  Line bus(BackgroundPort(SerialPort(line ? line->path() : options.port, options.bits_per_s)),
-           {.return_delay_s = line ? 0 : 500e-6, .latency_s = 1.5e-3});
+WalkLoopOptions loop_options(const WalkRun& options, const RobotJoints& robot, const surefoot::Vec<3>& slowing) {
   WalkLoopOptions loop{.rate_hz = options.rate_hz,
                        .longest_walk_s = options.seconds,
                        .hold = options.after == "hold",
+                       .poses_rad = robot.poses_rad,
                        .gait = {},
                        .far_ball = {}};
-  loop.gait.slowing = problem.constants.max_acceleration;
-  std::optional<TorqueGuard> guard;  // virtual servos end with this program
-  if (!line) guard.emplace(bus.port().port().file(), TorqueGuardOptions{.name = "surefoot-walk: torque guard"});
-  ServoGroup<Line> group(bus, model, joints, group_options(options, loop, line.has_value(), guard ? &*guard : nullptr));
+  loop.gait.slowing = slowing;
+  return loop;
+}
+
+template <class Protocol, class Problem, class Policy, BallSource Ball>
+WalkOutcome walk(const Problem& problem, const Policy& policy, Ball& ball, const WalkRun& options,
+                 const RobotJoints& robot, WalkLog& log, StopSignals& signals) {
+  const bool realtime = dynamixel::ask_for_realtime();
+  const WalkLoopOptions loop = loop_options(options, robot, problem.constants.max_acceleration);
+  RobotLines<Protocol> lines(options, robot, loop.gait.rise_s);
   const auto report = std::make_unique<WalkReport>();
-  std::printf("%zu servos on %s, %g Hz, %s; Ctrl-C stops the walk, twice lets go\n", joints.size(),
-              line ? ("virtual bus " + line->path()).c_str() : options.port.c_str(), options.rate_hz,
-              realtime ? "real-time priority" : "no real-time priority");
+  std::printf("%zu servos on %s, %g Hz, %s; Ctrl-C stops the walk, twice lets go\n", robot.joints.size(),
+              lines.names().c_str(), options.rate_hz, realtime ? "real-time priority" : "no real-time priority");
   std::fflush(stdout);
+  auto& group = lines.group();
   group.start();
+  StabilizedWalk engine(SplineWalk(options.walk), RobotBody(options.body), 1 / options.rate_hz);
   run_walk(
-      problem, policy, ball, SplineWalk(options.walk), group, log, loop, surefoot::Rng(options.seed, 1),
+      problem, policy, ball, std::move(engine), group, log, loop, surefoot::Rng(options.seed, 1),
       [&] { return signals.request(); }, *report);
   const bool held = group.torque_on();
   if (held) group.keep_torque();
   signals.no_more_deadlines();
-  print(*report, bus, joints, log);
+  print(*report, lines.statistics(), robot.joints, log);
   if (!held && group.unconfirmed() > 0) {
     std::printf("%zu servos did not say that their torque is off\n", group.unconfirmed());
   }
   if (report->end == WalkEnd::alarm || report->end == WalkEnd::fault) {
-    throw BusError(fault_in_words(group.fault(), report->end, joints));
+    throw dynamixel::BusError(fault_in_words(group.fault(), report->end, robot.joints));
   }
+  return {report->end, report->approach_s};
 }
 
 template <class Problem>
-void run_problem(const Problem& problem, const WalkRun& options) {
-  std::vector<dynamixel::Joint> joints =
-      options.joints_file.empty() ? default_joints() : read_joints(options.joints_file);
-  dynamixel::check_joints(joints, joints.size());
+WalkOutcome run_problem(const Problem& problem, const WalkRun& options) {
+  const RobotJoints robot = options.joints_file.empty() ? default_joints() : read_joints(options.joints_file);
   const AnyPolicyOf<Problem> policy = load_policy_option(problem, options.policy, options.motion);
   StopSignals signals;
-  WalkLog log(options.log);
+  std::vector<std::string> names;
+  for (const dynamixel::Joint& joint : robot.joints) names.push_back(joint.name);
+  WalkLog log(options.log, names);
+  WalkOutcome outcome;
   const auto go = [&](auto& ball) {
-    std::visit(
+    outcome = std::visit(
         [&](const auto& p) {
-          if (options.protocol == 1) {
-            walk<dynamixel::Protocol1>(problem, p, ball, options, joints, log, signals);
-          } else {
-            walk<dynamixel::Protocol2>(problem, p, ball, options, joints, log, signals);
-          }
+          return options.protocol == 1 ? walk<dynamixel::Protocol1>(problem, p, ball, options, robot, log, signals)
+                                       : walk<dynamixel::Protocol2>(problem, p, ball, options, robot, log, signals);
         },
         policy);
   };
@@ -172,12 +138,15 @@ void run_problem(const Problem& problem, const WalkRun& options) {
     }
   }
   if (signals.requested()) throw example::Interrupted{};
+  return outcome;
 }
 
 }  // namespace
 
-void run_walk_to_ball(const WalkRun& options) {
-  with_problem(options.problem, options.motion, [&](const auto& problem) { run_problem(problem, options); });
+WalkOutcome run_walk_to_ball(const WalkRun& options) {
+  WalkOutcome outcome;
+  with_problem(options.problem, options.motion, [&](const auto& problem) { outcome = run_problem(problem, options); });
+  return outcome;
 }
 
 }  // namespace sigmaban

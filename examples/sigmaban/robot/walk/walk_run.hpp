@@ -7,14 +7,18 @@
 #include <vector>
 
 #include "../walk_engine/spline_walk.hpp"
+#include "robot_body.hpp"
+#include "walk_loop.hpp"
 
 namespace sigmaban {
 
 /// What the command line of surefoot-walk says.
 struct WalkRun {
   std::string problem = "ha", motion, policy = "expert";
-  std::string port = "virtual", joints_file, ball_from, after = "off";
+  std::vector<std::string> ports = {"virtual"};
+  std::string joints_file, ball_from, after = "off";
   std::vector<double> ball;
+  RobotBodyOptions body;
   std::filesystem::path log;
   double rate_hz = 100, seconds = 30;
   double bus_watchdog_s = 0.5;
@@ -24,7 +28,13 @@ struct WalkRun {
   WalkParameters walk;
 };
 
-/// Stands up, walks to the ball, stops, and prints what happened.
-void run_walk_to_ball(const WalkRun& options);
+/// How it ended.
+struct WalkOutcome {
+  WalkEnd end = WalkEnd::asked;
+  double approach_s = 0;  // from the policy's first walk cycle until the robot stood still for one [s]
+};
+
+/// Stands up, walks to the ball, stops, and prints what happened. Throws BusError where servos or bus gave up.
+WalkOutcome run_walk_to_ball(const WalkRun& options);
 
 }  // namespace sigmaban
