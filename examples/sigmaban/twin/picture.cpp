@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../../../apps/calibrate/stoppable.hpp"
+#include "../../../apps/common/files.hpp"
 #include "../../../apps/common/gnuplot.hpp"
 #include "../approach/commands.hpp"
 #include "../approach/plot.hpp"
