@@ -63,6 +63,26 @@ TEST_CASE("an arm that is as its model says gets no effect") {
   CHECK(result["verdict"] == "adequate");
 }
 
+TEST_CASE("the inertia of a rotor is found, and said to be like that of its link") {
+  const ScratchFolder folder;
+  auto arm = robot_test::small_arm();
+  arm.torque_driven = true;
+  arm.joints[0].hidden.armature = 0.1;
+  robot_test::write_files(folder, arm, 16);
+  std::string setup = blind_robots::robot_setup(arm);
+  const std::string bodies = ", \"bodies\"";
+  setup.erase(setup.find(bodies), bodies.size());
+  robot_test::write_text(folder.file("robot.toml"), setup);
+  REQUIRE(diagnose(folder).code == 0);
+  const json result = result_of(folder);
+  bool found = false, tied = false;
+  for (const json& effect : result["effects"])
+    found = found || (effect["name"] == "rotor_inertia" && effect["attached_to"] == "upper");
+  for (const json& other : result["alternatives"]) tied = tied || other["effects"][0]["name"] == "link_inertia";
+  CHECK(found);
+  CHECK(tied);
+}
+
 TEST_CASE("the same seed gives the same result for any number of threads") {
   const ScratchFolder folder;
   auto arm = robot_test::small_arm();

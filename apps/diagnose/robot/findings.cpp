@@ -26,6 +26,23 @@ std::string sentence_of(const Evidence& evidence, const Term& term, double value
   return std::string(info.of_group) + " of " + size + " at " + place;
 }
 
+// A stated tie: the inertia of a rotor, and that of the link which turns with it.
+void name_links(const Evidence& evidence, const std::vector<Eigen::Index>& like_link, RobotDiagnosis& d) {
+  for (const Eigen::Index t : like_link) {
+    const Term& term = evidence.terms[static_cast<std::size_t>(t)];
+    const std::string place = place_of(evidence.robot, term);
+    surefoot::Alternative alternative;
+    alternative.effects = {{info_of(Property::link_inertia).effect, place}};
+    alternative.indistinguishable = true;
+    alternative.fitted_rmse = d.after;
+    alternative.probability = 1;
+    d.common.alternatives.push_back(alternative);
+    d.common.remarks.push_back({"", "rotor_inertia at " + place +
+                                        " cannot be told apart from as much more inertia of the links that turn with "
+                                        "it than the model states; only their sum is measured"});
+  }
+}
+
 }  // namespace
 
 double overall(const Evidence& evidence, const Eigen::VectorXd& rms) {
@@ -40,8 +57,10 @@ double overall(const Evidence& evidence, const Eigen::VectorXd& rms) {
 }
 
 void name_effects(const Evidence& evidence, const SearchResult& found, RobotDiagnosis& d) {
-  const Eigen::VectorXd error = standard_errors_with_bodies(evidence, found),
-                        odds = evidence_of_terms(found.linear, found.set);
+  const UncertainBodies bodies = allow_for_bodies(evidence, found);
+  const Eigen::VectorXd& error = bodies.standard_errors;
+  const Eigen::VectorXd odds = evidence_of_terms(found.linear, found.set);
+  name_links(evidence, bodies.like_link, d);
   for (std::size_t t = 0; t < found.set.size(); ++t) {
     if (found.set[t] == 0) continue;
     const auto at = static_cast<Eigen::Index>(t);
@@ -72,6 +91,7 @@ void name_effects(const Evidence& evidence, const SearchResult& found, RobotDiag
 void name_alternatives(const Evidence& evidence, const SearchResult& found, RobotDiagnosis& d) {
   const TermSet all(evidence.terms.size(), 1);
   double others = 0;
+  for (const surefoot::Alternative& one : d.common.alternatives) others += one.probability;
   for (const TermAlternative& one : alternatives_of(found.linear, found.set, all)) {
     const Term& term = evidence.terms[static_cast<std::size_t>(one.other)];
     const Term& instead = evidence.terms[static_cast<std::size_t>(one.instead)];

@@ -5,8 +5,13 @@
 
 namespace diagnose_robot {
 
-/// Standard errors by term. Unless bodies are calibrated, mass, centre of mass and inertia of every link are uncertain
-/// by some 10 % (see linearize.cpp), so that the inertia of a rotor is no better known than that of the link behind it.
-Eigen::VectorXd standard_errors_with_bodies(const Evidence& evidence, const SearchResult& found);
+struct UncertainBodies {
+  Eigen::VectorXd standard_errors;      // by term
+  std::vector<Eigen::Index> like_link;  // terms of rotor inertia that do what more inertia of their link would do
+};
+
+/// Unless bodies are calibrated, mass, centre of mass and inertia of every link are uncertain by some 10 % (see
+/// term_priors.cpp). Cost: one linearization.
+UncertainBodies allow_for_bodies(const Evidence& evidence, const SearchResult& found);
 
 }  // namespace diagnose_robot
