@@ -33,7 +33,7 @@ static_assert(Problem<ParkedCart>);
 int main() {
   // [runs]
   const auto solve = [](int horizon) {
-    auto result = rfpi(ParkedCart{}, {.budget = {.counted_seconds = 2}, .horizon = horizon}, Threads{}, /*seed*/ 1);
+    auto result = rfpi(ParkedCart{}, {.budget = {.counted_seconds = 6}, .horizon = horizon}, Threads{}, /*seed*/ 1);
     std::printf("runs of %d transitions: cost %.1f\n", horizon, result.cost.mean);
     for (const std::string& hint : result.hints) std::printf("hint: %s\n", hint.c_str());
     return result;

@@ -1,8 +1,7 @@
 // One-step lookahead, the best action of a state: simulate candidate actions, add the value of where they lead.
 // Q(s, a) = mean over noise of r + discount V(s'). The paper tries random actions (Algorithm 4); this one has two
 // stages, roughly everywhere, then finely around the best, and lets all candidates meet the same noise, so that their
-// differences have little variance. Where there are many samples the better half alone gets them all. Cost: at most
-// candidates * samples + refined * refined_samples transitions and values.
+// differences have little variance. Cost: candidates * samples + refined * refined_samples transitions and values.
 #pragma once
 
 #include <algorithm>
@@ -54,7 +53,8 @@ class Lookahead {
 
   /// Values looked up in one call.
   std::size_t values() const {
-    return values(options_.candidates, options_.samples) + values(options_.refined, options_.refined_samples);
+    return static_cast<std::size_t>(options_.candidates) * static_cast<std::size_t>(options_.samples) +
+           static_cast<std::size_t>(options_.refined) * static_cast<std::size_t>(options_.refined_samples);
   }
 
  private:
@@ -95,7 +95,9 @@ class Lookahead {
 
   /// Keeps the best candidates and adds new ones near and between them.
   void refine(Rng& rng) {
-    sort_by_q();
+    order_.resize(candidates_.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    std::ranges::sort(order_, [this](std::size_t a, std::size_t b) { return q_[a] != q_[b] ? q_[a] > q_[b] : a < b; });
     const std::size_t kept =
         std::min({static_cast<std::size_t>(options_.kept), static_cast<std::size_t>(options_.refined), order_.size()});
     std::vector<Unit>& best = scratch_;
@@ -118,73 +120,27 @@ class Lookahead {
     }
   }
 
-  /// Samples of all candidates before only the better half of them meets the rest (successive halving; Karnin, Koren &
-  /// Somekh, ICML 2013). Without common noise a few samples do not tell which half is better.
-  int first_samples(int samples) const {
-    constexpr int least = 4;  // fewer are too few to be halved
-    return options_.common_noise && samples >= least ? samples / 2 : samples;
-  }
-  std::size_t values(int candidates, int samples) const {
-    const int first = first_samples(samples);
-    return static_cast<std::size_t>(candidates * first + better_half(candidates) * (samples - first));
-  }
-  static constexpr int better_half(int candidates) { return (candidates + 1) / 2; }
-
-  /// The mean return of every candidate. Of those that were dropped it is moved by what the further samples moved the
-  /// others by, as all meet the same noise.
   void evaluate(const State& state, int samples, const Rng& rng) {
+    const auto count = static_cast<std::size_t>(samples);
+    constexpr int width = feature_dim<P>();
     noise_.clear();
     if (options_.common_noise) {
-      Rng slices = rng.stream(static_cast<std::uint64_t>(samples));
+      Rng slices = rng.stream(count);
       draws_ = latin_hypercube(static_cast<std::uint32_t>(samples), noise_dims, slices);
-      for (std::size_t m = 0; m < static_cast<std::size_t>(samples); ++m) {
+      for (std::size_t m = 0; m < count; ++m) {
         noise_.push_back(rng.stream(m).with_draws(std::span(draws_).subspan(m * noise_dims, noise_dims)));
       }
     }
-    const int first = first_samples(samples);
-    totals_.assign(candidates_.size(), 0.0);
-    q_.resize(candidates_.size());
-    order_.resize(candidates_.size());
-    std::iota(order_.begin(), order_.end(), std::size_t{0});
-    add_returns(state, order_, 0, first, samples, rng);
-    for (std::size_t c = 0; c < q_.size(); ++c) q_[c] = totals_[c] / first;
-    if (first < samples) {
-      sort_by_q();
-      const auto half = static_cast<std::size_t>(better_half(static_cast<int>(order_.size())));
-      add_returns(state, std::span(order_).first(half), first, samples, samples, rng);
-      double moved = 0;
-      for (std::size_t i = 0; i < half; ++i) {
-        const double all = totals_[order_[i]] / samples;
-        moved += all - q_[order_[i]];
-        q_[order_[i]] = all;
-      }
-      for (std::size_t i = half; i < order_.size(); ++i) q_[order_[i]] += moved / static_cast<double>(half);
-    }
-    if (!std::ranges::all_of(q_, [](double q) { return std::isfinite(q); })) {
-      throw SolveError("lookahead: a transition gave a reward or a state that is not finite: validate() tells where");
-    }
-  }
-
-  void sort_by_q() {
-    std::ranges::sort(order_, [this](std::size_t a, std::size_t b) { return q_[a] != q_[b] ? q_[a] > q_[b] : a < b; });
-  }
-
-  /// Adds the returns of samples [first, last), of `samples` in all, to the totals of some candidates.
-  void add_returns(const State& state, std::span<const std::size_t> which, int first, int last, int samples,
-                   const Rng& rng) {
-    constexpr int width = feature_dim<P>();
     const double last_discount = std::pow(discount_, options_.hold);
-    const std::size_t count = which.size() * static_cast<std::size_t>(last - first);
-    rows_.resize(count * width);
-    values_.resize(count);
-    rewards_.clear();
+    rows_.resize(candidates_.size() * count * width);
+    values_.resize(candidates_.size() * count);
+    rewards_.resize(values_.size());
+    std::size_t living = 0;
     living_.clear();
-    for (const std::size_t c : which) {
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
       const Action action = to_action(candidates_[c]);
-      for (int m = first; m < last; ++m) {
-        Rng noise = options_.common_noise
-                        ? noise_[static_cast<std::size_t>(m)]
-                        : rng.stream(c * static_cast<std::size_t>(samples) + static_cast<std::size_t>(m));
+      for (std::size_t m = 0; m < count; ++m) {
+        Rng noise = options_.common_noise ? noise_[m] : rng.stream(c * count + m);
         Step<State> step = problem_.step(state, action, noise);
         double sum = step.reward;
         double weight = discount_;
@@ -193,23 +149,28 @@ class Lookahead {
           sum += weight * step.reward;
           weight *= discount_;
         }
-        if (!step.terminal) {
-          Eigen::Map<Eigen::Matrix<float, width, 1>>(rows_.data() + living_.size() * width) =
-              features(problem_, step.next).template cast<float>();
-          living_.push_back(rewards_.size());
-        }
-        rewards_.push_back(sum);
+        rewards_[c * count + m] = sum;
+        if (step.terminal) continue;
+        Eigen::Map<Eigen::Matrix<float, width, 1>>(rows_.data() + living * width) =
+            features(problem_, step.next).template cast<float>();
+        living_.push_back(c * count + m);
+        ++living;
       }
     }
     if (value_.empty()) {
-      std::fill_n(values_.begin(), living_.size(), 0.0);
+      std::fill_n(values_.begin(), living, 0.0);
     } else {
-      value_.predict(rows_.data(), living_.size(), values_.data());
+      value_.predict(rows_.data(), living, values_.data());
     }
-    for (std::size_t i = 0; i < living_.size(); ++i) rewards_[living_[i]] += last_discount * values_[i];
-    std::size_t at = 0;
-    for (const std::size_t c : which) {
-      for (int m = first; m < last; ++m) totals_[c] += rewards_[at++];
+    for (std::size_t i = 0; i < living; ++i) rewards_[living_[i]] += last_discount * values_[i];
+    q_.resize(candidates_.size());
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
+      q_[c] = std::accumulate(rewards_.begin() + static_cast<std::ptrdiff_t>(c * count),
+                              rewards_.begin() + static_cast<std::ptrdiff_t>((c + 1) * count), 0.0) /
+              samples;
+      if (!std::isfinite(q_[c])) {
+        throw SolveError("lookahead: a transition gave a reward or a state that is not finite: validate() tells where");
+      }
     }
   }
 
@@ -240,7 +201,7 @@ class Lookahead {
   const LookaheadOptions& options_;
   Box<P::action_dim> box_;
   std::vector<Unit> candidates_, scratch_;
-  std::vector<double> q_, totals_, rewards_, values_, draws_;
+  std::vector<double> q_, rewards_, values_, draws_;
   std::vector<float> rows_;
   std::vector<std::size_t> order_, living_;
   std::vector<Rng> noise_;

@@ -27,7 +27,7 @@ struct LookaheadOptions {
   bool common_noise = true;  // all candidates meet the same noise, spread evenly (Latin hypercube)
   int kept = 6;              // best candidates that go to the second stage
   int refined = 12;          // actions of the second stage, those kept included; 0: no second stage
-  int refined_samples = 7;   // simulated transitions of each; with common noise the worse half meets 3 of 7 only
+  int refined_samples = 7;   // simulated transitions of each
   double step = 0.4;         // of new actions away from those kept [half widths of the action box]
   double softness = 0.1;     // the action is the mean of those about as good as the best: scale of "about"
                              // [gap between the best and the median action]; 0: the best alone
