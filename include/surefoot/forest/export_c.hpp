@@ -2,9 +2,9 @@
 // code, or nested ifs, that give the same outputs as Forest::predict. No allocation, no recursion, no libm.
 //
 // Size: per node (of which there are two per leaf) tables have one small integer and one number, its threshold or what
-// its leaf says, and per leaf its numbers if there are several: about 25 characters for the two nodes of a leaf and 11 (or
-// 5, see CTable) for each of its numbers; in the machine 1 to 4 + 4 bytes a node (+ 2 with 16-bit thresholds), and 4 (5)
-// bytes a number. Nested ifs take several times that.
+// its leaf says, and per leaf its numbers if there are several: about 25 characters for the two nodes of a leaf and 11
+// (or 5, see CTable) for each of its numbers; in the machine 1 to 4 + 4 bytes a node (+ 2 with 16-bit thresholds), and
+// 4 (5) bytes a number. Nested ifs take several times that.
 #pragma once
 
 #include <concepts>
