@@ -21,8 +21,8 @@ using Group = ServoGroup<Line>;
 constexpr std::size_t ports = 3, joints = 20;
 
 /// Servos with the ids 1 to 7 or so behind each port: joint i is on port i % 3.
-struct Robot {
-  Robot() {
+struct RobotOnPorts {
+  RobotOnPorts() {
     std::vector<Group*> groups;
     for (std::size_t port = 0; port < ports; ++port) {
       std::vector<VirtualServo> servos;
@@ -84,7 +84,7 @@ struct Robot {
 }  // namespace
 
 TEST_CASE("twenty joints on three lines get their goals and are read, each its own") {
-  Robot robot;
+  RobotOnPorts robot;
   robot.all->start();
   CHECK(robot.torques() == joints);
   CHECK(robot.run(100).empty());
@@ -101,8 +101,8 @@ TEST_CASE("twenty joints on three lines get their goals and are read, each its o
 }
 
 TEST_CASE("one line that sits down or lets go takes the others along, and says whose fault it was") {
-  const auto after = [](const std::function<void(Robot&)>& fault) {
-    Robot robot;
+  const auto after = [](const std::function<void(RobotOnPorts&)>& fault) {
+    RobotOnPorts robot;
     robot.all->start();
     robot.run(30);
     fault(robot);
@@ -112,10 +112,10 @@ TEST_CASE("one line that sits down or lets go takes the others along, and says w
     CHECK(std::ranges::count(events, ServoEventKind::let_go, &ServoEvent::kind) >= 1);
     return robot.all->fault();
   };
-  const auto overload = after([](Robot& robot) { robot.servo(7).shut_down(protocol2::overload_error); });
+  const auto overload = after([](RobotOnPorts& robot) { robot.servo(7).shut_down(protocol2::overload_error); });
   REQUIRE(overload);
   CHECK(overload->joint == 7);
-  const auto torn = after([](Robot& robot) {  // its line goes silent altogether, but hears
+  const auto torn = after([](RobotOnPorts& robot) {  // its line goes silent altogether, but hears
     for (std::size_t i = 2; i < joints; i += ports) robot.answerers[2]->set_silent(robot.servo(i).id(), true);
   });
   REQUIRE(torn);
@@ -123,14 +123,14 @@ TEST_CASE("one line that sits down or lets go takes the others along, and says w
 }
 
 TEST_CASE("lines that cannot all start leave no torque on") {
-  Robot robot;
+  RobotOnPorts robot;
   robot.servo(19).temperature_celsius = 90;
   CHECK_THROWS_WITH_AS(robot.all->start(), doctest::Contains("joint 19"), BusError);
   CHECK(robot.torques() == 0);
 }
 
 TEST_CASE("a port that goes away ends the others too") {
-  Robot robot;
+  RobotOnPorts robot;
   robot.all->start();
   robot.run(10);
   robot.buses[1]->port().hang_up();
