@@ -23,7 +23,7 @@ struct Cell {
 };
 
 /// A row for each condition, a column for each finding, in the orders above.
-constexpr Cell table[5][8] = {
+constexpr Cell transitions[5][8] = {
     // working
     {{Condition::working},
      {Condition::restoring, Reaction::restore},
@@ -79,8 +79,8 @@ TEST_CASE("every finding in every condition has one consequence") {
       CAPTURE(i);
       CAPTURE(j);
       const ConditionStep step = after({.condition = conditions[i]}, findings[j]);
-      CHECK(step.next.condition == table[i][j].next);
-      CHECK(step.reaction == table[i][j].reaction);
+      CHECK(step.next.condition == transitions[i][j].next);
+      CHECK(step.reaction == transitions[i][j].reaction);
     }
   }
 }
