@@ -11,6 +11,6 @@ void fuzz::joints(Input input) {
     const std::string text = sigmaban::joints_to_json(joints);
     const MemoryFile again(std::as_bytes(std::span(text)));
     require(sigmaban::joints_to_json(sigmaban::read_joints(again.path())) == text, "joints that are written as others");
-    accepted<::dynamixel::BusError>([&] { ::dynamixel::check_joints(joints, joints.size()); });
+    accepted<::dynamixel::BusError>([&] { ::dynamixel::check_joints(joints.joints, joints.joints.size()); });
   });
 }
