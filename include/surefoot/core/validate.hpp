@@ -238,8 +238,7 @@ class Validation {
           return complain("features() gave two values for one state: let it depend on the state alone");
         }
       }
-    } else if constexpr (
-        requires(const State& s) { problem_.features(s); } || requires { P::feature_dim; }) {
+    } else if constexpr (requires(const State& s) { problem_.features(s); } || requires { P::feature_dim; }) {
       return complain(
           "features() is ignored: it needs `int feature_dim` and `Vec<feature_dim> features(const State&) const`");
     }
@@ -350,7 +349,8 @@ std::vector<std::string> validate(const P& problem, const ValidateOptions& optio
 
 /// What a type that is no Problem gets.
 template <class P>
-requires(!Problem<P>) auto validate(const P&, const ValidateOptions& = {}, std::uint64_t = 0) {
+  requires(!Problem<P>)
+auto validate(const P&, const ValidateOptions& = {}, std::uint64_t = 0) {
   return explain_problem<P>();
 }
 
