@@ -66,7 +66,7 @@ template <Problem P>
 void lookaheads(benchmark::State& state, const P& problem) {
   const auto& t = trained(problem);
   const LookaheadOptions options;
-  Lookahead<P, typename Trained<P>::ValueForest> look(t.problem, t.value, discount, options);
+  Lookahead<P> look(t.problem, t.value, discount, options);
   std::size_t i = 0;
   for (auto _ : state) {
     const auto& at = t.states[i % t.states.size()];

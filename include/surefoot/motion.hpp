@@ -1,4 +1,7 @@
-// The face of surefoot/motion, and what it stands on: how a robot really walks.
+// The face of surefoot/motion, but for walk_changes.hpp, and what it stands on: how a robot really walks.
+//
+// walk_changes.hpp (what changed between two walks) is not here: a program that only calibrates would compile a quarter
+// longer with it.
 #pragma once
 
 #include "surefoot/core.hpp"
@@ -14,6 +17,5 @@
 #include "surefoot/motion/plan.hpp"
 #include "surefoot/motion/previous_command_correction.hpp"
 #include "surefoot/motion/simulate_walk.hpp"
-#include "surefoot/motion/walk_changes.hpp"
 #include "surefoot/motion/walk_sequence.hpp"
 #include "surefoot/optimize.hpp"

@@ -4,9 +4,12 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <stop_token>
 #include <string>
+#include <utility>
 
+#include "surefoot/core/any_executor.hpp"
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/mpi/mpi_executor.hpp"
@@ -49,17 +52,26 @@ struct SharedFile {
       : path(map(executor, 1, [&](std::size_t) { return own.path.string(); })[0]) {}
 };
 
+// In all processes, and in each by itself. Of one type, so that the solver is compiled once.
+RfpiResult<Pendulum> learn(const RfpiOptions& options, std::size_t threads = 1, std::stop_token stop = {}) {
+  const AnyExecutor executor(std::make_unique<MpiExecutor>(MPI_COMM_WORLD, threads));
+  return rfpi(Pendulum{}, options, executor, 1, {}, std::move(stop));
+}
+RfpiResult<Pendulum> learn_alone(const RfpiOptions& options) {
+  return rfpi(Pendulum{}, options, AnyExecutor(std::make_unique<Serial>()), 1);
+}
+
 TEST_CASE("several processes learn the policy of one, by either method") {
   for (const RfpiOptions& options : {tiny(), tiny(RfpiOptions::paper())}) {
-    const auto serial = rfpi(Pendulum{}, options, Serial{}, 1);
-    check_same(serial, rfpi(Pendulum{}, options, MpiExecutor(MPI_COMM_WORLD), 1));
-    check_same(serial, rfpi(Pendulum{}, options, MpiExecutor(MPI_COMM_WORLD, 2), 1));
+    const auto serial = learn_alone(options);
+    check_same(serial, learn(options));
+    check_same(serial, learn(options, 2));
   }
 }
 
 TEST_CASE("one process tells the progress and writes the checkpoint, all go on from it") {
   const MpiExecutor executor(MPI_COMM_WORLD);
-  const auto whole = rfpi(Pendulum{}, tiny(), Serial{}, 1);
+  const auto whole = learn_alone(tiny());
   const SharedFile file(executor);
   int told = 0;
   RfpiOptions options = tiny();
@@ -67,17 +79,17 @@ TEST_CASE("one process tells the progress and writes the checkpoint, all go on f
   options.resume = true;  // nothing there yet
   options.max_iterations = 2;
   options.on_progress = [&](const RfpiProgress&) { ++told; };
-  rfpi(Pendulum{}, options, executor, 1);
+  learn(options);
   CHECK(told == (executor.rank() == 0 ? 2 : 0));
   options.max_iterations = 4;
-  check_same(whole, rfpi(Pendulum{}, options, executor, 1));
+  check_same(whole, learn(options));
   options.max_iterations = 4;
-  check_same(whole, rfpi(Pendulum{}, options, Serial{}, 1));  // alone, from the file that many wrote
+  check_same(whole, learn_alone(options));  // alone, from the file that many wrote
 }
 
 TEST_CASE("a stop in one process ends the training in all at the same iteration") {
   const MpiExecutor executor(MPI_COMM_WORLD);
-  const auto whole = rfpi(Pendulum{}, tiny(), Serial{}, 1);
+  const auto whole = learn_alone(tiny());
   const SharedFile file(executor);
   RfpiOptions options = tiny();
   options.checkpoint = file.path;
@@ -86,13 +98,13 @@ TEST_CASE("a stop in one process ends the training in all at the same iteration"
   options.on_progress = [&](const RfpiProgress& progress) {  // in the first process only
     if (progress.iteration == 2) source.request_stop();
   };
-  const auto stopped = rfpi(Pendulum{}, options, executor, 1, {}, source.get_token());
+  const auto stopped = learn(options, 1, source.get_token());
   CHECK(stopped.stop == RfpiStop::requested);
   CHECK(stopped.history.size() == 2);
   CHECK(source.stop_requested() == (executor.rank() == 0));
   options.resume = true;
   options.on_progress = {};
-  check_same(whole, rfpi(Pendulum{}, options, executor, 1));
+  check_same(whole, learn(options));
 }
 
 TEST_CASE("a limit by the clock ends the training in all processes together") {
@@ -101,24 +113,24 @@ TEST_CASE("a limit by the clock ends the training in all processes together") {
   options.max_iterations = 0;
   options.budget.counted_seconds = 1e6;
   options.max_seconds = 0.5 + static_cast<double>(executor.rank());
-  const auto result = rfpi(Pendulum{}, options, executor, 1);
+  const auto result = learn(options);
   CHECK(result.stop == RfpiStop::wall_clock);
   const auto costs = map(executor, executor.processes(), [&](std::size_t) { return result.cost.mean; });
   for (const double cost : costs) CHECK(cost == costs[0]);
 }
 
 TEST_CASE("a checkpoint that cannot be written or read ends all processes with the same words") {
-  const MpiExecutor executor(MPI_COMM_WORLD);
   RfpiOptions options = tiny();
   options.checkpoint = "no/such/folder/checkpoint";
   CHECK_THROWS_WITH_AS(
-      rfpi(Pendulum{}, options, executor, 1),
+      learn(options),
       doctest::Contains("file no/such/folder/checkpoint cannot be written: check that its folder exists"), CoreError);
+  const MpiExecutor executor(MPI_COMM_WORLD);
   const SharedFile file(executor);
   once(executor, [&] { write_file_atomically(file.path, "SURE"); });
   options.checkpoint = file.path;
   options.resume = true;
-  CHECK_THROWS_WITH_AS(rfpi(Pendulum{}, options, executor, 1), doctest::Contains("ends too early"), CoreError);
+  CHECK_THROWS_WITH_AS(learn(options), doctest::Contains("ends too early"), CoreError);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ Value constant_value(double value) {
 
 auto look(const Bowl& problem, const LookaheadOptions& options, std::uint64_t seed = 1,
           const Bowl::Action* incumbent = nullptr, const Value& value = no_value) {
-  return Lookahead<Bowl, Value>(problem, value, 0.9, options)(Vec<1>(0), incumbent, Rng(seed));
+  return Lookahead<Bowl>(problem, value, 0.9, options)(Vec<1>(0), incumbent, Rng(seed));
 }
 
 // Root mean square distance from the best action over many lookaheads [m, as all actions here].
@@ -146,7 +146,7 @@ TEST_CASE("what follows counts with its discounted value, but nothing follows a 
 TEST_CASE("equal random numbers give equal results, whatever was looked at before") {
   const Bowl noisy{.noise = 1};
   const LookaheadOptions options;
-  Lookahead<Bowl, Value> reused(noisy, no_value, 0.9, options);
+  Lookahead<Bowl> reused(noisy, no_value, 0.9, options);
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const auto fresh = look(noisy, options, seed);
     const auto again = reused(Vec<1>(0), nullptr, Rng(seed));
@@ -164,7 +164,7 @@ TEST_CASE("as many transitions are simulated as it says") {
         LookaheadOptions{.corners = false, .common_noise = false}}) {
     std::vector<Vec<2>> tried;
     const Bowl problem{.tried = &tried};
-    Lookahead<Bowl, Value> lookahead(problem, no_value, 0.9, options);
+    Lookahead<Bowl> lookahead(problem, no_value, 0.9, options);
     lookahead(Vec<1>(0), &incumbent, Rng(1));
     CHECK(tried.size() == lookahead.transitions());
     for (const Vec<2>& action : tried) CHECK(problem.action_box().contains(action));
@@ -187,7 +187,7 @@ struct ManyMotors {
 TEST_CASE("many action dimensions have too many corners to try, and still the action is better than the centre") {
   const ManyMotors problem;
   const LookaheadOptions options{.candidates = 40, .refined = 400, .step = 0.2, .softness = 0};
-  const auto found = Lookahead<ManyMotors, Value>(problem, no_value, 1, options)(Vec<1>(0), nullptr, Rng(1));
+  const auto found = Lookahead<ManyMotors>(problem, no_value, 1, options)(Vec<1>(0), nullptr, Rng(1));
   CHECK(found.value > 0.05);  // the centre gives 0
 }
 
@@ -198,7 +198,7 @@ TEST_CASE("a motor that is locked gets its only action") {
   const Locked problem;
   const LookaheadOptions options;
   const Vec<2> incumbent(0.5, 0);
-  CHECK(Lookahead<Locked, Value>(problem, no_value, 1, options)(Vec<1>(0), &incumbent, Rng(1)).action[0] == 0.5);
+  CHECK(Lookahead<Locked>(problem, no_value, 1, options)(Vec<1>(0), &incumbent, Rng(1)).action[0] == 0.5);
 }
 
 TEST_CASE("a reward that is no number is refused in words") {
@@ -209,7 +209,7 @@ TEST_CASE("a reward that is no number is refused in words") {
   };
   const Broken problem;
   const LookaheadOptions options;
-  Lookahead<Broken, Value> lookahead(problem, no_value, 1, options);
+  Lookahead<Broken> lookahead(problem, no_value, 1, options);
   CHECK_THROWS_WITH_AS(lookahead(Vec<1>(0), nullptr, Rng(1)), doctest::Contains("not finite"), SolveError);
 }
 

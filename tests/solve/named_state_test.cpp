@@ -46,12 +46,12 @@ static_assert(Problem<Named> && Portable<Cart>);
 const RfpiOptions brief{.budget = {.counted_seconds = 1e9}, .max_iterations = 5, .first_states = 300};
 
 TEST_CASE("a problem with states of its own type gives the bits of the same with plain vectors") {
-  const auto plain = rfpi(Named{}.plain, brief, Serial{}, 1);
+  const auto plain = rfpi(Named{}.plain, brief, Threads(1), 1);
   const std::vector<Cart> seeds{Cart(0.5, 0)};
   const auto named = rfpi(Named{}, brief, Threads(2), 1);
   CHECK(named.cost.mean == plain.cost.mean);
   CHECK(export_c(named.policy) == export_c(plain.policy));
-  CHECK(rfpi(Named{}, brief, Serial{}, 1, seeds).cost.mean != plain.cost.mean);
+  CHECK(rfpi(Named{}, brief, Threads(1), 1, seeds).cost.mean != plain.cost.mean);
 }
 
 TEST_CASE("checkpoints, policy files, comparisons, searches and checks take states of their own type") {
@@ -59,11 +59,11 @@ TEST_CASE("checkpoints, policy files, comparisons, searches and checks take stat
   RfpiOptions options = brief;
   options.checkpoint = checkpoint.path.string();
   options.max_iterations = 3;
-  rfpi(Named{}, options, Serial{}, 1);
+  rfpi(Named{}, options, Threads(1), 1);
   options.max_iterations = brief.max_iterations;
   options.resume = true;
-  const auto resumed = rfpi(Named{}, options, Serial{}, 1);
-  CHECK(resumed.cost.mean == rfpi(Named{}, brief, Serial{}, 1).cost.mean);
+  const auto resumed = rfpi(Named{}, options, Threads(1), 1);
+  CHECK(resumed.cost.mean == rfpi(Named{}, brief, Threads(1), 1).cost.mean);
 
   save_policy(file.path, resumed.policy);
   const auto loaded = load_policy(Named{}, file.path);

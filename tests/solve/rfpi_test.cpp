@@ -112,7 +112,7 @@ TEST_CASE("the published way improves much on the random policy within a few ite
   options.evaluation_runs = 200;
   const auto result = rfpi(noisy, options, Threads(2), 1);
   const RandomPolicy<1> random(noisy.action_box());
-  const double before = -evaluate(noisy, random, {.runs = 800, .horizon = 30}, Serial{}, 1).mean;
+  const double before = -evaluate(noisy, random, {.runs = 800, .horizon = 30}, Threads(1), 1).mean;
   CHECK(result.cost.mean < 0.5 * before);
   CHECK(result.stop == RfpiStop::iterations);
   // Policy n is improved after n more runs, and all states are kept.
@@ -121,10 +121,10 @@ TEST_CASE("the published way improves much on the random policy within a few ite
 
 TEST_CASE("equal seeds give equal bits on any number of threads") {
   for (const RfpiOptions& options : {tiny(), tiny_paper()}) {
-    const auto serial = rfpi(noisy, options, Serial{}, 1);
+    const auto serial = rfpi(noisy, options, Threads(1), 1);
     check_same(serial, rfpi(noisy, options, Threads(2), 1));
     check_same(serial, rfpi(noisy, options, Threads(4), 1));
-    CHECK(serial.policy.forest() != rfpi(noisy, options, Serial{}, 2).policy.forest());
+    CHECK(serial.policy.forest() != rfpi(noisy, options, Threads(1), 2).policy.forest());
   }
 }
 
@@ -132,7 +132,7 @@ TEST_CASE("the history tells what happened") {
   std::vector<RfpiProgress> seen;
   RfpiOptions options = tiny();
   options.on_progress = [&](const RfpiProgress& progress) { seen.push_back(progress); };
-  const auto result = rfpi(noisy, options, Serial{}, 1);
+  const auto result = rfpi(noisy, options, Threads(1), 1);
   REQUIRE(result.history.size() == 9);
   REQUIRE(seen.size() == 9);
   double best = std::numeric_limits<double>::infinity();
@@ -158,10 +158,10 @@ TEST_CASE("the history tells what happened") {
 // Trains until the end in legs: each is stopped inside the work after some steps of the problem.
 template <Executor E>
 void check_legs(RfpiOptions options, const E& executor) {
-  const auto whole = rfpi(noisy, options, Serial{}, 1);
+  const auto whole = rfpi(noisy, options, Threads(1), 1);
   std::atomic<long> steps{1L << 40};
   std::stop_source never;
-  rfpi(Counted{noisy, &steps, &never}, options, Serial{}, 1);
+  rfpi(Counted{noisy, &steps, &never}, options, Threads(1), 1);
   const long total = (1L << 40) - steps;
 
   const toy::TemporaryFile file("legs");
@@ -186,14 +186,14 @@ void check_legs(RfpiOptions options, const E& executor) {
 }
 
 TEST_CASE("a training stopped inside iterations and resumed gives the bits of one in one go") {
-  check_legs(tiny(), Serial{});
+  check_legs(tiny(), Threads(1));
   check_legs(tiny(), Threads(2));
   check_legs(tiny_paper(), Threads(2));
 }
 
 TEST_CASE("a training stopped after any iteration and resumed gives the bits of one in one go") {
   RfpiOptions options = tiny();
-  const auto whole = rfpi(noisy, options, Serial{}, 1);
+  const auto whole = rfpi(noisy, options, Threads(1), 1);
   const toy::TemporaryFile file("stopped");
   options.checkpoint = file.path.string();
   for (int last = 1; last < 9; ++last) {
@@ -202,23 +202,23 @@ TEST_CASE("a training stopped after any iteration and resumed gives the bits of 
       if (now.iteration == last) stop.request_stop();
     };
     options.resume = false;
-    const auto part = rfpi(noisy, options, Serial{}, 1, {}, stop.get_token());
+    const auto part = rfpi(noisy, options, Threads(1), 1, {}, stop.get_token());
     CHECK(part.stop == RfpiStop::requested);
     CHECK(part.history.size() == static_cast<std::size_t>(last));
     options.on_progress = {};
     options.resume = true;
-    check_same(whole, rfpi(noisy, options, Serial{}, 1));
+    check_same(whole, rfpi(noisy, options, Threads(1), 1));
   }
-  check_same(whole, rfpi(noisy, options, Serial{}, 1));  // nothing is left to do
+  check_same(whole, rfpi(noisy, options, Threads(1), 1));  // nothing is left to do
 }
 
 TEST_CASE("a training that resumes from nothing starts anew") {
   const toy::TemporaryFile file("fresh");
   RfpiOptions options = tiny();
-  const auto whole = rfpi(noisy, options, Serial{}, 1);
+  const auto whole = rfpi(noisy, options, Threads(1), 1);
   options.checkpoint = file.path.string();
   options.resume = true;
-  check_same(whole, rfpi(noisy, options, Serial{}, 1));
+  check_same(whole, rfpi(noisy, options, Threads(1), 1));
   CHECK(std::filesystem::exists(file.path));
 }
 
@@ -226,28 +226,28 @@ TEST_CASE("a checkpoint that cannot be written is told by name") {
   const toy::TemporaryFile file("nowhere");
   RfpiOptions options = tiny();
   options.checkpoint = (file.path / "checkpoint").string();
-  CHECK_THROWS_WITH_AS(rfpi(noisy, options, Serial{}, 1), doctest::Contains(options.checkpoint.c_str()), CoreError);
+  CHECK_THROWS_WITH_AS(rfpi(noisy, options, Threads(1), 1), doctest::Contains(options.checkpoint.c_str()), CoreError);
 }
 
 TEST_CASE("a budget in counted seconds ends the same way after a resume") {
   RfpiOptions options = tiny();
   options.max_iterations = 0;
   options.budget.counted_seconds = 0.06;
-  const auto whole = rfpi(noisy, options, Serial{}, 1);
+  const auto whole = rfpi(noisy, options, Threads(1), 1);
   CHECK(whole.stop == RfpiStop::budget);
   REQUIRE(whole.history.size() > 5);
   const toy::TemporaryFile file("budget");
   options.checkpoint = file.path.string();
   options.max_iterations = 5;
-  rfpi(noisy, options, Serial{}, 1);
+  rfpi(noisy, options, Threads(1), 1);
   options.max_iterations = 0;
   options.resume = true;
-  check_same(whole, rfpi(noisy, options, Serial{}, 1));
+  check_same(whole, rfpi(noisy, options, Threads(1), 1));
 }
 
 TEST_CASE("a training whose process was killed gives the bits of one in one go after a resume") {
   RfpiOptions options = tiny();
-  const auto whole = rfpi(noisy, options, Serial{}, 1);
+  const auto whole = rfpi(noisy, options, Threads(1), 1);
   const toy::TemporaryFile file("killed");
   options.checkpoint = file.path.string();
   options.checkpoint_seconds = 0;
@@ -260,7 +260,7 @@ TEST_CASE("a training whose process was killed gives the bits of one in one go a
       options.on_progress = [&](const RfpiProgress& now) {
         if (::write(channel[1], "i", 1) != 1 || now.iteration == 8) pause();
       };
-      rfpi(noisy, options, Serial{}, 1);
+      rfpi(noisy, options, Threads(1), 1);
       _exit(0);
     }
     close(channel[1]);
@@ -277,7 +277,7 @@ TEST_CASE("a training whose process was killed gives the bits of one in one go a
     rest.on_progress = [&](const RfpiProgress& now) {
       if (first == 0) first = now.iteration;
     };
-    check_same(whole, rfpi(noisy, rest, Serial{}, 1));
+    check_same(whole, rfpi(noisy, rest, Threads(1), 1));
     CHECK(first > last);
     std::filesystem::remove(file.path);
   }
@@ -288,12 +288,12 @@ TEST_CASE("a checkpoint of another run is refused in words") {
   RfpiOptions options = tiny();
   options.checkpoint = file.path.string();
   options.max_iterations = 2;
-  rfpi(noisy, options, Serial{}, 1);
+  rfpi(noisy, options, Threads(1), 1);
   options.resume = true;
   const std::vector<Vec<2>> seeds{Vec<2>(0.5, 0)};
   const auto refused = [](const Counted& problem, const RfpiOptions& o, std::uint64_t seed,
                           std::span<const Vec<2>> states) {
-    CHECK_THROWS_WITH_AS(rfpi(problem, o, Serial{}, seed, states),
+    CHECK_THROWS_WITH_AS(rfpi(problem, o, Threads(1), seed, states),
                          doctest::Contains("another problem, other options or another seed"), SolveError);
   };
   refused(noisy, options, 2, {});
@@ -317,7 +317,7 @@ TEST_CASE("a checkpoint of another run is refused in words") {
     change(changed);
     refused(noisy, changed, 1, {});
   }
-  CHECK(rfpi(noisy, options, Serial{}, 1).history.size() == 2);
+  CHECK(rfpi(noisy, options, Threads(1), 1).history.size() == 2);
 }
 
 TEST_CASE("a damaged checkpoint is refused") {
@@ -327,13 +327,13 @@ TEST_CASE("a damaged checkpoint is refused") {
   options.max_iterations = 7;
   options.first_states = 20;
   options.value_forest.trees = options.policy_forest.trees = 1;
-  const auto whole = rfpi(noisy, options, Serial{}, 1);
+  const auto whole = rfpi(noisy, options, Threads(1), 1);
   options.resume = true;
   const Bytes bytes = read_file(file.path);
   const auto loads = [&](const Bytes& changed) {
     write_file_atomically(file.path, changed);
     try {
-      rfpi(noisy, options, Serial{}, 1);
+      rfpi(noisy, options, Threads(1), 1);
     } catch (const Error&) {
       return false;
     }
@@ -356,21 +356,21 @@ TEST_CASE("a damaged checkpoint is refused") {
   CHECK(loaded == 0);
   CHECK(loads(bytes));
   write_file_atomically(file.path, std::string_view("something else entirely"));
-  CHECK_THROWS_WITH_AS(rfpi(noisy, options, Serial{}, 1), doctest::Contains("is not a checkpoint"), CoreError);
+  CHECK_THROWS_WITH_AS(rfpi(noisy, options, Threads(1), 1), doctest::Contains("is not a checkpoint"), CoreError);
 }
 
 TEST_CASE("states from outside are learnt from") {
   RfpiOptions options = tiny();
-  const auto alone = rfpi(noisy, options, Serial{}, 1);
+  const auto alone = rfpi(noisy, options, Threads(1), 1);
   std::vector<Vec<2>> seeds;
   for (int i = 0; i < 300; ++i) seeds.emplace_back(0.001 * i, 0);
   for (const std::size_t count : {1U, 50U, 300U}) {  // 300: more than an iteration takes
-    const auto with = rfpi(noisy, options, Serial{}, 1, std::span(seeds).first(count));
+    const auto with = rfpi(noisy, options, Threads(1), 1, std::span(seeds).first(count));
     CHECK(with.history.size() == 9);
     CHECK(with.history[0].states == 100);
     CHECK(with.policy.forest() != alone.policy.forest());
   }
-  const auto paper = rfpi(noisy, tiny_paper(), Serial{}, 1, std::span(seeds).first(50));
+  const auto paper = rfpi(noisy, tiny_paper(), Threads(1), 1, std::span(seeds).first(50));
   for (std::size_t n = 1; n <= 5; ++n) CHECK(paper.history[n - 1].states == 50 + 15 * n * (n + 1) / 2);
 }
 
@@ -387,7 +387,7 @@ TEST_CASE("the wall clock ends a training, says so, and leaves a policy") {
   CHECK(result.policy.forest().leaves() > 0);
   options.max_iterations = 2;
   options.max_seconds = std::numeric_limits<double>::max();  // does not overflow
-  CHECK(rfpi(noisy, options, Serial{}, 1).stop == RfpiStop::iterations);
+  CHECK(rfpi(noisy, options, Threads(1), 1).stop == RfpiStop::iterations);
 }
 
 std::stop_token already_requested() {
@@ -398,7 +398,7 @@ std::stop_token already_requested() {
 
 TEST_CASE("a stop before there is a policy is told in words") {
   for (const RfpiOptions& options : {tiny(), tiny_paper()}) {
-    CHECK_THROWS_WITH_AS(rfpi(noisy, options, Serial{}, 1, {}, already_requested()),
+    CHECK_THROWS_WITH_AS(rfpi(noisy, options, Threads(1), 1, {}, already_requested()),
                          "rfpi: stopped before there was a first policy: give it more time", SolveError);
     CHECK_THROWS_AS(rfpi(noisy, options, Threads(2), 1, {}, already_requested()), SolveError);
   }
@@ -455,8 +455,8 @@ TEST_CASE("every bad option is refused in a sentence that names it") {
     RfpiOptions options = tiny();
     bad.make(options);
     CAPTURE(bad.name);
-    CHECK_THROWS_WITH_AS(rfpi(noisy, options, Serial{}, 1), doctest::Contains("RfpiOptions: "), SolveError);
-    CHECK_THROWS_WITH_AS(rfpi(noisy, options, Serial{}, 1), doctest::Contains(bad.name), SolveError);
+    CHECK_THROWS_WITH_AS(rfpi(noisy, options, Threads(1), 1), doctest::Contains("RfpiOptions: "), SolveError);
+    CHECK_THROWS_WITH_AS(rfpi(noisy, options, Threads(1), 1), doctest::Contains(bad.name), SolveError);
   }
 }
 

@@ -47,21 +47,6 @@ TEST_CASE("values with an edge get no trend") {
   CHECK(train_value_forest(sampled(edge, 500), options, Serial{}, 1).trend.empty());
 }
 
-TEST_CASE("a trend needs a few samples per term, and equal inputs do no harm") {
-  CHECK(QuadraticTrend<3>::fit(sampled(quadratic, 39)).empty());
-  Dataset<3, 1> flat = sampled(quadratic, 100);
-  flat.inputs.row(2).setConstant(2);
-  const auto trend = QuadraticTrend<3>::fit(flat);
-  REQUIRE_FALSE(trend.empty());
-  CHECK(std::isfinite(trend(flat.inputs.col(0).data())));
-}
-
-TEST_CASE("far away a trend stays within the values it was fitted to") {
-  const auto data = sampled(quadratic, 200);
-  const Eigen::Vector3f far(100, 0, 0);
-  CHECK(QuadraticTrend<3>::fit(data)(far.data()) == data.outputs.minCoeff());
-}
-
 TEST_CASE("the mean of what the trees say is the value, alone and in a batch") {
   const auto value = train_value_forest(sampled(quadratic, 500), options, Serial{}, 1);
   const auto inputs = sampled(quadratic, 100).inputs;

@@ -10,3 +10,7 @@
 #else
 #define SUREFOOT_INLINE inline
 #endif
+
+/// For functions that run a few times in a program and not in its loops: compiled for size instead of speed, which
+/// takes the compiler less time and memory.
+#define SUREFOOT_ONCE [[gnu::cold]] SUREFOOT_INLINE

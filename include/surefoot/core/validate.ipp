@@ -14,7 +14,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const ValidateOptions& options) {
+SUREFOOT_ONCE void check(const ValidateOptions& options) {
   if (std::min(options.runs, options.horizon) < 1) {
     throw CoreError("ValidateOptions: runs and horizon must be at least 1");
   }

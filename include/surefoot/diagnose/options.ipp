@@ -13,7 +13,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const DiagnoseOptions& options) {
+SUREFOOT_ONCE void check(const DiagnoseOptions& options) {
   const auto fail = [](const std::string& text) { throw DiagnoseError("DiagnoseOptions::" + text); };
   for (std::size_t i = 0; i < options.held_out.size(); ++i) {
     if (std::ranges::count(options.held_out, options.held_out[i]) > 1) {

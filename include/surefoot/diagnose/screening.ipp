@@ -19,7 +19,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check_recording(const SimulatorInfo& info, const Recording& recording) {
+SUREFOOT_ONCE void check_recording(const SimulatorInfo& info, const Recording& recording) {
   const auto fail = [&](const std::string& what) { throw DiagnoseError(recording.name + ": " + what); };
   if (recording.rows() < 2) fail("needs at least two rows, has " + std::to_string(recording.rows()));
   if (recording.inputs.rows() != static_cast<Eigen::Index>(info.inputs.size()) ||
@@ -52,7 +52,7 @@ SUREFOOT_INLINE void check_recording(const SimulatorInfo& info, const Recording&
   }
 }
 
-SUREFOOT_INLINE void check_readings(const SimulatorInfo& info, const std::vector<Recording>& recordings) {
+SUREFOOT_ONCE void check_readings(const SimulatorInfo& info, const std::vector<Recording>& recordings) {
   constexpr std::size_t enough = 3;  // readings for each unknown
   std::size_t unknowns = 0, readings = 0;
   for (const ParameterInfo& parameter : info.parameters) unknowns += parameter.fixed ? 0 : 1;
@@ -70,8 +70,8 @@ SUREFOOT_INLINE void check_readings(const SimulatorInfo& info, const std::vector
                       std::to_string(enough * std::max<std::size_t>(1, unknowns)));
 }
 
-SUREFOOT_INLINE std::vector<Remark> remove_outliers(const SimulatorInfo& info, Recording& recording,
-                                                    const Eigen::MatrixXd& simulated) {
+SUREFOOT_ONCE std::vector<Remark> remove_outliers(const SimulatorInfo& info, Recording& recording,
+                                                  const Eigen::MatrixXd& simulated) {
   constexpr double far = 8;  // times what 95 % of the readings do, and what the sensor resolves
   std::vector<Remark> remarks;
   for (Eigen::Index k = 0; k < recording.outputs.rows(); ++k) {
@@ -106,7 +106,7 @@ SUREFOOT_INLINE std::vector<Remark> remove_outliers(const SimulatorInfo& info, R
   return remarks;
 }
 
-SUREFOOT_INLINE std::vector<Remark> screen(const SimulatorInfo& info, const std::vector<Recording>& recordings) {
+SUREFOOT_ONCE std::vector<Remark> screen(const SimulatorInfo& info, const std::vector<Recording>& recordings) {
   std::vector<Remark> remarks;
   for (std::size_t i = 0; i < info.inputs.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);

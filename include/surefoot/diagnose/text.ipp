@@ -12,14 +12,14 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE std::string in_digits(double value) {
+SUREFOOT_ONCE std::string in_digits(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
 }
 
-SUREFOOT_INLINE std::string fill_sentence(std::string sentence, const std::string& place,
-                                          const std::vector<FittedValue>& values) {
+SUREFOOT_ONCE std::string fill_sentence(std::string sentence, const std::string& place,
+                                        const std::vector<FittedValue>& values) {
   const auto replace = [&sentence](const std::string& key, const std::string& text) {
     const std::string field = "{" + key + "}";
     for (std::size_t at = sentence.find(field); at != std::string::npos; at = sentence.find(field, at + text.size())) {
@@ -31,7 +31,7 @@ SUREFOOT_INLINE std::string fill_sentence(std::string sentence, const std::strin
   return sentence;
 }
 
-SUREFOOT_INLINE std::string in_list(const std::vector<std::string>& items) {
+SUREFOOT_ONCE std::string in_list(const std::vector<std::string>& items) {
   std::string text;
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (i > 0) text += i + 1 == items.size() ? " and " : ", ";

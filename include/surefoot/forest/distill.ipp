@@ -9,7 +9,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const DistillOptions& options) {
+SUREFOOT_ONCE void check(const DistillOptions& options) {
   auto require = [](bool good, const char* what) {
     if (!good) throw ForestError(std::string("DistillOptions: ") + what);
   };

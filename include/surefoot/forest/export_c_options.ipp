@@ -13,7 +13,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const ExportCOptions& options, int outputs) {
+SUREFOOT_ONCE void check(const ExportCOptions& options, int outputs) {
   const std::string& name = options.function;
   const auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
   if (name.empty() || !std::all_of(name.begin(), name.end(), letter) ||

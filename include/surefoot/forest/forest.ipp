@@ -10,11 +10,11 @@
 
 namespace surefoot::detail {
 
-SUREFOOT_INLINE void fail_shape(const TreesShape& trees) {
+SUREFOOT_ONCE void fail_shape(const TreesShape& trees) {
   throw ForestError("Forest: the trees have another shape: " + trees.shape());
 }
 
-SUREFOOT_INLINE void fail_room(std::size_t trees, std::size_t leaves) {
+SUREFOOT_ONCE void fail_room(std::size_t trees, std::size_t leaves) {
   throw ForestError("leaf_indices: " + std::to_string(trees) + " trees, but room for " + std::to_string(leaves) +
                     " leaves");
 }

@@ -9,7 +9,7 @@
 
 namespace surefoot::detail {
 
-SUREFOOT_INLINE void check_fit(const TreesShape& forest, bool empty, const DatasetView& samples, const char* who) {
+SUREFOOT_ONCE void check_fit(const TreesShape& forest, bool empty, const DatasetView& samples, const char* who) {
   if (empty) throw ForestError(std::string(who) + ": the forest is empty, train or load it first");
   if (samples.input_rows != forest.inputs || samples.output_rows != forest.outputs) {
     throw ForestError(std::string(who) + ": the samples have " + std::to_string(samples.input_rows) + " inputs and " +

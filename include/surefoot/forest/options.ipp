@@ -10,7 +10,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const ExtraTreesOptions& options) {
+SUREFOOT_ONCE void check(const ExtraTreesOptions& options) {
   auto require = [](bool good, const char* what) {
     if (!good) throw ForestError(std::string("ExtraTreesOptions: ") + what);
   };

@@ -15,7 +15,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const CalibrationOptions& options) {
+SUREFOOT_ONCE void check(const CalibrationOptions& options) {
   check(options.model);
   const auto positive = [](const Vec<3>& v, const char* field) {
     if (!(v.minCoeff() > 0 && all_finite(v))) {

@@ -17,7 +17,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const CompareOptions& options) {
+SUREFOOT_ONCE void check(const CompareOptions& options) {
   check(options.predictor.calibration);
   check(options.predictor.published);
   if (options.folds < 2) {

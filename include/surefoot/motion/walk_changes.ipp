@@ -28,7 +28,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const WalkChangeOptions& options) {
+SUREFOOT_ONCE void check(const WalkChangeOptions& options) {
   check(options.accuracy);
   check(options.sets);
   const std::array<std::pair<double, const char*>, 5> positive{{{options.prior, "prior"},

@@ -17,7 +17,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const WalkSequence& sequence) {
+SUREFOOT_ONCE void check(const WalkSequence& sequence) {
   const auto fail = [&](const std::string& what) { throw MotionError("sequence " + sequence.name + ": " + what); };
   if (sequence.cycles() == 0) fail("has no cycle");
   if (sequence.poses.cols() != sequence.cycles()) fail("must have one column of poses per cycle");
@@ -28,7 +28,7 @@ SUREFOOT_INLINE void check(const WalkSequence& sequence) {
   }
 }
 
-SUREFOOT_INLINE void check(std::span<const WalkSequence> sequences) {
+SUREFOOT_ONCE void check(std::span<const WalkSequence> sequences) {
   if (sequences.empty()) throw MotionError("there is no sequence to calibrate from");
   for (const WalkSequence& sequence : sequences) check(sequence);
 }
@@ -38,7 +38,7 @@ SUREFOOT_INLINE WalkSequence final_pose_only(WalkSequence sequence) {
   return sequence;
 }
 
-SUREFOOT_INLINE void check(const PoseAccuracy& accuracy) {
+SUREFOOT_ONCE void check(const PoseAccuracy& accuracy) {
   const auto demand = [](double value, const char* field) {
     if (!(value >= 0 && std::isfinite(value))) {
       throw MotionError(std::string("PoseAccuracy: ") + field + " must be a finite number from 0 on, got " +

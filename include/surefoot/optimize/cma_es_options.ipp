@@ -19,7 +19,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const CmaEsOptions& options) {
+SUREFOOT_ONCE void check(const CmaEsOptions& options) {
   const auto demand = [](bool condition, const char* sentence) {
     if (!condition) throw OptimizeError(std::string("CmaEsOptions: ") + sentence);
   };

@@ -18,7 +18,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const LeastSquaresOptions& options) {
+SUREFOOT_ONCE void check(const LeastSquaresOptions& options) {
   const auto demand = [](bool condition, const char* sentence) {
     if (!condition) throw OptimizeError(std::string("LeastSquaresOptions: ") + sentence);
   };

@@ -15,14 +15,34 @@
 
 #include "surefoot/core/problem.hpp"
 #include "surefoot/core/rng.hpp"
-#include "surefoot/forest/forest.hpp"
 #include "surefoot/solve/rfpi_options.hpp"
 
 namespace surefoot {
 
+/// The values of states that something gives, a forest for instance, by their features; refers to it.
+class ValueFunction {
+ public:
+  /// `source` has empty() and predict(rows of features, their number, where the values go), and outlives this.
+  template <class Source>
+  explicit ValueFunction(const Source& source)
+      : source_(&source), empty_(source.empty()), predict_(&predict_by<Source>) {}
+
+  bool empty() const { return empty_; }  // counts as 0 everywhere
+  void predict(const float* rows, std::size_t count, double* out) const { predict_(source_, rows, count, out); }
+
+ private:
+  template <class Source>
+  static void predict_by(const void* source, const float* rows, std::size_t count, double* out) {
+    static_cast<const Source*>(source)->predict(rows, count, out);
+  }
+
+  const void* source_;
+  bool empty_;
+  void (*predict_)(const void* source, const float* rows, std::size_t count, double* out);
+};
+
 /// Looks ahead from one state after the other; holds its working memory, so use one per thread.
-/// An empty value forest counts as V = 0.
-template <Problem P, class ValueForest>
+template <Problem P>
 class Lookahead {
  public:
   using State = typename P::State;
@@ -33,7 +53,9 @@ class Lookahead {
     double value = 0;  // mean of their Q
   };
 
-  Lookahead(const P& problem, const ValueForest& value, double discount, const LookaheadOptions& options)
+  /// `value`: see ValueFunction.
+  template <class Value>
+  Lookahead(const P& problem, const Value& value, double discount, const LookaheadOptions& options)
       : problem_(problem), value_(value), discount_(discount), options_(options), box_(problem.action_box()) {}
 
   /// `incumbent`: an action that is probably good, always tried; may be null.
@@ -196,7 +218,7 @@ class Lookahead {
   }
 
   const P& problem_;
-  const ValueForest& value_;
+  ValueFunction value_;
   double discount_;
   const LookaheadOptions& options_;
   Box<P::action_dim> box_;

@@ -10,7 +10,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const PolicySearchOptions& options, Eigen::Index population) {
+SUREFOOT_ONCE void check(const PolicySearchOptions& options, Eigen::Index population) {
   const auto demand = [](bool condition, const std::string& sentence) {
     if (!condition) throw SolveError("PolicySearchOptions: " + sentence);
   };

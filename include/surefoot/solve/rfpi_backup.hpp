@@ -51,18 +51,18 @@ std::vector<typename P::State> choose_states(const P& problem, const RfpiOptions
   Rng choice = rng.stream(0);
   if (before.iteration == 0) states = random_subset(std::vector(seed_states.begin(), seed_states.end()), count, choice);
   const auto wanted = static_cast<std::size_t>(options.visited_share * static_cast<double>(count));
-  const auto visit = [&](auto acting, double exploration) {
+  const auto visit = [&](const ActOnBatch<P>& acting, double exploration) {
     const std::size_t runs = wanted / static_cast<std::size_t>(options.horizon) + 1;
     return visited_states(problem, acting, runs, options.horizon, exploration, executor, rng.stream(1), stop);
   };
   if (!initial) {
     const ForestPolicy<P> policy(problem, before.policy, options.agreement);
-    states = visit([&](auto some) { return policy.act(some); }, options.exploration);
+    states = visit([&](std::span<const typename P::State> some) { return policy.act(some); }, options.exploration);
     work.steps += states.size();
     work.lookups += states.size() * before.policy.trees();
   } else {
     // Every action is random, held for some steps.
-    const auto visited = visit([&](auto some) { return std::vector<typename P::Action>(some.size()); }, 1.0);
+    const auto visited = visit([](auto some) { return std::vector<typename P::Action>(some.size()); }, 1.0);
     work.steps += visited.size();
     const auto some = random_subset(visited, std::min(wanted, count - std::min(count, states.size())), choice);
     states.insert(states.end(), some.begin(), some.end());
@@ -256,8 +256,7 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& given, const
         const auto values = std::span(samples.values).subspan(begin, size);
         const Rng noise = rng.stream(1, job);
         const auto incumbents = initial ? std::vector<typename P::Action>() : policy.act(states);
-        Lookahead<P, typename RfpiState<P>::LinearValue> look(problem, before.value, options.discount,
-                                                              options.lookahead);
+        Lookahead<P> look(problem, before.value, options.discount, options.lookahead);
         for (std::size_t i = 0; i < size; ++i) {
           const auto found = look(states[i], initial ? nullptr : &incumbents[i], noise.stream(i));
           actions[i] = found.action;

@@ -10,7 +10,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const LookaheadOptions& l) {
+SUREFOOT_ONCE void check(const LookaheadOptions& l) {
   auto require = [](bool good, const char* what) {
     if (!good) throw SolveError(std::string("RfpiOptions: ") + what);
   };
@@ -23,7 +23,7 @@ SUREFOOT_INLINE void check(const LookaheadOptions& l) {
           "lookahead.softness, lookahead.step and lookahead.radius must not be negative");
 }
 
-SUREFOOT_INLINE void check(const RfpiOptions& o) {
+SUREFOOT_ONCE void check(const RfpiOptions& o) {
   auto require = [](bool good, const char* what) {
     if (!good) throw SolveError(std::string("RfpiOptions: ") + what);
   };

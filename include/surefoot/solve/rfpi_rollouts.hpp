@@ -99,7 +99,7 @@ RfpiState<P> improve_by_rollouts(const P& problem, const RfpiOptions& options, c
       fit_value<ConstantLeaf>(problem, samples, {}, options.value_forest, executor, rng.stream(4), after.work, stop);
 
   const auto action_of = [&](std::size_t i) {
-    Lookahead<P, Forest<feature_dim<P>(), 1, ConstantLeaf>> look(problem, value, options.discount, options.lookahead);
+    Lookahead<P> look(problem, value, options.discount, options.lookahead);
     samples.actions[i] = look(samples.states[i], nullptr, rng.stream(5, i)).action;
     done[i].steps = look.transitions();
     done[i].lookups = done[i].steps * value.trees();

@@ -134,10 +134,10 @@ ValueForest<Inputs> read_value(ByteReader& in, bool has_trend) {
   ValueForest<Inputs> value;
   std::vector<double> numbers;
   if (has_trend) numbers = in.list<double>();
-  if (!numbers.empty() && numbers.size() != QuadraticTrend<Inputs>::count_of_parameters) {
+  if (!numbers.empty() && numbers.size() != QuadraticTrend::count_of_parameters(Inputs)) {
     in.fail("is damaged: its trend has " + std::to_string(numbers.size()) + " numbers");
   }
-  value.trend.set_parameters(std::move(numbers));
+  value.trend = QuadraticTrend(std::move(numbers), Inputs);
   value.forest = read_optional<Forest<Inputs, 1, LinearLeaf>>(in);
   return value;
 }

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <stop_token>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -16,14 +18,18 @@
 
 namespace surefoot {
 
+/// Actions for many states: a policy's, or random ones.
+template <Problem P>
+using ActOnBatch = std::function<std::vector<typename P::Action>(std::span<const typename P::State>)>;
+
 /// Starts `runs` runs at the problem's initial states and returns every state in which an action was taken, run by run.
 /// With chance `exploration` per step a random action is held for 1 to 3 steps instead of the policy's.
 /// `act` maps the states of up to 32 runs to their actions, for different runs from several threads at once.
 /// Run i draws from rng.stream(i). Fewer runs come back if `stop` is requested.
-template <Problem P, class Acting, Executor E>
-std::vector<typename P::State> visited_states(const P& problem, Acting act, std::size_t runs, int horizon,
-                                              double exploration, const E& executor, const Rng& rng,
-                                              std::stop_token stop = {}) {
+template <Problem P, Executor E>
+std::vector<typename P::State> visited_states(const P& problem, const std::type_identity_t<ActOnBatch<P>>& act,
+                                              std::size_t runs, int horizon, double exploration, const E& executor,
+                                              const Rng& rng, std::stop_token stop = {}) {
   using State = typename P::State;
   using Action = typename P::Action;
   constexpr std::size_t runs_per_job = 32;  // in lockstep, so that a forest sees a batch

@@ -43,7 +43,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE std::vector<Effect> velocity_effects() {
+SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
   return {effects::viscous_friction(),
           effects::coulomb_friction(),
           effects::coulomb_friction_presliding(),
@@ -71,13 +71,13 @@ SUREFOOT_INLINE std::vector<Effect> velocity_effects() {
           effects::end_stop_lower()};
 }
 
-SUREFOOT_INLINE std::vector<Effect> input_effects() {
+SUREFOOT_ONCE std::vector<Effect> input_effects() {
   return {effects::input_gain(),  effects::input_asymmetry(), effects::dead_zone(),          effects::dead_zone_step(),
           effects::saturation(),  effects::saturation_soft(), effects::saturation_gradual(), effects::rate_limit(),
           effects::input_delay(), effects::first_order_lag(), effects::supply_sag()};
 }
 
-SUREFOOT_INLINE std::vector<Effect> planar_effects() {
+SUREFOOT_ONCE std::vector<Effect> planar_effects() {
   return {effects::slip_saturation_forward(),
           effects::slip_saturation_lateral(),
           effects::slip_saturation_turn(),
@@ -92,7 +92,7 @@ SUREFOOT_INLINE std::vector<Effect> planar_effects() {
           effects::cross_coupling_turn_to_lateral()};
 }
 
-SUREFOOT_INLINE std::vector<Effect> all_effects() {
+SUREFOOT_ONCE std::vector<Effect> all_effects() {
   std::vector<Effect> all;
   for (const auto& place : {planar_effects(), velocity_effects(), state_effects(), input_effects(), sensor_effects(),
                             parameter_effects()}) {
@@ -101,18 +101,18 @@ SUREFOOT_INLINE std::vector<Effect> all_effects() {
   return all;
 }
 
-SUREFOOT_INLINE std::vector<Effect> state_effects() {
+SUREFOOT_ONCE std::vector<Effect> state_effects() {
   return {effects::leak(), effects::leak_hole(), effects::constant_rate(), effects::overflow(),
           effects::overflow_spill()};
 }
 
-SUREFOOT_INLINE std::vector<Effect> sensor_effects() {
+SUREFOOT_ONCE std::vector<Effect> sensor_effects() {
   return {effects::sensor_bias(),        effects::sensor_scale(),          effects::sensor_delay(),
           effects::sensor_drift(),       effects::sensor_drift_settling(), effects::quantization(),
           effects::quantization_floor(), effects::backlash_sensor()};
 }
 
-SUREFOOT_INLINE std::vector<Effect> parameter_effects() {
+SUREFOOT_ONCE std::vector<Effect> parameter_effects() {
   return {effects::parameter_drift(), effects::parameter_drift_settling()};
 }
 

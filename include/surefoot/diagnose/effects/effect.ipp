@@ -44,7 +44,7 @@ SUREFOOT_INLINE const char* in_words(Place place) {
   return "parameter";
 }
 
-SUREFOOT_INLINE void check_functions(const Effect& effect) {
+SUREFOOT_ONCE void check_functions(const Effect& effect) {
   const EffectFunction functions[] = {
       {"force", bool(effect.force), {Place::velocity, Place::state}},
       {"position_rate", bool(effect.position_rate), {Place::velocity}},
@@ -73,7 +73,7 @@ SUREFOOT_INLINE void check_functions(const Effect& effect) {
   }
 }
 
-SUREFOOT_INLINE void check_parameter(const Effect& effect, const EffectParameter& parameter) {
+SUREFOOT_ONCE void check_parameter(const Effect& effect, const EffectParameter& parameter) {
   if (parameter.name.empty()) refuse(effect, "a parameter has no name");
   const auto same = [&](const EffectParameter& other) { return other.name == parameter.name; };
   const std::string name = "parameter '" + parameter.name + "'";
@@ -91,7 +91,7 @@ SUREFOOT_INLINE void check_parameter(const Effect& effect, const EffectParameter
   }
 }
 
-SUREFOOT_INLINE void check_hidden_states(const Effect& effect) {
+SUREFOOT_ONCE void check_hidden_states(const Effect& effect) {
   constexpr int most = 24;
   if (effect.hidden_states < 0 || effect.hidden_states > most) refuse(effect, "hidden_states must be 0 to 24");
   const std::pair<const char*, bool> functions[] = {
@@ -108,7 +108,7 @@ SUREFOOT_INLINE void check_hidden_states(const Effect& effect) {
 
 }  // namespace detail
 
-SUREFOOT_INLINE void check(const Effect& effect) {
+SUREFOOT_ONCE void check(const Effect& effect) {
   if (effect.name.empty()) throw DiagnoseError("an effect has no name");
   detail::check_functions(effect);
   for (const EffectParameter& parameter : effect.parameters) detail::check_parameter(effect, parameter);

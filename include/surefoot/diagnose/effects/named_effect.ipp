@@ -26,7 +26,7 @@ int index_in(const List& list, const std::string& name) {
 }
 
 /// Where an effect of this place attaches if it is told this name, or -1.
-SUREFOOT_INLINE int place_of(const SimulatorInfo& info, Place place, const std::string& name) {
+SUREFOOT_ONCE int place_of(const SimulatorInfo& info, Place place, const std::string& name) {
   switch (place) {
     case Place::velocity:
     case Place::state:
@@ -58,8 +58,8 @@ SUREFOOT_INLINE int place_of(const SimulatorInfo& info, Place place, const std::
 
 }  // namespace detail
 
-SUREFOOT_INLINE AttachedEffect attach(const SimulatorInfo& info, const NamedEffect& named,
-                                      const std::vector<Effect>& effects) {
+SUREFOOT_ONCE AttachedEffect attach(const SimulatorInfo& info, const NamedEffect& named,
+                                    const std::vector<Effect>& effects) {
   bool known = false;
   for (const Effect& effect : effects) {
     if (effect.name != named.name || effect.form != named.form) continue;

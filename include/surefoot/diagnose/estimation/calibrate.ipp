@@ -22,8 +22,8 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE std::vector<Hypothesis> scattered(const BoundSimulator& bound, const Hypothesis& around,
-                                                  std::size_t points, std::uint64_t seed) {
+SUREFOOT_ONCE std::vector<Hypothesis> scattered(const BoundSimulator& bound, const Hypothesis& around,
+                                                std::size_t points, std::uint64_t seed) {
   std::vector<Variable> variables = variables_of(bound, around, {});
   std::erase_if(variables, [](const Variable& one) { return one.kind != Variable::Kind::parameter; });
   std::vector<Hypothesis> starts;
@@ -43,9 +43,9 @@ SUREFOOT_INLINE std::vector<Hypothesis> scattered(const BoundSimulator& bound, c
   return starts;
 }
 
-SUREFOOT_INLINE Fit scattered_fit(const BoundSimulator& bound, Fit best, const Hypothesis& around,
-                                  const FitProblem& problem, std::size_t points, std::uint64_t seed,
-                                  const Parallel& parallel) {
+SUREFOOT_ONCE Fit scattered_fit(const BoundSimulator& bound, Fit best, const Hypothesis& around,
+                                const FitProblem& problem, std::size_t points, std::uint64_t seed,
+                                const Parallel& parallel) {
   constexpr std::size_t fitted = 2;  // of the points, those with the lowest losses
   const std::vector<Hypothesis> starts = scattered(bound, around, points, seed);
   std::vector<double> losses(starts.size());
@@ -66,8 +66,8 @@ SUREFOOT_INLINE Fit scattered_fit(const BoundSimulator& bound, Fit best, const H
   return best;
 }
 
-SUREFOOT_INLINE std::vector<double> recording_scales(const BoundSimulator& bound, const FitProblem& problem,
-                                                     const std::vector<SimulatedRun>& trajectories) {
+SUREFOOT_ONCE std::vector<double> recording_scales(const BoundSimulator& bound, const FitProblem& problem,
+                                                   const std::vector<SimulatedRun>& trajectories) {
   constexpr double least = 1e-3, most = 1e3;  // of a scale's square: no recording alone decides a fit
   std::vector<double> scales(bound.recordings.size(), 1.0);
   Weighting plain = problem.weighting;
@@ -81,8 +81,8 @@ SUREFOOT_INLINE std::vector<double> recording_scales(const BoundSimulator& bound
   return scales;
 }
 
-SUREFOOT_INLINE Fit calibrate(const BoundSimulator& bound, const Hypothesis& nominal, FitProblem& problem,
-                              std::size_t points, std::uint64_t seed, const Parallel& parallel) {
+SUREFOOT_ONCE Fit calibrate(const BoundSimulator& bound, const Hypothesis& nominal, FitProblem& problem,
+                            std::size_t points, std::uint64_t seed, const Parallel& parallel) {
   constexpr double least_sigma = 1e-6;  // of the output's standard deviation, where no noise is stated
   constexpr int search_iterations = 30, reweightings = 2;
   problem.weighting.sigma = output_deviations(bound, problem.recordings);

@@ -14,9 +14,9 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE Integration choose_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                               const Eigen::VectorXd& residual_size, const Integration& now,
-                                               std::size_t recording) {
+SUREFOOT_ONCE Integration choose_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                             const Eigen::VectorXd& residual_size, const Integration& now,
+                                             std::size_t recording) {
   constexpr double error_share = 0.05;   // of the residuals that an integration may add: lost in them
   constexpr double reference_steps = 8;  // per row, of what is held to be exact
   // Steps are a little longer than one, and a little shorter than a half or a quarter of a row, so that rounding does
@@ -53,9 +53,9 @@ SUREFOOT_INLINE Integration choose_integration(const BoundSimulator& bound, cons
   return fine;
 }
 
-SUREFOOT_INLINE std::optional<Integration> finer_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                                             const Eigen::VectorXd& residual_size,
-                                                             const Integration& now, std::size_t recording) {
+SUREFOOT_ONCE std::optional<Integration> finer_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                           const Eigen::VectorXd& residual_size,
+                                                           const Integration& now, std::size_t recording) {
   const Integration chosen = choose_integration(bound, hypothesis, residual_size, now, recording);
   if (chosen.order <= now.order && chosen.step >= now.step) return std::nullopt;
   return chosen;

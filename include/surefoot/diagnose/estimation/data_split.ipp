@@ -15,9 +15,9 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE RecordingSplit split_recordings(const std::vector<Recording>& recordings,
-                                                const std::vector<std::string>& held_out, double share,
-                                                std::size_t folds, std::uint64_t seed) {
+SUREFOOT_ONCE RecordingSplit split_recordings(const std::vector<Recording>& recordings,
+                                              const std::vector<std::string>& held_out, double share,
+                                              std::size_t folds, std::uint64_t seed) {
   std::vector<std::size_t> order(recordings.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   Rng rng(seed, 0x5370u);

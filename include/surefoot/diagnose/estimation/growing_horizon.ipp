@@ -11,7 +11,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE BoundSimulator beginnings(const BoundSimulator& bound, double share) {
+SUREFOOT_ONCE BoundSimulator beginnings(const BoundSimulator& bound, double share) {
   BoundSimulator result = bound;
   for (Recording& recording : result.recordings) {
     const Eigen::Index all = recording.rows(), least = std::min<Eigen::Index>(all, 2);
@@ -21,8 +21,8 @@ SUREFOOT_INLINE BoundSimulator beginnings(const BoundSimulator& bound, double sh
   return result;
 }
 
-SUREFOOT_INLINE Fit grown_fit(const BoundSimulator& bound, Fit best, const Hypothesis& start, const FitProblem& problem,
-                              const Parallel& parallel) {
+SUREFOOT_ONCE Fit grown_fit(const BoundSimulator& bound, Fit best, const Hypothesis& start, const FitProblem& problem,
+                            const Parallel& parallel) {
   Fit grown{.hypothesis = start};
   for (const double share : {0.0625, 0.125, 0.25, 0.5}) {
     if (problem.stopped()) return best;

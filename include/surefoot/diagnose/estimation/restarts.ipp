@@ -15,8 +15,8 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE std::vector<Hypothesis> moved_around(const BoundSimulator& bound, const Hypothesis& fitted,
-                                                     std::size_t points, std::uint64_t seed) {
+SUREFOOT_ONCE std::vector<Hypothesis> moved_around(const BoundSimulator& bound, const Hypothesis& fitted,
+                                                   std::size_t points, std::uint64_t seed) {
   constexpr double most_factor = 2, most_share = 0.5;  // farther off, other starts of the search are nearer
   std::vector<Variable> variables = variables_of(bound, fitted, {});
   std::erase_if(variables, [](const Variable& one) { return one.kind == Variable::Kind::initial; });
@@ -36,9 +36,9 @@ SUREFOOT_INLINE std::vector<Hypothesis> moved_around(const BoundSimulator& bound
   return places;
 }
 
-SUREFOOT_INLINE Fit restarted_fit(const BoundSimulator& bound, const Fit& fitted, const FitProblem& problem,
-                                  const FitProblem& quick, std::size_t points, std::uint64_t seed,
-                                  const Parallel& parallel) {
+SUREFOOT_ONCE Fit restarted_fit(const BoundSimulator& bound, const Fit& fitted, const FitProblem& problem,
+                                const FitProblem& quick, std::size_t points, std::uint64_t seed,
+                                const Parallel& parallel) {
   const std::vector<Hypothesis> places = moved_around(bound, fitted.hypothesis, points, seed);
   std::vector<Fit> fits(places.size());
   parallel(places.size(), [&](std::size_t k) {

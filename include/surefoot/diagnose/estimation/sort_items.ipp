@@ -12,8 +12,8 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE std::vector<std::size_t> sorted_places(std::size_t count,
-                                                       const std::function<bool(std::size_t, std::size_t)>& less) {
+SUREFOOT_ONCE std::vector<std::size_t> sorted_places(std::size_t count,
+                                                     const std::function<bool(std::size_t, std::size_t)>& less) {
   std::vector<std::size_t> places(count);
   std::iota(places.begin(), places.end(), std::size_t{0});
   std::sort(places.begin(), places.end(), [&less](std::size_t a, std::size_t b) { return less(a, b); });

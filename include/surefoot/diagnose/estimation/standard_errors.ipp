@@ -14,8 +14,8 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE StandardErrors standard_errors(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                               const FitProblem& problem, const Parallel& parallel) {
+SUREFOOT_ONCE StandardErrors standard_errors(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                             const FitProblem& problem, const Parallel& parallel) {
   constexpr Eigen::Index block_rows = 50, most_blocks = 8;  // of a recording: longer than residuals stay correlated
   using surefoot::detail::product, surefoot::detail::scaled, surefoot::detail::transposed_product;
   constexpr double ridge = 1e-9;  // on the diagonal of ones: what the data do not determine stays finite

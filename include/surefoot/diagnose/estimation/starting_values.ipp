@@ -14,7 +14,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE double peak_at(const BoundSimulator& bound, const AttachedEffect& attached) {
+SUREFOOT_ONCE double peak_at(const BoundSimulator& bound, const AttachedEffect& attached) {
   const auto at = static_cast<std::size_t>(attached.at);
   const std::size_t inputs = bound.info.inputs.size();
   double peak = 1;
@@ -29,7 +29,7 @@ SUREFOOT_INLINE double peak_at(const BoundSimulator& bound, const AttachedEffect
   return peak > 0 ? peak : 1;
 }
 
-SUREFOOT_INLINE int output_watching(const BoundSimulator& bound, const AttachedEffect& attached) {
+SUREFOOT_ONCE int output_watching(const BoundSimulator& bound, const AttachedEffect& attached) {
   const auto at = static_cast<std::size_t>(attached.at);
   switch (attached.effect->place) {
     case Place::output:
@@ -45,8 +45,8 @@ SUREFOOT_INLINE int output_watching(const BoundSimulator& bound, const AttachedE
   }
 }
 
-SUREFOOT_INLINE std::vector<Observed> observe(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                              const std::vector<SimulatedRun>& runs) {
+SUREFOOT_ONCE std::vector<Observed> observe(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                            const std::vector<SimulatedRun>& runs) {
   std::vector<Observed> result(bound.info.outputs.size());
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     const Eigen::MatrixXd& outputs = bound.recordings[recordings[i]].outputs;
@@ -61,9 +61,9 @@ SUREFOOT_INLINE std::vector<Observed> observe(const BoundSimulator& bound, const
   return result;
 }
 
-SUREFOOT_INLINE std::vector<Eigen::VectorXd> starting_values(const BoundSimulator& bound,
-                                                             const AttachedEffect& attached,
-                                                             const std::vector<Observed>& observed) {
+SUREFOOT_ONCE std::vector<Eigen::VectorXd> starting_values(const BoundSimulator& bound,
+                                                           const AttachedEffect& attached,
+                                                           const std::vector<Observed>& observed) {
   const auto& parameters = attached.effect->parameters;
   std::vector<Eigen::VectorXd> result{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters.size()))};
   for (std::size_t k = 0; k < parameters.size(); ++k) {

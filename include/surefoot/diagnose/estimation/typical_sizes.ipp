@@ -14,8 +14,8 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE Eigen::VectorXd output_deviations(const BoundSimulator& bound,
-                                                  const std::vector<std::size_t>& recordings) {
+SUREFOOT_ONCE Eigen::VectorXd output_deviations(const BoundSimulator& bound,
+                                                const std::vector<std::size_t>& recordings) {
   constexpr double rounding = 1e-12;  // of the mean: a deviation below it is none
   Eigen::VectorXd deviations(static_cast<Eigen::Index>(bound.info.outputs.size()));
   for (Eigen::Index k = 0; k < deviations.size(); ++k) {
@@ -35,7 +35,7 @@ SUREFOOT_INLINE Eigen::VectorXd output_deviations(const BoundSimulator& bound,
   return deviations;
 }
 
-SUREFOOT_INLINE Eigen::MatrixXd row_rates(const Eigen::VectorXd& time, const Eigen::MatrixXd& states) {
+SUREFOOT_ONCE Eigen::MatrixXd row_rates(const Eigen::VectorXd& time, const Eigen::MatrixXd& states) {
   const Eigen::Index intervals = std::max<Eigen::Index>(0, states.cols() - 1);
   Eigen::MatrixXd rates(states.rows(), intervals);
   for (Eigen::Index j = 0; j < intervals; ++j) {
@@ -46,7 +46,7 @@ SUREFOOT_INLINE Eigen::MatrixXd row_rates(const Eigen::VectorXd& time, const Eig
 }
 
 /// Raises each peak to the largest absolute value of its row.
-SUREFOOT_INLINE void raise_peaks(std::vector<double>& peaks, const Eigen::MatrixXd& values) {
+SUREFOOT_ONCE void raise_peaks(std::vector<double>& peaks, const Eigen::MatrixXd& values) {
   for (std::size_t k = 0; k < peaks.size(); ++k) {
     for (const double value : surefoot::detail::row_of(values, static_cast<Eigen::Index>(k))) {
       if (std::isfinite(value)) peaks[k] = std::max(peaks[k], std::abs(value));
@@ -55,8 +55,8 @@ SUREFOOT_INLINE void raise_peaks(std::vector<double>& peaks, const Eigen::Matrix
 }
 
 /// Weighted sums of squares by row; about the mean of the row, or about zero.
-SUREFOOT_INLINE void add_squares(std::vector<double>& sums, const Eigen::MatrixXd& values, double weight,
-                                 bool about_mean) {
+SUREFOOT_ONCE void add_squares(std::vector<double>& sums, const Eigen::MatrixXd& values, double weight,
+                               bool about_mean) {
   for (std::size_t k = 0; k < sums.size(); ++k) {
     const Eigen::VectorXd line = surefoot::detail::row_of(values, static_cast<Eigen::Index>(k));
     const double size = about_mean ? standard_deviation(line) : root_mean_square(line);
@@ -65,7 +65,7 @@ SUREFOOT_INLINE void add_squares(std::vector<double>& sums, const Eigen::MatrixX
 }
 
 /// Roots of mean squares; 1 for what is always 0.
-SUREFOOT_INLINE void set_sizes(std::vector<double>& sizes, const std::vector<double>& sums, double weight) {
+SUREFOOT_ONCE void set_sizes(std::vector<double>& sizes, const std::vector<double>& sums, double weight) {
   constexpr double nothing = 1e-9;  // in units of the model: below it, it does not move
   for (std::size_t k = 0; k < sums.size(); ++k) {
     const double size = weight > 0 ? std::sqrt(sums[k] / weight) : 1;
@@ -75,9 +75,9 @@ SUREFOOT_INLINE void set_sizes(std::vector<double>& sizes, const std::vector<dou
 
 /// Squares of the forces along a trajectory, by state: of the whole, or of the largest part of it that goes where one of
 /// the states stays at its mean. In a stiff machine large forces all but cancel, and the whole tells nothing of them.
-SUREFOOT_INLINE std::vector<double> force_squares(const BoundSimulator& bound, std::size_t recording,
-                                                  const Eigen::VectorXd& parameters, const Eigen::MatrixXd& states,
-                                                  const Eigen::MatrixXd& efforts) {
+SUREFOOT_ONCE std::vector<double> force_squares(const BoundSimulator& bound, std::size_t recording,
+                                                const Eigen::VectorXd& parameters, const Eigen::MatrixXd& states,
+                                                const Eigen::MatrixXd& efforts) {
   std::vector<double> largest(static_cast<std::size_t>(states.rows()));
   const bool map = bound.info.kind == SimulatorKind::map;
   add_squares(largest, efforts, 1, map);
@@ -97,9 +97,9 @@ SUREFOOT_INLINE std::vector<double> force_squares(const BoundSimulator& bound, s
   return largest;
 }
 
-SUREFOOT_INLINE Sizes measure_sizes(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                    const std::vector<std::size_t>& recordings,
-                                    const std::vector<SimulatedRun>& trajectories) {
+SUREFOOT_ONCE Sizes measure_sizes(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                  const std::vector<std::size_t>& recordings,
+                                  const std::vector<SimulatedRun>& trajectories) {
   constexpr double time_rows = 200;  // rows of a typical time: what effects do within it, and over it, can be seen
   Sizes sizes = bound.sizes;
   const auto n = bound.info.states.size(), m = bound.info.inputs.size(), s = bound.info.signals.size();

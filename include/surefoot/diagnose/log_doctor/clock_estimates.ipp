@@ -16,8 +16,8 @@
 namespace surefoot::diagnosis {
 
 /// Adds the squared residuals of a simulation that is read at other times to column `a` of the profile.
-SUREFOOT_INLINE void add_squares(const LogFit& fit, const Recording& recording, const SimulatedRun& run,
-                                 const Eigen::VectorXd& times, Eigen::Index a, ClockProfile& profile) {
+SUREFOOT_ONCE void add_squares(const LogFit& fit, const Recording& recording, const SimulatedRun& run,
+                               const Eigen::VectorXd& times, Eigen::Index a, ClockProfile& profile) {
   const Eigen::Index rows = recording.rows(), blocks = profile.squares.rows();
   Eigen::Index i = 0;
   for (Eigen::Index row = 0; row < rows; ++row) {
@@ -36,8 +36,8 @@ SUREFOOT_INLINE void add_squares(const LogFit& fit, const Recording& recording, 
   }
 }
 
-SUREFOOT_INLINE ClockProfile clock_profile(const LogFit& fit, std::size_t r, LogFaultKind kind,
-                                           const LogDoctorCriteria& criteria) {
+SUREFOOT_ONCE ClockProfile clock_profile(const LogFit& fit, std::size_t r, LogFaultKind kind,
+                                         const LogDoctorCriteria& criteria) {
   const Recording& recording = fit.bound.recordings[r];
   const bool offset = kind == LogFaultKind::offset, simulated_again = kind == LogFaultKind::time_skew;
   const double count = offset            ? 2 * criteria.most_shift + 1
@@ -67,7 +67,7 @@ SUREFOOT_INLINE ClockProfile clock_profile(const LogFit& fit, std::size_t r, Log
 }
 
 /// Mean square errors by amount, without one block (or none: -1).
-SUREFOOT_INLINE std::vector<double> errors_without(const ClockProfile& profile, Eigen::Index left_out) {
+SUREFOOT_ONCE std::vector<double> errors_without(const ClockProfile& profile, Eigen::Index left_out) {
   std::vector<double> errors;
   for (Eigen::Index a = 0; a < profile.squares.cols(); ++a) {
     double sum = 0, count = 0;
@@ -82,8 +82,8 @@ SUREFOOT_INLINE std::vector<double> errors_without(const ClockProfile& profile, 
 }
 
 /// Place of the least error, by the parabola through it and its neighbours; NaN at the edge of the range.
-SUREFOOT_INLINE double least_error_at(const std::vector<double>& amounts, const std::vector<double>& errors,
-                                      double& least) {
+SUREFOOT_ONCE double least_error_at(const std::vector<double>& amounts, const std::vector<double>& errors,
+                                    double& least) {
   const auto at = static_cast<std::size_t>(std::ranges::min_element(errors) - errors.begin());
   least = errors[at];
   if (at == 0 || at + 1 == errors.size()) return std::numeric_limits<double>::quiet_NaN();
@@ -95,7 +95,7 @@ SUREFOOT_INLINE double least_error_at(const std::vector<double>& amounts, const 
   return amounts[at] + share * step;
 }
 
-SUREFOOT_INLINE ClockEstimate clock_estimate(const ClockProfile& profile) {
+SUREFOOT_ONCE ClockEstimate clock_estimate(const ClockProfile& profile) {
   ClockEstimate estimate;
   double ignored = 0;
   estimate.value = least_error_at(profile.amounts, errors_without(profile, -1), estimate.error);
@@ -116,7 +116,7 @@ SUREFOOT_INLINE ClockEstimate clock_estimate(const ClockProfile& profile) {
   return estimate;
 }
 
-SUREFOOT_INLINE double error_at(const ClockProfile& profile, double amount) {
+SUREFOOT_ONCE double error_at(const ClockProfile& profile, double amount) {
   const std::vector<double> errors = errors_without(profile, -1);
   const double step = profile.amounts[1] - profile.amounts[0];
   const double place = std::clamp((amount - profile.amounts[0]) / step, 0.0, static_cast<double>(errors.size() - 1));

@@ -16,7 +16,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE bool has_clocks(const LogFit& fit, const LogDoctorCriteria& criteria) {
+SUREFOOT_ONCE bool has_clocks(const LogFit& fit, const LogDoctorCriteria& criteria) {
   constexpr std::size_t fewest = 3;  // recordings: one that differs, and two that agree
   if (fit.bound.info.kind != SimulatorKind::ode || fit.bound.recordings.size() < fewest) return false;
   for (const Recording& recording : fit.bound.recordings) {
@@ -26,7 +26,7 @@ SUREFOOT_INLINE bool has_clocks(const LogFit& fit, const LogDoctorCriteria& crit
 }
 
 /// Variances of estimates, each pooled with the median one: eight blocks alone tell a variance badly.
-SUREFOOT_INLINE std::vector<double> pooled_variances(const std::vector<ClockEstimate>& estimates) {
+SUREFOOT_ONCE std::vector<double> pooled_variances(const std::vector<ClockEstimate>& estimates) {
   std::vector<double> variances;
   for (const ClockEstimate& one : estimates) variances.push_back(one.variance);
   const double middle = median_of(variances);
@@ -34,8 +34,8 @@ SUREFOOT_INLINE std::vector<double> pooled_variances(const std::vector<ClockEsti
   return variances;
 }
 
-SUREFOOT_INLINE double scatter_by_chance(const std::vector<ClockEstimate>& estimates,
-                                         const LogDoctorCriteria& criteria) {
+SUREFOOT_ONCE double scatter_by_chance(const std::vector<ClockEstimate>& estimates,
+                                       const LogDoctorCriteria& criteria) {
   const std::vector<double> variances = pooled_variances(estimates);
   double weights = 0, mean = 0, sum = 0;
   for (std::size_t r = 0; r < estimates.size(); ++r) {
@@ -51,8 +51,8 @@ SUREFOOT_INLINE double scatter_by_chance(const std::vector<ClockEstimate>& estim
   return f_tail(sum / (count - 1), count - 1, count * static_cast<double>(criteria.blocks - 1));
 }
 
-SUREFOOT_INLINE double outlier_by_chance(const std::vector<ClockEstimate>& estimates, std::size_t r,
-                                         const LogDoctorCriteria& criteria) {
+SUREFOOT_ONCE double outlier_by_chance(const std::vector<ClockEstimate>& estimates, std::size_t r,
+                                       const LogDoctorCriteria& criteria) {
   const std::vector<double> variances = pooled_variances(estimates);
   double mean = 0, squares = 0, within = 0, count = 0;
   for (std::size_t o = 0; o < estimates.size(); ++o) {
@@ -75,7 +75,7 @@ SUREFOOT_INLINE double outlier_by_chance(const std::vector<ClockEstimate>& estim
   return t_tail((estimates[r].value - mean) / std::sqrt(variance), degrees);
 }
 
-SUREFOOT_INLINE double median_value(const std::vector<ClockEstimate>& estimates) {
+SUREFOOT_ONCE double median_value(const std::vector<ClockEstimate>& estimates) {
   std::vector<double> values;
   for (const ClockEstimate& one : estimates) {
     if (one.usable) values.push_back(one.value);
@@ -89,7 +89,7 @@ struct Clocks {
   std::vector<ClockEstimate> estimates;
 };
 
-SUREFOOT_INLINE Clocks measure_clocks(const LogFit& fit, LogFaultKind kind, const LogDoctorInputs& inputs) {
+SUREFOOT_ONCE Clocks measure_clocks(const LogFit& fit, LogFaultKind kind, const LogDoctorInputs& inputs) {
   const std::size_t count = fit.bound.recordings.size();
   Clocks clocks{std::vector<ClockProfile>(count), std::vector<ClockEstimate>(count)};
   inputs.parallel(count, [&](std::size_t r) {
@@ -106,8 +106,8 @@ struct SingleClock {
   double amount = 0, error = std::numeric_limits<double>::infinity();
 };
 
-SUREFOOT_INLINE void compare_single(const Clocks& clocks, LogFaultKind kind, const LogDoctorCriteria& criteria,
-                                    std::optional<SingleClock>& best) {
+SUREFOOT_ONCE void compare_single(const Clocks& clocks, LogFaultKind kind, const LogDoctorCriteria& criteria,
+                                  std::optional<SingleClock>& best) {
   constexpr double kinds = 3;  // of clocks, each of which is tested
   const double common = median_value(clocks.estimates);
   for (std::size_t r = 0; r < clocks.estimates.size(); ++r) {
@@ -122,8 +122,8 @@ SUREFOOT_INLINE void compare_single(const Clocks& clocks, LogFaultKind kind, con
   }
 }
 
-SUREFOOT_INLINE std::vector<Recording> with_amounts(const LogFit& fit, LogFaultKind kind,
-                                                    const std::vector<double>& amounts) {
+SUREFOOT_ONCE std::vector<Recording> with_amounts(const LogFit& fit, LogFaultKind kind,
+                                                  const std::vector<double>& amounts) {
   std::vector<Recording> recordings = fit.bound.recordings;
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     if (amounts[r] != 0) recordings[r] = repaired(fit.bound, recordings[r], {.kind = kind, .amount = amounts[r]});
@@ -138,7 +138,7 @@ struct WithoutOffsets {
 };
 
 /// The one amount with which the errors of all recordings are least, by the mean of their logarithms.
-SUREFOOT_INLINE double common_amount(const Clocks& clocks) {
+SUREFOOT_ONCE double common_amount(const Clocks& clocks) {
   const std::vector<double>& amounts = clocks.profiles.front().amounts;
   const double rows_apart = amounts[1] - amounts[0];
   double best = 0, least = std::numeric_limits<double>::infinity();
@@ -153,8 +153,8 @@ SUREFOOT_INLINE double common_amount(const Clocks& clocks) {
 }
 
 /// Takes offsets out and calibrates in turn, until neither moves much: each recording's own, or one for all.
-SUREFOOT_INLINE WithoutOffsets take_offsets_out(const LogDoctorInputs& inputs, const LogFit& fit, WithoutOffsets start,
-                                                bool own) {
+SUREFOOT_ONCE WithoutOffsets take_offsets_out(const LogDoctorInputs& inputs, const LogFit& fit, WithoutOffsets start,
+                                              bool own) {
   constexpr int rounds = 10;        // parameters that follow a delay make it slow
   constexpr double settled = 0.05;  // of an interval between rows: no offset moves further
   const double interval = median_interval(fit.bound.recordings.front());
@@ -176,13 +176,13 @@ SUREFOOT_INLINE WithoutOffsets take_offsets_out(const LogDoctorInputs& inputs, c
 }
 
 /// Mean logarithm of how much the mean square errors of recordings fall.
-SUREFOOT_INLINE double mean_gain(const LogFit& before, const LogFit& after) {
+SUREFOOT_ONCE double mean_gain(const LogFit& before, const LogFit& after) {
   double sum = 0;
   for (std::size_t r = 0; r < before.error.size(); ++r) sum += std::log(before.error[r] / after.error[r]);
   return sum / static_cast<double>(before.error.size());
 }
 
-SUREFOOT_INLINE ClockFault single_fault(const SingleClock& single, std::size_t recordings) {
+SUREFOOT_ONCE ClockFault single_fault(const SingleClock& single, std::size_t recordings) {
   ClockFault fault{single.kind, std::vector<double>(recordings, 0.0)};
   fault.amounts[single.recording] = single.amount;
   return fault;
@@ -190,7 +190,7 @@ SUREFOOT_INLINE ClockFault single_fault(const SingleClock& single, std::size_t r
 
 /// Whether a recording's offset explains it better than parameters of its own would, as physics may ask for that
 /// is missing and that it alone shows: friction where motions are small.
-SUREFOOT_INLINE bool beats_own_parameters(const LogDoctorInputs& inputs, const LogFit& fit, const SingleClock& single) {
+SUREFOOT_ONCE bool beats_own_parameters(const LogDoctorInputs& inputs, const LogFit& fit, const SingleClock& single) {
   if (single.kind != LogFaultKind::offset) return true;  // such parameters are a time scale of their own
   const std::size_t r = single.recording;
   const LogFit own = fit_log(inputs, {fit.bound.recordings[r]}, fit.hypothesis.parameters);
@@ -200,8 +200,8 @@ SUREFOOT_INLINE bool beats_own_parameters(const LogDoctorInputs& inputs, const L
 
 /// Offsets that differ between all recordings: the error falls much further with each one's own than with a delay that
 /// all have in common.
-SUREFOOT_INLINE std::optional<ClockFault> differing_offsets(const LogDoctorInputs& inputs, const LogFit& fit,
-                                                            const Clocks& clocks) {
+SUREFOOT_ONCE std::optional<ClockFault> differing_offsets(const LogDoctorInputs& inputs, const LogFit& fit,
+                                                          const Clocks& clocks) {
   const LogDoctorCriteria& criteria = inputs.criteria;
   if (!(scatter_by_chance(clocks.estimates, criteria) < criteria.significance)) return std::nullopt;
   const WithoutOffsets logged{fit, std::vector<double>(fit.error.size(), 0.0)};
@@ -225,7 +225,7 @@ SUREFOOT_INLINE std::optional<ClockFault> differing_offsets(const LogDoctorInput
   return fault;
 }
 
-SUREFOOT_INLINE std::optional<ClockFault> find_clock_fault(const LogDoctorInputs& inputs, const LogFit& fit) {
+SUREFOOT_ONCE std::optional<ClockFault> find_clock_fault(const LogDoctorInputs& inputs, const LogFit& fit) {
   if (!has_clocks(fit, inputs.criteria)) return std::nullopt;
   std::optional<SingleClock> single;
   const Clocks offsets = measure_clocks(fit, LogFaultKind::offset, inputs);

@@ -17,7 +17,7 @@ namespace surefoot::diagnosis {
 
 /// Highest log-likelihood of n independent residuals with this sum of squares, in units of what is typically left,
 /// where recordings differ in the size of theirs: its logarithm is normal with this standard deviation.
-SUREFOOT_INLINE double log_likelihood(double n, double squares, double scatter) {
+SUREFOOT_ONCE double log_likelihood(double n, double squares, double scatter) {
   if (!std::isfinite(squares)) return -std::numeric_limits<double>::infinity();
   const double precision = 1 / (scatter * scatter);
   constexpr double widest = 50;  // of the logarithm of the size, on both sides: beyond what numbers hold
@@ -30,7 +30,7 @@ SUREFOOT_INLINE double log_likelihood(double n, double squares, double scatter) 
   return -n * low - 0.5 * squares * std::exp(-2 * low) - 0.5 * precision * low * low;
 }
 
-SUREFOOT_INLINE double measured_cells(const ResidualRows& residuals) {
+SUREFOOT_ONCE double measured_cells(const ResidualRows& residuals) {
   double count = 0;
   for (Eigen::Index i = 0; i < residuals.size(); ++i) count += std::isnan(residuals.data()[i]) ? 0 : 1;
   return count;
@@ -38,14 +38,14 @@ SUREFOOT_INLINE double measured_cells(const ResidualRows& residuals) {
 
 /// Variance, by chance alone, of the logarithm of the root mean square of n independent residuals: a quarter of the
 /// trigamma function of n / 2, by the first terms of its series.
-SUREFOOT_INLINE double variance_of_log_size(double n) {
+SUREFOOT_ONCE double variance_of_log_size(double n) {
   constexpr double second = 0.5, third = 1.0 / 6;  // coefficients of the series
   const double x = std::max(n, 1.0) / 2, trigamma = (1 + (second + third / x) / x) / x;
   return trigamma / (2 * 2);
 }
 
 /// By how much recordings differ in the size of their residuals beyond chance: standard deviation of its logarithm.
-SUREFOOT_INLINE double scatter_of_sizes(const LogFit& fit) {
+SUREFOOT_ONCE double scatter_of_sizes(const LogFit& fit) {
   constexpr double normal = 1.4826;  // standard deviation over median absolute deviation of a normal distribution
   constexpr double least = 0.2;      // few recordings alone cannot tell less
   std::vector<double> logarithms, by_chance;
@@ -62,7 +62,7 @@ SUREFOOT_INLINE double scatter_of_sizes(const LogFit& fit) {
 }
 
 /// Residuals of the outputs that repairs touch; of all where they touch inputs or the time.
-SUREFOOT_INLINE ResidualRows touched(ResidualRows residuals, const Repairs& repairs) {
+SUREFOOT_ONCE ResidualRows touched(ResidualRows residuals, const Repairs& repairs) {
   std::vector<bool> keep(static_cast<std::size_t>(residuals.rows()), false);
   for (const LogRepair& repair : repairs) {
     if (repair.channel.input || repair.kind == LogFaultKind::time_unit) return residuals;
@@ -79,7 +79,7 @@ SUREFOOT_INLINE ResidualRows touched(ResidualRows residuals, const Repairs& repa
 }
 
 /// Logarithm of how much denser readings lie after they were multiplied by something (the Jacobian of that change).
-SUREFOOT_INLINE double log_density(const ResidualRows& after, const Repairs& repairs) {
+SUREFOOT_ONCE double log_density(const ResidualRows& after, const Repairs& repairs) {
   double sum = 0;
   for (const LogRepair& repair : repairs) {
     if (repair.kind != LogFaultKind::degrees || repair.channel.input) continue;
@@ -88,8 +88,8 @@ SUREFOOT_INLINE double log_density(const ResidualRows& after, const Repairs& rep
   return sum;
 }
 
-SUREFOOT_INLINE RepairEffect effect_of(const LogFit& fit, std::size_t r, const Repairs& repairs,
-                                       const ResidualRows& after) {
+SUREFOOT_ONCE RepairEffect effect_of(const LogFit& fit, std::size_t r, const Repairs& repairs,
+                                     const ResidualRows& after) {
   constexpr double least = 1e-12;  // of an output's variance: as good as no error
   const ResidualRows& before = fit.residuals[r];
   RepairEffect effect;
@@ -106,7 +106,7 @@ SUREFOOT_INLINE RepairEffect effect_of(const LogFit& fit, std::size_t r, const R
   return effect;
 }
 
-SUREFOOT_INLINE std::vector<Repairs> repairs_to_try(const SimulatorInfo& info) {
+SUREFOOT_ONCE std::vector<Repairs> repairs_to_try(const SimulatorInfo& info) {
   std::vector<Repairs> all;
   Repairs angles, read_angles;
   for (const LogRepair& repair : column_repairs(info)) {
@@ -123,7 +123,7 @@ SUREFOOT_INLINE std::vector<Repairs> repairs_to_try(const SimulatorInfo& info) {
 /// Finer units of time than seconds [s]: milli-, micro- and nanoseconds.
 inline constexpr double time_units[] = {1e-3, 1e-6, 1e-9};
 
-SUREFOOT_INLINE double median_interval(const Recording& recording) {
+SUREFOOT_ONCE double median_interval(const Recording& recording) {
   std::vector<double> intervals;
   for (Eigen::Index row = 1; row < recording.rows(); ++row) {
     intervals.push_back(recording.time[row] - recording.time[row - 1]);
@@ -132,7 +132,7 @@ SUREFOOT_INLINE double median_interval(const Recording& recording) {
 }
 
 /// The time unit that would make the intervals of a recording those of the others, if they are far apart.
-SUREFOOT_INLINE std::vector<Repairs> unit_of_time_repairs(const BoundSimulator& bound, std::size_t r) {
+SUREFOOT_ONCE std::vector<Repairs> unit_of_time_repairs(const BoundSimulator& bound, std::size_t r) {
   constexpr double alike = 10;  // ratio of intervals that different settings of a logger explain
   if (bound.info.kind != SimulatorKind::ode) return {};
   std::vector<double> others;
@@ -149,20 +149,20 @@ SUREFOOT_INLINE std::vector<Repairs> unit_of_time_repairs(const BoundSimulator& 
   return repairs;
 }
 
-SUREFOOT_INLINE Recording repaired(const BoundSimulator& bound, Recording recording, const Repairs& repairs) {
+SUREFOOT_ONCE Recording repaired(const BoundSimulator& bound, Recording recording, const Repairs& repairs) {
   for (const LogRepair& repair : repairs) recording = repaired(bound, recording, repair);
   return recording;
 }
 
 /// Whether one repair is more likely than another; of two that end a simulation's running away, the closer one.
-SUREFOOT_INLINE bool more_likely(const RepairEffect& one, const RepairEffect& other) {
+SUREFOOT_ONCE bool more_likely(const RepairEffect& one, const RepairEffect& other) {
   return one.log_odds != other.log_odds ? one.log_odds > other.log_odds : one.after < other.after;
 }
 
 /// Repairs of one recording that are about as likely as the best.
-SUREFOOT_INLINE std::vector<Repairs> as_good(const std::vector<Repairs>& tried,
-                                             const std::vector<RepairEffect>& effects, std::size_t best,
-                                             const LogDoctorCriteria& criteria) {
+SUREFOOT_ONCE std::vector<Repairs> as_good(const std::vector<Repairs>& tried,
+                                           const std::vector<RepairEffect>& effects, std::size_t best,
+                                           const LogDoctorCriteria& criteria) {
   std::vector<Repairs> also;
   for (std::size_t t = 0; t < tried.size(); ++t) {
     const bool close = effects[t].log_odds - std::log(criteria.significance) > effects[best].log_odds;
@@ -172,8 +172,8 @@ SUREFOOT_INLINE std::vector<Repairs> as_good(const std::vector<Repairs>& tried,
   return also;
 }
 
-SUREFOOT_INLINE std::optional<FoundFault> find_fault_of_one(const LogFit& fit, const LogDoctorCriteria& criteria,
-                                                            const Parallel& parallel) {
+SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogFit& fit, const LogDoctorCriteria& criteria,
+                                                          const Parallel& parallel) {
   const std::size_t count = fit.bound.recordings.size();
   if (count < 2) return std::nullopt;
   const std::vector<Repairs> columns = repairs_to_try(fit.bound.info);
@@ -215,8 +215,8 @@ SUREFOOT_INLINE std::optional<FoundFault> find_fault_of_one(const LogFit& fit, c
 }
 
 /// How much less the error of all recordings together is, as a logarithm; 0 unless it halves, and is less in most.
-SUREFOOT_INLINE double common_gain(const LogFit& before, const LogFit& after, const Repairs& repairs,
-                                   const LogDoctorCriteria& criteria) {
+SUREFOOT_ONCE double common_gain(const LogFit& before, const LogFit& after, const Repairs& repairs,
+                                 const LogDoctorCriteria& criteria) {
   constexpr double least = 1e-12, most = 1e12;  // of an output's variance: as good as no error; ran away
   double better = 0, sum_before = 0, sum_after = 0;
   for (std::size_t r = 0; r < before.error.size(); ++r) {
@@ -232,7 +232,7 @@ SUREFOOT_INLINE double common_gain(const LogFit& before, const LogFit& after, co
   return in_most && gain > std::log(criteria.decisive) ? gain : 0;
 }
 
-SUREFOOT_INLINE double worst_output_error(const LogFit& fit) {
+SUREFOOT_ONCE double worst_output_error(const LogFit& fit) {
   double worst = 0;
   for (Eigen::Index k = 0; k < fit.size.size(); ++k) {
     const double share = fit.typical[k] / fit.size[k];
@@ -241,7 +241,7 @@ SUREFOOT_INLINE double worst_output_error(const LogFit& fit) {
   return worst;
 }
 
-SUREFOOT_INLINE std::optional<FoundFault> find_fault_of_all(const LogDoctorInputs& inputs, const LogFit& fit) {
+SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_all(const LogDoctorInputs& inputs, const LogFit& fit) {
   const LogDoctorCriteria& criteria = inputs.criteria;
   if (worst_output_error(fit) < criteria.poor_fit) return std::nullopt;
   std::vector<Repairs> tried = repairs_to_try(fit.bound.info);

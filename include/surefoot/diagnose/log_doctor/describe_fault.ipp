@@ -13,22 +13,22 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE std::string in_short(double value) {
+SUREFOOT_ONCE std::string in_short(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
 }
 
-SUREFOOT_INLINE std::string with_unit(double value, const std::string& unit) {
+SUREFOOT_ONCE std::string with_unit(double value, const std::string& unit) {
   return in_short(value) + (unit.empty() || unit == "1" ? "" : " " + unit);
 }
 
-SUREFOOT_INLINE std::string milliseconds(double seconds) {
+SUREFOOT_ONCE std::string milliseconds(double seconds) {
   constexpr double in_a_second = 1e3;  // milliseconds
   return in_short(in_a_second * seconds) + " ms";
 }
 
-SUREFOOT_INLINE std::string what_is_wrong_in_columns(const SimulatorInfo& info, const LogRepair& repair, bool all) {
+SUREFOOT_ONCE std::string what_is_wrong_in_columns(const SimulatorInfo& info, const LogRepair& repair, bool all) {
   const std::string name = name_of(info, repair.channel);
   switch (repair.kind) {
     case LogFaultKind::sign:
@@ -45,8 +45,8 @@ SUREFOOT_INLINE std::string what_is_wrong_in_columns(const SimulatorInfo& info, 
   }
 }
 
-SUREFOOT_INLINE std::string what_is_wrong_in_readings(const SimulatorInfo& info, const LogRepair& repair,
-                                                      const Recording& recording) {
+SUREFOOT_ONCE std::string what_is_wrong_in_readings(const SimulatorInfo& info, const LogRepair& repair,
+                                                    const Recording& recording) {
   const std::string name = name_of(info, repair.channel);
   const RowRange rows = repair.rows.front();
   const double from = recording.time[rows.first], to = recording.time[rows.second - 1];
@@ -70,7 +70,7 @@ SUREFOOT_INLINE std::string what_is_wrong_in_readings(const SimulatorInfo& info,
   }
 }
 
-SUREFOOT_INLINE std::string cure_of(const LogRepair& repair) {
+SUREFOOT_ONCE std::string cure_of(const LogRepair& repair) {
   switch (repair.kind) {
     case LogFaultKind::sign:
       return "flip its sign";
@@ -93,7 +93,7 @@ SUREFOOT_INLINE std::string cure_of(const LogRepair& repair) {
   }
 }
 
-SUREFOOT_INLINE std::vector<LogFault> describe_fault(const BoundSimulator& bound, const FoundFault& found) {
+SUREFOOT_ONCE std::vector<LogFault> describe_fault(const BoundSimulator& bound, const FoundFault& found) {
   std::vector<LogFault> faults;
   for (const LogRepair& repair : found.repairs) {
     LogFault fault;
@@ -118,7 +118,7 @@ SUREFOOT_INLINE std::vector<LogFault> describe_fault(const BoundSimulator& bound
   return faults;
 }
 
-SUREFOOT_INLINE std::string what_is_wrong_with_clock(LogFaultKind kind, double amount) {
+SUREFOOT_ONCE std::string what_is_wrong_with_clock(LogFaultKind kind, double amount) {
   const std::string size = kind == LogFaultKind::offset ? milliseconds(std::abs(amount))
                                                         : in_short(100 * std::abs(amount)) + " %";
   switch (kind) {
@@ -132,7 +132,7 @@ SUREFOOT_INLINE std::string what_is_wrong_with_clock(LogFaultKind kind, double a
   }
 }
 
-SUREFOOT_INLINE std::vector<LogFault> describe_fault(const BoundSimulator& bound, const ClockFault& clock) {
+SUREFOOT_ONCE std::vector<LogFault> describe_fault(const BoundSimulator& bound, const ClockFault& clock) {
   std::vector<LogFault> faults;
   double lowest = 0, highest = 0;
   for (std::size_t r = 0; r < clock.amounts.size(); ++r) {
@@ -157,7 +157,7 @@ SUREFOOT_INLINE std::vector<LogFault> describe_fault(const BoundSimulator& bound
   return {all};
 }
 
-SUREFOOT_INLINE LogFault describe_fault(const BoundSimulator& bound, const OddRecording& odd) {
+SUREFOOT_ONCE LogFault describe_fault(const BoundSimulator& bound, const OddRecording& odd) {
   LogFault fault{.kind = name_of(LogFaultKind::odd), .recording = bound.recordings[odd.recording].name};
   fault.size = odd.ratio;
   fault.unit = "1";

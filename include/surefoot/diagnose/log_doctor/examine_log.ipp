@@ -36,14 +36,14 @@ struct LogUnderExamination {
 };
 
 /// Calibrated from the nominal parameters on, or from others where that fails.
-SUREFOOT_INLINE LogFit first_fit(const LogDoctorInputs& inputs, const std::vector<Recording>& recordings) {
+SUREFOOT_ONCE LogFit first_fit(const LogDoctorInputs& inputs, const std::vector<Recording>& recordings) {
   LogFit fit = fit_log(inputs, recordings);
   if (worst_output_error(fit) < inputs.criteria.poor_fit) return fit;
   LogFit other = fit_log(inputs, recordings, {}, inputs.criteria.search_points);
   return median_of(other.error) < median_of(fit.error) ? other : fit;
 }
 
-SUREFOOT_INLINE void examine_columns(LogUnderExamination& log) {
+SUREFOOT_ONCE void examine_columns(LogUnderExamination& log) {
   constexpr int most_of_all = 3;  // faults of the whole log, one after the other
   for (int round = 0; round < most_of_all && !log.inputs.stopped(); ++round) {
     const auto found = find_fault_of_all(log.inputs, log.fit);
@@ -66,7 +66,7 @@ SUREFOOT_INLINE void examine_columns(LogUnderExamination& log) {
 
 /// The longest piece of a recording between gaps. Where it does not begin with the first row it starts from the
 /// readings and the simulated states there, to be estimated.
-SUREFOOT_INLINE Recording longest_piece(const LogFit& fit, std::size_t r, const LogRepair& gaps) {
+SUREFOOT_ONCE Recording longest_piece(const LogFit& fit, std::size_t r, const LogRepair& gaps) {
   constexpr double initial_share = 0.2;  // of a state's root mean square: by how much it may be off there
   const Recording& whole = fit.bound.recordings[r];
   RowRange best{0, 0};
@@ -90,7 +90,7 @@ SUREFOOT_INLINE Recording longest_piece(const LogFit& fit, std::size_t r, const 
   return piece;
 }
 
-SUREFOOT_INLINE void examine_readings(LogUnderExamination& log) {
+SUREFOOT_ONCE void examine_readings(LogUnderExamination& log) {
   const LogDoctorCriteria& criteria = log.inputs.criteria;
   const std::vector<FoundFault> found = find_reading_faults(log.fit, criteria);
   std::vector<Recording> recordings = log.fit.bound.recordings;
@@ -107,7 +107,7 @@ SUREFOOT_INLINE void examine_readings(LogUnderExamination& log) {
   if (!log.faults.empty()) log.calibrate_again(std::move(recordings));
 }
 
-SUREFOOT_INLINE void examine_clocks(LogUnderExamination& log) {
+SUREFOOT_ONCE void examine_clocks(LogUnderExamination& log) {
   for (std::size_t round = 0; 2 * round < log.fit.bound.recordings.size() && !log.inputs.stopped(); ++round) {
     const auto fault = find_clock_fault(log.inputs, log.fit);
     if (!fault || log.inputs.stopped()) break;
@@ -123,7 +123,7 @@ SUREFOOT_INLINE void examine_clocks(LogUnderExamination& log) {
   }
 }
 
-SUREFOOT_INLINE LogExamination examine_log(const LogDoctorInputs& inputs, const std::vector<Recording>& recordings) {
+SUREFOOT_ONCE LogExamination examine_log(const LogDoctorInputs& inputs, const std::vector<Recording>& recordings) {
   LogUnderExamination log{inputs, first_fit(inputs, recordings), {}};
   examine_columns(log);
   examine_readings(log);
@@ -133,7 +133,7 @@ SUREFOOT_INLINE LogExamination examine_log(const LogDoctorInputs& inputs, const 
   return {std::move(log.faults), std::move(log.fit.bound.recordings)};
 }
 
-SUREFOOT_INLINE std::string caution(const std::vector<LogFault>& faults) {
+SUREFOOT_ONCE std::string caution(const std::vector<LogFault>& faults) {
   std::size_t left = 0;
   const LogFault* first = nullptr;
   for (const LogFault& fault : faults) {

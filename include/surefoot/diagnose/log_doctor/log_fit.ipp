@@ -17,7 +17,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE double median_of(std::vector<double> values) {
+SUREFOOT_ONCE double median_of(std::vector<double> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -26,7 +26,7 @@ SUREFOOT_INLINE double median_of(std::vector<double> values) {
   return below == *middle ? below : below + (*middle - below) / 2;  // infinite values too
 }
 
-SUREFOOT_INLINE double mean_square(const ResidualRows& residuals, const Eigen::VectorXd& unit) {
+SUREFOOT_ONCE double mean_square(const ResidualRows& residuals, const Eigen::VectorXd& unit) {
   double sum = 0, count = 0;
   for (Eigen::Index row = 0; row < residuals.cols(); ++row) {
     for (Eigen::Index k = 0; k < residuals.rows(); ++k) {
@@ -39,7 +39,7 @@ SUREFOOT_INLINE double mean_square(const ResidualRows& residuals, const Eigen::V
   return count > 0 ? sum / count : 0;
 }
 
-SUREFOOT_INLINE double independent_share(const ResidualRows& residuals, const Eigen::VectorXd& unit) {
+SUREFOOT_ONCE double independent_share(const ResidualRows& residuals, const Eigen::VectorXd& unit) {
   double squares = 0, products = 0, count = 0;
   for (Eigen::Index k = 0; k < residuals.rows(); ++k) {
     double before = std::numeric_limits<double>::quiet_NaN();
@@ -58,7 +58,7 @@ SUREFOOT_INLINE double independent_share(const ResidualRows& residuals, const Ei
 }
 
 /// The bound simulator with one recording alone, in another version.
-SUREFOOT_INLINE BoundSimulator with_version(const BoundSimulator& bound, std::size_t r, const Recording& version) {
+SUREFOOT_ONCE BoundSimulator with_version(const BoundSimulator& bound, std::size_t r, const Recording& version) {
   BoundSimulator one = without_functions(bound.info, bound.structure, {version});  // its own full turns
   one.sizes = bound.sizes;
   one.integration = bound.integration;
@@ -68,7 +68,7 @@ SUREFOOT_INLINE BoundSimulator with_version(const BoundSimulator& bound, std::si
   return one;
 }
 
-SUREFOOT_INLINE ResidualRows residual_rows(const BoundSimulator& bound, std::size_t r, const SimulatedRun& run) {
+SUREFOOT_ONCE ResidualRows residual_rows(const BoundSimulator& bound, std::size_t r, const SimulatedRun& run) {
   const Recording& recording = bound.recordings[r];
   ResidualRows rows = ResidualRows::Constant(recording.outputs.rows(), recording.outputs.cols(),
                                              std::numeric_limits<double>::quiet_NaN());
@@ -80,7 +80,7 @@ SUREFOOT_INLINE ResidualRows residual_rows(const BoundSimulator& bound, std::siz
   return rows;
 }
 
-SUREFOOT_INLINE Resimulation resimulate(const LogFit& fit, std::size_t r, const Recording& version) {
+SUREFOOT_ONCE Resimulation resimulate(const LogFit& fit, std::size_t r, const Recording& version) {
   const BoundSimulator one = with_version(fit.bound, r, version);
   Hypothesis hypothesis = fit.hypothesis;
   hypothesis.initial[r] = version.initial;
@@ -98,7 +98,7 @@ SUREFOOT_INLINE Resimulation resimulate(const LogFit& fit, std::size_t r, const 
   return result;
 }
 
-SUREFOOT_INLINE Eigen::VectorXd output_sizes(const BoundSimulator& bound) {
+SUREFOOT_ONCE Eigen::VectorXd output_sizes(const BoundSimulator& bound) {
   constexpr double smallest = 1e-12;  // in place of 0, so that a size may be divided by
   const bool steps = bound.integration.restart > 0;
   Eigen::VectorXd sizes(static_cast<Eigen::Index>(bound.info.outputs.size()));
@@ -126,8 +126,8 @@ SUREFOOT_INLINE Eigen::VectorXd output_sizes(const BoundSimulator& bound) {
 }
 
 /// Recordings of the calibration, evenly chosen.
-SUREFOOT_INLINE std::vector<std::size_t> fitted_recordings(const BoundSimulator& bound,
-                                                           const LogDoctorCriteria& criteria) {
+SUREFOOT_ONCE std::vector<std::size_t> fitted_recordings(const BoundSimulator& bound,
+                                                         const LogDoctorCriteria& criteria) {
   std::size_t rows = 0;
   for (const Recording& recording : bound.recordings) rows += static_cast<std::size_t>(recording.rows());
   const std::size_t count = bound.recordings.size();
@@ -139,8 +139,8 @@ SUREFOOT_INLINE std::vector<std::size_t> fitted_recordings(const BoundSimulator&
 }
 
 /// By recording, the inverse of its weight: the size of what is left of it, so that one that is spoilt counts little.
-SUREFOOT_INLINE std::vector<double> inverse_weights(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                                    const FitProblem& problem, const Parallel& parallel) {
+SUREFOOT_ONCE std::vector<double> inverse_weights(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                  const FitProblem& problem, const Parallel& parallel) {
   constexpr double least = 1e-3, most = 1e3;  // no recording alone decides a fit
   std::vector<double> scales(bound.recordings.size(), 1.0);
   const auto runs = simulate_all(bound, hypothesis, problem.recordings, problem.integration, parallel);
@@ -152,7 +152,7 @@ SUREFOOT_INLINE std::vector<double> inverse_weights(const BoundSimulator& bound,
   return scales;
 }
 
-SUREFOOT_INLINE void measure_what_is_left(LogFit& fit, const FitProblem& problem, const Parallel& parallel) {
+SUREFOOT_ONCE void measure_what_is_left(LogFit& fit, const FitProblem& problem, const Parallel& parallel) {
   const std::size_t count = fit.bound.recordings.size();
   fit.runs.resize(count);
   fit.residuals.resize(count);
@@ -187,8 +187,8 @@ SUREFOOT_INLINE void measure_what_is_left(LogFit& fit, const FitProblem& problem
   for (const ResidualRows& residuals : fit.residuals) fit.error.push_back(mean_square(residuals, fit.size));
 }
 
-SUREFOOT_INLINE LogFit fit_log(const LogDoctorInputs& inputs, std::vector<Recording> recordings,
-                               const Eigen::VectorXd& parameters, std::size_t points) {
+SUREFOOT_ONCE LogFit fit_log(const LogDoctorInputs& inputs, std::vector<Recording> recordings,
+                             const Eigen::VectorXd& parameters, std::size_t points) {
   const LogDoctorCriteria& criteria = inputs.criteria;
   LogFit result;
   result.bound = inputs.bind(std::move(recordings));

@@ -16,7 +16,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE std::string name_of(LogFaultKind kind) {
+SUREFOOT_ONCE std::string name_of(LogFaultKind kind) {
   switch (kind) {
     case LogFaultKind::sign:
       return "sign_flipped";
@@ -44,17 +44,17 @@ SUREFOOT_INLINE std::string name_of(LogFaultKind kind) {
   return "odd_recording";
 }
 
-SUREFOOT_INLINE const std::string& name_of(const SimulatorInfo& info, const Channel& channel) {
+SUREFOOT_ONCE const std::string& name_of(const SimulatorInfo& info, const Channel& channel) {
   const auto i = static_cast<std::size_t>(channel.index);
   return channel.input ? info.inputs[i].name : info.outputs[i].name;
 }
 
-SUREFOOT_INLINE const std::string& unit_of(const SimulatorInfo& info, const Channel& channel) {
+SUREFOOT_ONCE const std::string& unit_of(const SimulatorInfo& info, const Channel& channel) {
   const auto i = static_cast<std::size_t>(channel.index);
   return channel.input ? info.inputs[i].unit : info.outputs[i].unit;
 }
 
-SUREFOOT_INLINE std::vector<LogRepair> column_repairs(const SimulatorInfo& info) {
+SUREFOOT_ONCE std::vector<LogRepair> column_repairs(const SimulatorInfo& info) {
   std::vector<Channel> channels;
   for (std::size_t k = 0; k < info.outputs.size(); ++k) channels.push_back({false, static_cast<Eigen::Index>(k)});
   for (std::size_t i = 0; i < info.inputs.size(); ++i) channels.push_back({true, static_cast<Eigen::Index>(i)});
@@ -77,8 +77,8 @@ SUREFOOT_INLINE std::vector<LogRepair> column_repairs(const SimulatorInfo& info)
 }
 
 /// Readings of a channel at other times, between those that were measured next to each other.
-SUREFOOT_INLINE void resample_output(const Recording& recording, Eigen::Index k, const Eigen::VectorXd& times,
-                                     Recording& result) {
+SUREFOOT_ONCE void resample_output(const Recording& recording, Eigen::Index k, const Eigen::VectorXd& times,
+                                   Recording& result) {
   constexpr double next_to = 2.5;  // times the median distance of measured rows: so few are missing that all are smooth
   std::vector<Eigen::Index> measured;
   for (Eigen::Index row = 0; row < recording.rows(); ++row) {
@@ -107,7 +107,7 @@ SUREFOOT_INLINE void resample_output(const Recording& recording, Eigen::Index k,
 }
 
 /// Initial states that were read off an output follow it.
-SUREFOOT_INLINE void reread_initial(const BoundSimulator& bound, const Recording& before, Recording& after) {
+SUREFOOT_ONCE void reread_initial(const BoundSimulator& bound, const Recording& before, Recording& after) {
   for (std::size_t i = 0; i < bound.info.states.size(); ++i) {
     const auto state = static_cast<Eigen::Index>(i);
     const int output = bound.structure.output_of[i];
@@ -120,7 +120,7 @@ SUREFOOT_INLINE void reread_initial(const BoundSimulator& bound, const Recording
   }
 }
 
-SUREFOOT_INLINE Recording repaired(const BoundSimulator& bound, const Recording& recording, const LogRepair& repair) {
+SUREFOOT_ONCE Recording repaired(const BoundSimulator& bound, const Recording& recording, const LogRepair& repair) {
   Recording result = recording;
   Eigen::MatrixXd& columns = repair.channel.input ? result.inputs : result.outputs;
   const Eigen::Index k = repair.channel.index;

@@ -16,7 +16,7 @@
 namespace surefoot::diagnosis {
 
 /// Probability that the logarithm of an error lies so far from those of the others by chance (a t test).
-SUREFOOT_INLINE double error_by_chance(const std::vector<double>& errors, std::size_t r) {
+SUREFOOT_ONCE double error_by_chance(const std::vector<double>& errors, std::size_t r) {
   double mean = 0, squares = 0, count = 0;
   for (std::size_t o = 0; o < errors.size(); ++o) {
     if (o == r) continue;
@@ -34,7 +34,7 @@ SUREFOOT_INLINE double error_by_chance(const std::vector<double>& errors, std::s
 }
 
 /// Mean square residual of a recording relative to how much its own outputs move: large motions are missed by more.
-SUREFOOT_INLINE double relative_error(const LogFit& fit, const Recording& recording, const ResidualRows& residuals) {
+SUREFOOT_ONCE double relative_error(const LogFit& fit, const Recording& recording, const ResidualRows& residuals) {
   constexpr double least_motion = 0.5;  // of that of most recordings: what hardly moves is noise
   Eigen::VectorXd unit = fit.size;
   for (Eigen::Index k = 0; k < unit.size(); ++k) {
@@ -45,7 +45,7 @@ SUREFOOT_INLINE double relative_error(const LogFit& fit, const Recording& record
 }
 
 /// Mean square errors of all recordings: of each relative to its own motion, or to that of most.
-SUREFOOT_INLINE std::vector<double> errors_of(const LogFit& fit, const LogFit& like, bool relative) {
+SUREFOOT_ONCE std::vector<double> errors_of(const LogFit& fit, const LogFit& like, bool relative) {
   std::vector<double> errors;
   for (std::size_t r = 0; r < fit.residuals.size(); ++r) {
     errors.push_back(relative ? relative_error(like, fit.bound.recordings[r], fit.residuals[r])
@@ -55,8 +55,8 @@ SUREFOOT_INLINE std::vector<double> errors_of(const LogFit& fit, const LogFit& l
 }
 
 /// The recording that is far off and further than all others, if any is.
-SUREFOOT_INLINE std::optional<std::size_t> outstanding(const std::vector<double>& errors,
-                                                       const LogDoctorCriteria& criteria) {
+SUREFOOT_ONCE std::optional<std::size_t> outstanding(const std::vector<double>& errors,
+                                                     const LogDoctorCriteria& criteria) {
   const auto worst = static_cast<std::size_t>(std::ranges::max_element(errors) - errors.begin());
   double others = 0;
   for (std::size_t o = 0; o < errors.size(); ++o) others = std::max(others, o == worst ? 0 : errors[o]);
@@ -65,15 +65,15 @@ SUREFOOT_INLINE std::optional<std::size_t> outstanding(const std::vector<double>
 }
 
 /// Whether a recording is further off than the scatter of the others' errors explains.
-SUREFOOT_INLINE bool beyond_scatter(const std::vector<double>& errors, std::size_t r,
-                                    const LogDoctorCriteria& criteria) {
+SUREFOOT_ONCE bool beyond_scatter(const std::vector<double>& errors, std::size_t r,
+                                  const LogDoctorCriteria& criteria) {
   constexpr double tests = 2;  // relative to the motion of each recording and of most
   return error_by_chance(errors, r) * static_cast<double>(errors.size()) * tests < criteria.significance;
 }
 
 /// Squared correlation of what was measured with what is simulated, as far as it is positive, of the output where it
 /// is largest.
-SUREFOOT_INLINE double alikeness(const Recording& recording, const ResidualRows& residuals) {
+SUREFOOT_ONCE double alikeness(const Recording& recording, const ResidualRows& residuals) {
   double most = 0;
   for (Eigen::Index k = 0; k < residuals.rows(); ++k) {
     double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
@@ -90,7 +90,7 @@ SUREFOOT_INLINE double alikeness(const Recording& recording, const ResidualRows&
 }
 
 /// Simulates all recordings anew.
-SUREFOOT_INLINE void simulate_again(const LogDoctorInputs& inputs, LogFit& fit) {
+SUREFOOT_ONCE void simulate_again(const LogDoctorInputs& inputs, LogFit& fit) {
   const LogFit before = fit;
   inputs.parallel(fit.error.size(), [&](std::size_t r) {
     Resimulation one = resimulate(before, r, before.bound.recordings[r]);
@@ -101,7 +101,7 @@ SUREFOOT_INLINE void simulate_again(const LogDoctorInputs& inputs, LogFit& fit) 
 }
 
 /// A fit to single steps as it simulates whole recordings: noise of the steps hides what recordings differ in.
-SUREFOOT_INLINE LogFit over_whole_recordings(const LogDoctorInputs& inputs, LogFit fit) {
+SUREFOOT_ONCE LogFit over_whole_recordings(const LogDoctorInputs& inputs, LogFit fit) {
   if (fit.bound.integration.restart == 0) return fit;
   fit.bound.integration.restart = 0;
   fit.size = output_sizes(fit.bound);
@@ -111,8 +111,8 @@ SUREFOOT_INLINE LogFit over_whole_recordings(const LogDoctorInputs& inputs, LogF
 
 /// Whether the model, whatever its parameters, scales and signs, says nothing like what a recording holds: its readings
 /// do not belong to its inputs, which no missing physics brings about.
-SUREFOOT_INLINE bool is_unrelated(const LogDoctorInputs& inputs, const LogFit& fit, const LogFit& predicted,
-                                  std::size_t r) {
+SUREFOOT_ONCE bool is_unrelated(const LogDoctorInputs& inputs, const LogFit& fit, const LogFit& predicted,
+                                std::size_t r) {
   const LogDoctorCriteria& criteria = inputs.criteria;
   const Recording& recording = fit.bound.recordings[r];
   if (recording.rows() < static_cast<Eigen::Index>(criteria.fewest_rows)) return false;
@@ -123,7 +123,7 @@ SUREFOOT_INLINE bool is_unrelated(const LogDoctorInputs& inputs, const LogFit& f
 }
 
 /// What a calibration without recording r predicts of all.
-SUREFOOT_INLINE LogFit predicted_without(const LogDoctorInputs& inputs, const LogFit& fit, std::size_t r) {
+SUREFOOT_ONCE LogFit predicted_without(const LogDoctorInputs& inputs, const LogFit& fit, std::size_t r) {
   std::vector<Recording> others = fit.bound.recordings;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(r));
   LogFit all = fit;
@@ -132,7 +132,7 @@ SUREFOOT_INLINE LogFit predicted_without(const LogDoctorInputs& inputs, const Lo
   return all;
 }
 
-SUREFOOT_INLINE std::optional<OddRecording> find_odd_recording(const LogDoctorInputs& inputs, const LogFit& logged) {
+SUREFOOT_ONCE std::optional<OddRecording> find_odd_recording(const LogDoctorInputs& inputs, const LogFit& logged) {
   constexpr std::size_t fewest = 4;  // recordings, to say what most of them are like
   if (logged.error.size() < fewest) return std::nullopt;
   const LogFit fit = over_whole_recordings(inputs, logged);

@@ -15,14 +15,14 @@
 namespace surefoot::diagnosis {
 
 /// The value that one in twenty exceed.
-SUREFOOT_INLINE double high_value(std::vector<double> values) {
+SUREFOOT_ONCE double high_value(std::vector<double> values) {
   constexpr std::size_t one_in = 20;  // values is above
   const auto high = values.begin() + static_cast<std::ptrdiff_t>(values.size() - 1 - (values.size() - 1) / one_in);
   std::nth_element(values.begin(), high, values.end());
   return *high;
 }
 
-SUREFOOT_INLINE double resolution_of(const std::vector<Recording>& recordings, Eigen::Index output) {
+SUREFOOT_ONCE double resolution_of(const std::vector<Recording>& recordings, Eigen::Index output) {
   constexpr double rounding = 1e-9;  // of a reading: digits lost in a file are no step
   double least = std::numeric_limits<double>::infinity();
   for (const Recording& recording : recordings) {
@@ -37,7 +37,7 @@ SUREFOOT_INLINE double resolution_of(const std::vector<Recording>& recordings, E
 
 /// How much the model moves over these rows: standard deviation, or what it expects of a step that begins at the
 /// reading.
-SUREFOOT_INLINE double missed_motion(const LogFit& fit, std::size_t r, Eigen::Index output, const RowRange& rows) {
+SUREFOOT_ONCE double missed_motion(const LogFit& fit, std::size_t r, Eigen::Index output, const RowRange& rows) {
   const bool steps = fit.bound.integration.restart > 0;
   double sum = 0, squares = 0, count = 0;
   for (Eigen::Index row = rows.first; row < rows.second; ++row) {
@@ -53,7 +53,7 @@ SUREFOOT_INLINE double missed_motion(const LogFit& fit, std::size_t r, Eigen::In
 }
 
 /// Whether a stretch is at the recording's largest (1) or smallest (-1) value; 0: neither.
-SUREFOOT_INLINE int end_of_range(const Recording& recording, Eigen::Index output, double value) {
+SUREFOOT_ONCE int end_of_range(const Recording& recording, Eigen::Index output, double value) {
   bool highest = true, lowest = true;
   for (Eigen::Index row = 0; row < recording.rows(); ++row) {
     const double other = recording.outputs(output, row);
@@ -64,8 +64,8 @@ SUREFOOT_INLINE int end_of_range(const Recording& recording, Eigen::Index output
 }
 
 /// Whether the model goes beyond the value of a stretch, on that side, for most of it.
-SUREFOOT_INLINE bool goes_beyond(const LogFit& fit, std::size_t r, Eigen::Index output, const ConstantStretch& stretch,
-                                 int side) {
+SUREFOOT_ONCE bool goes_beyond(const LogFit& fit, std::size_t r, Eigen::Index output, const ConstantStretch& stretch,
+                               int side) {
   Eigen::Index beyond = 0;
   for (Eigen::Index row = stretch.rows.first; row < stretch.rows.second; ++row) {
     if (side * (fit.runs[r].outputs(output, row) - stretch.value) > 0) ++beyond;
@@ -73,8 +73,8 @@ SUREFOOT_INLINE bool goes_beyond(const LogFit& fit, std::size_t r, Eigen::Index 
   return 2 * beyond > stretch.rows.second - stretch.rows.first;
 }
 
-SUREFOOT_INLINE std::vector<ConstantStretch> constant_stretches(const LogFit& fit, std::size_t r, Eigen::Index output,
-                                                                double resolution, const LogDoctorCriteria& criteria) {
+SUREFOOT_ONCE std::vector<ConstantStretch> constant_stretches(const LogFit& fit, std::size_t r, Eigen::Index output,
+                                                              double resolution, const LogDoctorCriteria& criteria) {
   constexpr double steps_missed = 3;  // of the sensor's: less motion than that it may not show
   const Recording& recording = fit.bound.recordings[r];
   std::vector<ConstantStretch> stretches;
@@ -103,14 +103,14 @@ SUREFOOT_INLINE std::vector<ConstantStretch> constant_stretches(const LogFit& fi
 }
 
 /// Motion that is missed in all stretches: their squares, summed.
-SUREFOOT_INLINE double total_missed(const std::vector<ConstantStretch>& stretches) {
+SUREFOOT_ONCE double total_missed(const std::vector<ConstantStretch>& stretches) {
   double sum = 0;
   for (const ConstantStretch& one : stretches) sum += static_cast<double>(one.readings) * one.missed * one.missed;
   return sum;
 }
 
 /// Whether a stretch ends with a jump: a machine that sticks moves on from where it was.
-SUREFOOT_INLINE bool ends_in_jump(const LogFit& fit, std::size_t r, Eigen::Index output, const RowRange& rows) {
+SUREFOOT_ONCE bool ends_in_jump(const LogFit& fit, std::size_t r, Eigen::Index output, const RowRange& rows) {
   constexpr double jump = 5;  // times the 95 % quantile of the steps in this recording
   const Recording& recording = fit.bound.recordings[r];
   std::vector<double> steps;
@@ -124,8 +124,8 @@ SUREFOOT_INLINE bool ends_in_jump(const LogFit& fit, std::size_t r, Eigen::Index
 }
 
 /// The stretches of one output and recording that no sensor and no machine explains: clipped or stuck.
-SUREFOOT_INLINE std::optional<FoundFault> constant_fault(const LogFit& fit, std::size_t r, Eigen::Index output,
-                                                         const std::vector<ConstantStretch>& stretches) {
+SUREFOOT_ONCE std::optional<FoundFault> constant_fault(const LogFit& fit, std::size_t r, Eigen::Index output,
+                                                       const std::vector<ConstantStretch>& stretches) {
   LogRepair clipped{.kind = LogFaultKind::clipped, .channel = {false, output}};
   LogRepair stuck{.kind = LogFaultKind::stuck, .channel = {false, output}};
   double clipped_rows = 0, stuck_rows = 0;
@@ -152,8 +152,8 @@ struct RepeatedRows {
 
 /// Whether the reading after a repeated one makes up for what was missed since row `from`, as the model moves: a
 /// machine that rests goes on from where it was.
-SUREFOOT_INLINE bool catches_up(const Recording& recording, const Eigen::MatrixXd& simulated, Eigen::Index output,
-                                Eigen::Index row, Eigen::Index from) {
+SUREFOOT_ONCE bool catches_up(const Recording& recording, const Eigen::MatrixXd& simulated, Eigen::Index output,
+                              Eigen::Index row, Eigen::Index from) {
   if (row + 1 >= recording.rows()) return false;
   const double step = recording.outputs(output, row + 1) - recording.outputs(output, row);
   const double whole = simulated(output, row + 1) - simulated(output, from);
@@ -161,8 +161,8 @@ SUREFOOT_INLINE bool catches_up(const Recording& recording, const Eigen::MatrixX
   return std::abs(step - whole) < std::abs(step - last);
 }
 
-SUREFOOT_INLINE RepeatedRows repeated_rows(const LogFit& fit, std::size_t r, Eigen::Index output, double resolution,
-                                           const LogDoctorCriteria& criteria) {
+SUREFOOT_ONCE RepeatedRows repeated_rows(const LogFit& fit, std::size_t r, Eigen::Index output, double resolution,
+                                         const LogDoctorCriteria& criteria) {
   constexpr double steps = 2;  // of the sensor: by so much the model must move from row to row
   const Recording& recording = fit.bound.recordings[r];
   const Eigen::MatrixXd& simulated = fit.runs[r].outputs;
@@ -183,13 +183,13 @@ SUREFOOT_INLINE RepeatedRows repeated_rows(const LogFit& fit, std::size_t r, Eig
 }
 
 /// Log-likelihood of a share of rows at its own estimate over that at another share.
-SUREFOOT_INLINE double log_likelihood_ratio(double hits, double rows, double share) {
+SUREFOOT_ONCE double log_likelihood_ratio(double hits, double rows, double share) {
   const auto term = [](double part, double own, double other) { return part > 0 ? part * std::log(own / other) : 0; };
   return rows > 0 ? term(hits, hits / rows, share) + term(rows - hits, 1 - hits / rows, 1 - share) : 0;
 }
 
-SUREFOOT_INLINE std::vector<FoundFault> repeated_row_faults(const LogFit& fit, Eigen::Index output, double resolution,
-                                                            const LogDoctorCriteria& criteria) {
+SUREFOOT_ONCE std::vector<FoundFault> repeated_row_faults(const LogFit& fit, Eigen::Index output, double resolution,
+                                                          const LogDoctorCriteria& criteria) {
   const std::size_t count = fit.bound.recordings.size();
   std::vector<RepeatedRows> repeated(count);
   double all_hits = 0, all_rows = 0;
@@ -213,7 +213,7 @@ SUREFOOT_INLINE std::vector<FoundFault> repeated_row_faults(const LogFit& fit, E
   return found;
 }
 
-SUREFOOT_INLINE std::vector<FoundFault> find_reading_faults(const LogFit& fit, const LogDoctorCriteria& criteria) {
+SUREFOOT_ONCE std::vector<FoundFault> find_reading_faults(const LogFit& fit, const LogDoctorCriteria& criteria) {
   std::vector<FoundFault> found;
   const std::size_t count = fit.bound.recordings.size();
   for (Eigen::Index output = 0; output < static_cast<Eigen::Index>(fit.bound.info.outputs.size()); ++output) {
@@ -244,7 +244,7 @@ SUREFOOT_INLINE std::vector<FoundFault> find_reading_faults(const LogFit& fit, c
   return found;
 }
 
-SUREFOOT_INLINE std::vector<FoundFault> find_gaps(const BoundSimulator& bound, const LogDoctorCriteria& criteria) {
+SUREFOOT_ONCE std::vector<FoundFault> find_gaps(const BoundSimulator& bound, const LogDoctorCriteria& criteria) {
   std::vector<FoundFault> found;
   if (bound.info.kind != SimulatorKind::ode) return found;
   for (std::size_t r = 0; r < bound.recordings.size(); ++r) {

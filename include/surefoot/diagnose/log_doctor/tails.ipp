@@ -10,7 +10,7 @@
 namespace surefoot::diagnosis {
 
 /// Continued fraction of the incomplete beta function, by Lentz's method.
-SUREFOOT_INLINE double beta_fraction(double x, double a, double b) {
+SUREFOOT_ONCE double beta_fraction(double x, double a, double b) {
   constexpr int most_terms = 300;      // it converges within some ten for the arguments that occur
   constexpr double tolerance = 1e-12;  // relative
   constexpr double tiny = 1e-300;      // in place of 0
@@ -31,7 +31,7 @@ SUREFOOT_INLINE double beta_fraction(double x, double a, double b) {
   return fraction;
 }
 
-SUREFOOT_INLINE double f_tail(double f, double d1, double d2) {
+SUREFOOT_ONCE double f_tail(double f, double d1, double d2) {
   if (!(d1 > 0 && d2 > 0)) return 1;
   if (!(f > 0)) return 1;
   if (!std::isfinite(f)) return 0;

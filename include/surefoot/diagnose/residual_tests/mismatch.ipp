@@ -13,9 +13,9 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE Mismatch measure_mismatch(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                          const std::vector<SimulatedRun>& trajectories, const Eigen::VectorXd& sigma,
-                                          NoiseKind noise, std::vector<WhitenessTest>* by_output) {
+SUREFOOT_ONCE Mismatch measure_mismatch(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                        const std::vector<SimulatedRun>& trajectories, const Eigen::VectorXd& sigma,
+                                        NoiseKind noise, std::vector<WhitenessTest>* by_output) {
   Mismatch result;
   for (Eigen::Index k = 0; k < sigma.size(); ++k) {
     const Eigen::Index memory = memory_of(noise);

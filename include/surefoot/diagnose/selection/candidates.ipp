@@ -17,9 +17,9 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE std::vector<bool> distinct_inputs(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                                  const std::vector<std::size_t>& recordings,
-                                                  const std::vector<SimulatedRun>& trajectories, double collinear) {
+SUREFOOT_ONCE std::vector<bool> distinct_inputs(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                const std::vector<std::size_t>& recordings,
+                                                const std::vector<SimulatedRun>& trajectories, double collinear) {
   const std::size_t inputs = bound.info.inputs.size(), count = inputs + bound.info.signals.size();
   Eigen::MatrixXd products = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count));
   std::vector<bool> changes(count, false);
@@ -53,7 +53,7 @@ SUREFOOT_INLINE std::vector<bool> distinct_inputs(const BoundSimulator& bound, c
   return distinct;
 }
 
-SUREFOOT_INLINE bool fits_velocity(const BoundSimulator& bound, const Effect& effect, std::size_t state) {
+SUREFOOT_ONCE bool fits_velocity(const BoundSimulator& bound, const Effect& effect, std::size_t state) {
   bool needs_position = effect.seen_position || effect.limit;
   for (const EffectParameter& parameter : effect.parameters) {
     needs_position = needs_position || parameter.measure.position != 0;
@@ -61,7 +61,7 @@ SUREFOOT_INLINE bool fits_velocity(const BoundSimulator& bound, const Effect& ef
   return bound.structure.velocity[state] && (bound.structure.position_of[state] >= 0 || !needs_position);
 }
 
-SUREFOOT_INLINE bool fits_state(const BoundSimulator& bound, const Effect& effect, std::size_t state) {
+SUREFOOT_ONCE bool fits_state(const BoundSimulator& bound, const Effect& effect, std::size_t state) {
   const SimulatorInfo& info = bound.info;
   const auto i = static_cast<int>(state);
   const bool is_position = std::ranges::find(bound.structure.position_of, i) != bound.structure.position_of.end();
@@ -73,8 +73,8 @@ SUREFOOT_INLINE bool fits_state(const BoundSimulator& bound, const Effect& effec
   return !effect.needs_conserved_state || (!angle && bound.structure.affects_rates[state]);
 }
 
-SUREFOOT_INLINE std::vector<AttachedEffect> attachments(const BoundSimulator& bound, const std::vector<Effect>& effects,
-                                                        const std::vector<bool>& distinct) {
+SUREFOOT_ONCE std::vector<AttachedEffect> attachments(const BoundSimulator& bound, const std::vector<Effect>& effects,
+                                                      const std::vector<bool>& distinct) {
   std::vector<AttachedEffect> result;
   const SimulatorInfo& info = bound.info;
   int rank = -1;

@@ -18,20 +18,20 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE Hypothesis without_effect(const Hypothesis& whole, std::size_t effect) {
+SUREFOOT_ONCE Hypothesis without_effect(const Hypothesis& whole, std::size_t effect) {
   Hypothesis rest = whole;
   rest.effects.erase(rest.effects.begin() + static_cast<std::ptrdiff_t>(effect));
   rest.values.erase(rest.values.begin() + static_cast<std::ptrdiff_t>(effect));
   return rest;
 }
 
-SUREFOOT_INLINE EvaluatedHypothesis Search::without(const EvaluatedHypothesis& whole, std::size_t effect) const {
+SUREFOOT_ONCE EvaluatedHypothesis Search::without(const EvaluatedHypothesis& whole, std::size_t effect) const {
   const Fit rest = fit(bound, without_effect(whole.hypothesis, effect), problem.fit, parallel);
   return evaluate_fit(bound, rest, problem, parallel);
 }
 
-SUREFOOT_INLINE Fit fit_child(const BoundSimulator& bound, const Hypothesis& parent,
-                              const std::vector<Proposal>& additions, const SearchProblem& problem) {
+SUREFOOT_ONCE Fit fit_child(const BoundSimulator& bound, const Hypothesis& parent,
+                            const std::vector<Proposal>& additions, const SearchProblem& problem) {
   const SearchEffort& effort = problem.effort;
   FitProblem quick = problem.fit;
   quick.recordings = problem.screened;
@@ -70,7 +70,7 @@ SUREFOOT_INLINE Fit fit_child(const BoundSimulator& bound, const Hypothesis& par
 }
 
 /// Effects that a parent has not yet, best first.
-SUREFOOT_INLINE std::vector<Proposal> proposals_for(const Search& search, const EvaluatedHypothesis& parent) {
+SUREFOOT_ONCE std::vector<Proposal> proposals_for(const Search& search, const EvaluatedHypothesis& parent) {
   const auto& [bound, problem, candidates, parallel] = search;
   FitProblem screened = problem.fit;
   screened.recordings = problem.screened;
@@ -86,8 +86,8 @@ SUREFOOT_INLINE std::vector<Proposal> proposals_for(const Search& search, const 
   return proposals;
 }
 
-SUREFOOT_INLINE std::vector<EvaluatedHypothesis> finished(const Search& search, std::vector<Fit> fits,
-                                                          std::size_t keep) {
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> finished(const Search& search, std::vector<Fit> fits,
+                                                        std::size_t keep) {
   constexpr std::uint64_t scatter_seed = 1;
   const auto& [bound, problem, candidates, parallel] = search;
   std::erase_if(fits, [](const Fit& one) { return !one.ok; });
@@ -108,10 +108,10 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> finished(const Search& search, 
   return evaluated;
 }
 
-SUREFOOT_INLINE std::vector<EvaluatedHypothesis> evaluate_children(const Search& search,
-                                                                   const EvaluatedHypothesis& parent,
-                                                                   const std::vector<std::vector<Proposal>>& additions,
-                                                                   std::size_t keep) {
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> evaluate_children(const Search& search,
+                                                                 const EvaluatedHypothesis& parent,
+                                                                 const std::vector<std::vector<Proposal>>& additions,
+                                                                 std::size_t keep) {
   const SearchProblem& problem = search.problem;
   std::vector<Fit> fits(additions.size());
   search.parallel(additions.size(), [&](std::size_t i) {
@@ -122,9 +122,9 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> evaluate_children(const Search&
 
 /// The parent with one effect more. A signature that does not help as it is may do so once everything is fitted: such
 /// proposals fill what room is left.
-SUREFOOT_INLINE std::vector<EvaluatedHypothesis> next_effects(const Search& search, const EvaluatedHypothesis& parent,
-                                                              std::vector<Proposal> proposals, std::size_t shortlist,
-                                                              std::size_t finalists) {
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> next_effects(const Search& search, const EvaluatedHypothesis& parent,
+                                                            std::vector<Proposal> proposals, std::size_t shortlist,
+                                                            std::size_t finalists) {
   if (proposals.size() > shortlist) proposals.resize(shortlist);
   std::vector<std::vector<Proposal>> singles;
   for (Proposal& one : proposals) {
@@ -135,8 +135,8 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> next_effects(const Search& sear
 }
 
 /// The parent with two effects more.
-SUREFOOT_INLINE std::vector<EvaluatedHypothesis> next_pairs(const Search& search, const EvaluatedHypothesis& parent,
-                                                            const std::vector<Proposal>& proposals) {
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> next_pairs(const Search& search, const EvaluatedHypothesis& parent,
+                                                          const std::vector<Proposal>& proposals) {
   const SearchEffort& effort = search.problem.effort;
   std::vector<std::vector<Proposal>> pairs;
   for (ProposedPair& pair : propose_pairs(proposals, effort.pairs)) {
@@ -145,9 +145,9 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> next_pairs(const Search& search
   return evaluate_children(search, parent, pairs, effort.pair_finalists);
 }
 
-SUREFOOT_INLINE std::vector<EvaluatedHypothesis> best_structures(std::vector<EvaluatedHypothesis> pool,
-                                                                 std::size_t count, double hopeless,
-                                                                 const SelectionCriteria& criteria) {
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> best_structures(std::vector<EvaluatedHypothesis> pool,
+                                                               std::size_t count, double hopeless,
+                                                               const SelectionCriteria& criteria) {
   std::vector<EvaluatedHypothesis> best;
   while (best.size() < count && !pool.empty()) {
     const std::size_t next = best_of(pool, criteria);
@@ -159,7 +159,7 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> best_structures(std::vector<Eva
 }
 
 /// Both effects of two hypotheses with the parameters of the first, each at half of its strength.
-SUREFOOT_INLINE Hypothesis half_of_each(const Hypothesis& a, const Hypothesis& b, std::size_t known) {
+SUREFOOT_ONCE Hypothesis half_of_each(const Hypothesis& a, const Hypothesis& b, std::size_t known) {
   constexpr double half = 0.5;  // as if they shared what each explains alone
   Hypothesis both = a;
   both.effects.push_back(b.effects[known]);
@@ -170,8 +170,8 @@ SUREFOOT_INLINE Hypothesis half_of_each(const Hypothesis& a, const Hypothesis& b
   return both;
 }
 
-SUREFOOT_INLINE std::vector<EvaluatedHypothesis> combined(const Search& search,
-                                                          const std::vector<EvaluatedHypothesis>& singles) {
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> combined(const Search& search,
+                                                        const std::vector<EvaluatedHypothesis>& singles) {
   const auto& [bound, problem, candidates, parallel] = search;
   std::vector<EvaluatedHypothesis> best = singles;
   std::erase_if(best, [&](const EvaluatedHypothesis& one) { return search.effects(one) != 1; });

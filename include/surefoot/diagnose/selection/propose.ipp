@@ -25,7 +25,7 @@ namespace surefoot::diagnosis {
 
 using surefoot::detail::product, surefoot::detail::transposed_product, surefoot::detail::sum_of_squares;
 
-SUREFOOT_INLINE Eigen::VectorXd OpenResiduals::beyond_parameters(const Eigen::VectorXd& change) const {
+SUREFOOT_ONCE Eigen::VectorXd OpenResiduals::beyond_parameters(const Eigen::VectorXd& change) const {
   if (basis.cols() == 0) return change;
   const Eigen::VectorXd along = product(basis, transposed_product(basis, change));
   Eigen::VectorXd beyond = change;
@@ -33,8 +33,8 @@ SUREFOOT_INLINE Eigen::VectorXd OpenResiduals::beyond_parameters(const Eigen::Ve
   return beyond;
 }
 
-SUREFOOT_INLINE OpenResiduals open_residuals(const BoundSimulator& bound, const Hypothesis& base,
-                                             const FitProblem& problem, const Parallel& parallel) {
+SUREFOOT_ONCE OpenResiduals open_residuals(const BoundSimulator& bound, const Hypothesis& base,
+                                           const FitProblem& problem, const Parallel& parallel) {
   const FitFunctions functions(bound, base, problem, parallel);
   const Eigen::VectorXd z = functions.start();
   const double limit = problem.weighting.robust;
@@ -48,7 +48,7 @@ SUREFOOT_INLINE OpenResiduals open_residuals(const BoundSimulator& bound, const 
   return result;
 }
 
-SUREFOOT_INLINE std::vector<Eigen::Index> strengths_of(const Effect& effect) {
+SUREFOOT_ONCE std::vector<Eigen::Index> strengths_of(const Effect& effect) {
   std::vector<Eigen::Index> strengths;
   for (std::size_t k = 0; k < effect.parameters.size(); ++k) {
     if (effect.parameters[k].strength) strengths.push_back(static_cast<Eigen::Index>(k));
@@ -56,9 +56,9 @@ SUREFOOT_INLINE std::vector<Eigen::Index> strengths_of(const Effect& effect) {
   return strengths;
 }
 
-SUREFOOT_INLINE Eigen::MatrixXd signatures(const BoundSimulator& bound, const Hypothesis& base,
-                                           const FitProblem& problem, const Eigen::VectorXd& residuals,
-                                           const AttachedEffect& candidate, const Eigen::VectorXd& start) {
+SUREFOOT_ONCE Eigen::MatrixXd signatures(const BoundSimulator& bound, const Hypothesis& base,
+                                         const FitProblem& problem, const Eigen::VectorXd& residuals,
+                                         const AttachedEffect& candidate, const Eigen::VectorXd& start) {
   const std::vector<Eigen::Index> strengths = strengths_of(*candidate.effect);
   const auto count = static_cast<Eigen::Index>(std::max<std::size_t>(1, strengths.size()));
   Eigen::MatrixXd result(residuals.size(), count);
@@ -78,10 +78,10 @@ SUREFOOT_INLINE Eigen::MatrixXd signatures(const BoundSimulator& bound, const Hy
 }
 
 /// Limits of the multiples of the signatures: those of the strengths; 0 to 1 where there is none.
-SUREFOOT_INLINE std::pair<Eigen::VectorXd, Eigen::VectorXd> limits_of_shares(const BoundSimulator& bound,
-                                                                             const AttachedEffect& candidate,
-                                                                             const Eigen::VectorXd& start,
-                                                                             Eigen::Index count) {
+SUREFOOT_ONCE std::pair<Eigen::VectorXd, Eigen::VectorXd> limits_of_shares(const BoundSimulator& bound,
+                                                                           const AttachedEffect& candidate,
+                                                                           const Eigen::VectorXd& start,
+                                                                           Eigen::Index count) {
   Eigen::VectorXd least = Eigen::VectorXd::Zero(count), most = Eigen::VectorXd::Ones(count);
   const std::vector<Eigen::Index> strengths = strengths_of(*candidate.effect);
   for (std::size_t m = 0; m < strengths.size(); ++m) {
@@ -96,9 +96,9 @@ SUREFOOT_INLINE std::pair<Eigen::VectorXd, Eigen::VectorXd> limits_of_shares(con
   return {least, most};
 }
 
-SUREFOOT_INLINE Proposal predict_gain(const BoundSimulator& bound, const OpenResiduals& open,
-                                      const AttachedEffect& candidate, const Eigen::VectorXd& start,
-                                      const Eigen::MatrixXd& signatures, const ProposalCriteria& criteria) {
+SUREFOOT_ONCE Proposal predict_gain(const BoundSimulator& bound, const OpenResiduals& open,
+                                    const AttachedEffect& candidate, const Eigen::VectorXd& start,
+                                    const Eigen::MatrixXd& signatures, const ProposalCriteria& criteria) {
   Proposal proposal;
   if (signatures.cols() == 0) return proposal;
   proposal.effect = candidate;
@@ -142,7 +142,7 @@ SUREFOOT_INLINE Proposal predict_gain(const BoundSimulator& bound, const OpenRes
 }
 
 /// The best proposal of each effect, with its other starts in their order.
-SUREFOOT_INLINE std::vector<Proposal> best_of_each_effect(std::vector<Proposal> tried) {
+SUREFOOT_ONCE std::vector<Proposal> best_of_each_effect(std::vector<Proposal> tried) {
   std::erase_if(tried, [](const Proposal& one) { return !one.effect.effect; });
   sort_items(tried, [](const Proposal& a, const Proposal& b) { return a.gain > b.gain; });
   std::vector<Proposal> best;
@@ -158,9 +158,9 @@ SUREFOOT_INLINE std::vector<Proposal> best_of_each_effect(std::vector<Proposal> 
   return best;
 }
 
-SUREFOOT_INLINE std::vector<Proposal> propose(const BoundSimulator& bound, const Hypothesis& base,
-                                              const FitProblem& problem, const std::vector<AttachedEffect>& candidates,
-                                              const Parallel& parallel, const ProposalCriteria& criteria) {
+SUREFOOT_ONCE std::vector<Proposal> propose(const BoundSimulator& bound, const Hypothesis& base,
+                                            const FitProblem& problem, const std::vector<AttachedEffect>& candidates,
+                                            const Parallel& parallel, const ProposalCriteria& criteria) {
   const OpenResiduals open = open_residuals(bound, base, problem, parallel);
   const auto observed =
       observe(bound, problem.recordings, simulate_all(bound, base, problem.recordings, problem.integration, parallel));

@@ -14,7 +14,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE Comparison gain_of(const ErrorSquares& before, const ErrorSquares& after, double log_odds) {
+SUREFOOT_ONCE Comparison gain_of(const ErrorSquares& before, const ErrorSquares& after, double log_odds) {
   constexpr double least_ratio = 1e-6;  // of errors: below, the second one is exact
   constexpr double largest_odds = 700;  // [nat]: exp would overflow
   Comparison result;
@@ -37,8 +37,8 @@ SUREFOOT_INLINE Comparison gain_of(const ErrorSquares& before, const ErrorSquare
   return result;
 }
 
-SUREFOOT_INLINE std::size_t closest_of_tie(const Search& search, const std::vector<EvaluatedHypothesis>& pool,
-                                           const std::vector<double>& share, std::size_t best) {
+SUREFOOT_ONCE std::size_t closest_of_tie(const Search& search, const std::vector<EvaluatedHypothesis>& pool,
+                                         const std::vector<double>& share, std::size_t best) {
   const SelectionCriteria& criteria = search.problem.criteria;
   const auto as_it_is = [&](std::size_t i) {
     EvaluatedHypothesis one = pool[i];
@@ -54,7 +54,7 @@ SUREFOOT_INLINE std::size_t closest_of_tie(const Search& search, const std::vect
   return closest;
 }
 
-SUREFOOT_INLINE Selection ranked(const Search& search, const std::vector<EvaluatedHypothesis>& pool) {
+SUREFOOT_ONCE Selection ranked(const Search& search, const std::vector<EvaluatedHypothesis>& pool) {
   const SelectionCriteria& criteria = search.problem.criteria;
   const std::vector<double> share = probabilities(pool, criteria);
   std::vector<std::size_t> order(pool.size());

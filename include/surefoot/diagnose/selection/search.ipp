@@ -23,8 +23,8 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE bool keep_best_form(std::vector<EvaluatedHypothesis>& pool, const EvaluatedHypothesis& one,
-                                    const SelectionCriteria& criteria) {
+SUREFOOT_ONCE bool keep_best_form(std::vector<EvaluatedHypothesis>& pool, const EvaluatedHypothesis& one,
+                                  const SelectionCriteria& criteria) {
   for (EvaluatedHypothesis& other : pool) {
     if (!same_structure(other.hypothesis, one.hypothesis)) continue;
     const bool better = log_odds(one, other, criteria) > 0;
@@ -35,7 +35,7 @@ SUREFOOT_INLINE bool keep_best_form(std::vector<EvaluatedHypothesis>& pool, cons
   return true;
 }
 
-SUREFOOT_INLINE void reweight(Search& search, const EvaluatedHypothesis& best) {
+SUREFOOT_ONCE void reweight(Search& search, const EvaluatedHypothesis& best) {
   FitProblem& problem = search.problem.fit;
   const auto runs =
       simulate_all(search.bound, best.hypothesis, problem.recordings, problem.integration, search.parallel);
@@ -49,8 +49,8 @@ SUREFOOT_INLINE void reweight(Search& search, const EvaluatedHypothesis& best) {
 }
 
 /// The children of one parent into the pool of children.
-SUREFOOT_INLINE void extend(const Search& search, const EvaluatedHypothesis& parent,
-                            std::vector<EvaluatedHypothesis>& children) {
+SUREFOOT_ONCE void extend(const Search& search, const EvaluatedHypothesis& parent,
+                          std::vector<EvaluatedHypothesis>& children) {
   const SearchProblem& problem = search.problem;
   const auto most = static_cast<std::size_t>(problem.criteria.max_effects);
   const bool structured = problem.structured(parent.hypothesis, problem.fit.integration);
@@ -74,8 +74,8 @@ SUREFOOT_INLINE void extend(const Search& search, const EvaluatedHypothesis& par
   }
 }
 
-SUREFOOT_INLINE std::vector<EvaluatedHypothesis> extended(const Search& search,
-                                                          const std::vector<EvaluatedHypothesis>& beam) {
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> extended(const Search& search,
+                                                        const std::vector<EvaluatedHypothesis>& beam) {
   std::vector<EvaluatedHypothesis> children;
   for (const EvaluatedHypothesis& parent : beam) {
     if (!search.problem.stopped()) extend(search, parent, children);
@@ -83,7 +83,7 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> extended(const Search& search,
   return children;
 }
 
-SUREFOOT_INLINE std::vector<EvaluatedHypothesis> extended_from(Search search, Hypothesis start) {
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> extended_from(Search search, Hypothesis start) {
   std::vector<EvaluatedHypothesis> children;
   if (search.problem.stopped()) return children;
   start.effects.resize(search.problem.known);
@@ -95,7 +95,7 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> extended_from(Search search, Hy
   return children;
 }
 
-SUREFOOT_INLINE bool refine_integration(Search& search, const EvaluatedHypothesis& best) {
+SUREFOOT_ONCE bool refine_integration(Search& search, const EvaluatedHypothesis& best) {
   FitProblem& problem = search.problem.fit;
   const auto finer = finer_integration(search.bound, best.hypothesis, problem.weighting.sigma, problem.integration,
                                        problem.recordings.front());
@@ -104,12 +104,12 @@ SUREFOOT_INLINE bool refine_integration(Search& search, const EvaluatedHypothesi
 }
 
 /// A hypothesis, fitted and evaluated again.
-SUREFOOT_INLINE EvaluatedHypothesis refitted(const Search& search, const EvaluatedHypothesis& one) {
+SUREFOOT_ONCE EvaluatedHypothesis refitted(const Search& search, const EvaluatedHypothesis& one) {
   return evaluate_fit(search.bound, fit(search.bound, one.hypothesis, search.problem.fit, serially()), search.problem,
                       serially());
 }
 
-SUREFOOT_INLINE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool) {
+SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool) {
   const SelectionCriteria& criteria = search.problem.criteria;
   std::vector<EvaluatedHypothesis> beam = pool;
   for (int depth = 0; depth < criteria.max_effects && !search.problem.stopped(); ++depth) {
@@ -143,8 +143,8 @@ SUREFOOT_INLINE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool
   }
 }
 
-SUREFOOT_INLINE std::vector<EvaluatedHypothesis> fitted_again(const Search& search,
-                                                              const std::vector<EvaluatedHypothesis>& pool) {
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> fitted_again(const Search& search,
+                                                            const std::vector<EvaluatedHypothesis>& pool) {
   const SearchEffort& effort = search.problem.effort;
   std::vector<EvaluatedHypothesis> best =
       best_structures(pool, effort.finalists, effort.hopeless, search.problem.criteria);
@@ -156,7 +156,7 @@ SUREFOOT_INLINE std::vector<EvaluatedHypothesis> fitted_again(const Search& sear
   return best;
 }
 
-SUREFOOT_INLINE void refit_best(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
+SUREFOOT_ONCE void refit_best(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
   constexpr std::uint64_t restart_seed = 1;
   const SearchProblem& problem = search.problem;
   if (problem.stopped()) return;
@@ -178,7 +178,7 @@ SUREFOOT_INLINE void refit_best(const Search& search, std::vector<EvaluatedHypot
   }
 }
 
-SUREFOOT_INLINE void swap_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
+SUREFOOT_ONCE void swap_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
   constexpr double progress = 0.8;  // of the search
   const SearchProblem& problem = search.problem;
   const EvaluatedHypothesis best = pool[best_of(pool, problem.criteria)];
@@ -198,7 +198,7 @@ SUREFOOT_INLINE void swap_effects(const Search& search, std::vector<EvaluatedHyp
   }
 }
 
-SUREFOOT_INLINE void begin_anew(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
+SUREFOOT_ONCE void begin_anew(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
   const SelectionCriteria& criteria = search.problem.criteria;
   const EvaluatedHypothesis best = pool[best_of(pool, criteria)];
   if (search.effects(best) < 2) return;  // the search began with single effects
@@ -207,8 +207,8 @@ SUREFOOT_INLINE void begin_anew(const Search& search, std::vector<EvaluatedHypot
   }
 }
 
-SUREFOOT_INLINE std::vector<std::size_t> informative(const BoundSimulator& bound, const Hypothesis& calibrated,
-                                                     const SearchProblem& problem, const Parallel& parallel) {
+SUREFOOT_ONCE std::vector<std::size_t> informative(const BoundSimulator& bound, const Hypothesis& calibrated,
+                                                   const SearchProblem& problem, const Parallel& parallel) {
   const auto& all = problem.fit.recordings;
   double rows = 0;
   for (const std::size_t r : all) rows += static_cast<double>(bound.recordings[r].rows());
@@ -219,8 +219,8 @@ SUREFOOT_INLINE std::vector<std::size_t> informative(const BoundSimulator& bound
   return some_by_error(bound, all, runs, std::max(std::min(problem.screened.size(), all.size()), count));
 }
 
-SUREFOOT_INLINE Selection select_effects(const BoundSimulator& bound, const Fit& calibrated, SearchProblem problem,
-                                         const std::vector<AttachedEffect>& candidates, const Parallel& parallel) {
+SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& calibrated, SearchProblem problem,
+                                       const std::vector<AttachedEffect>& candidates, const Parallel& parallel) {
   problem.candidates = candidates.size();
   Search search{bound, std::move(problem), candidates, parallel};
   const SelectionCriteria& criteria = search.problem.criteria;

@@ -16,7 +16,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE Sizes unit_sizes(const SimulatorInfo& info) {
+SUREFOOT_ONCE Sizes unit_sizes(const SimulatorInfo& info) {
   Sizes sizes;
   sizes.state.assign(info.states.size(), 1.0);
   sizes.rate = sizes.effort = sizes.position = sizes.state;
@@ -29,14 +29,14 @@ SUREFOOT_INLINE Sizes unit_sizes(const SimulatorInfo& info) {
   return sizes;
 }
 
-SUREFOOT_INLINE void check_size(int fixed_size, std::size_t named, const SimulatorInfo& info, const char* type) {
+SUREFOOT_ONCE void check_size(int fixed_size, std::size_t named, const SimulatorInfo& info, const char* type) {
   if (fixed_size == Eigen::Dynamic || fixed_size == static_cast<int>(named)) return;
   throw DiagnoseError("simulator '" + info.name + "': " + type + " has " + std::to_string(fixed_size) +
                       " components, but info() names " + std::to_string(named));
 }
 
 /// Whether two numbers are the same but for rounding.
-SUREFOOT_INLINE bool nearly_equal(double a, double b) {
+SUREFOOT_ONCE bool nearly_equal(double a, double b) {
   return std::abs(a - b) <= 1e-9 * (1 + std::abs(a) + std::abs(b));
 }
 
@@ -47,8 +47,8 @@ struct StructureSearch {
   std::vector<std::vector<bool>> depends_on;  // [i][j]: the rate, or next value, of state i depends on state j
 };
 
-SUREFOOT_INLINE void refute(StructureSearch& search, const Eigen::VectorXd& x, const Eigen::VectorXd& rate,
-                            const Eigen::VectorXd& y) {
+SUREFOOT_ONCE void refute(StructureSearch& search, const Eigen::VectorXd& x, const Eigen::VectorXd& rate,
+                          const Eigen::VectorXd& y) {
   for (std::size_t i = 0; i < search.speed.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     for (std::size_t j = 0; j < search.speed.size(); ++j) {
@@ -61,16 +61,16 @@ SUREFOOT_INLINE void refute(StructureSearch& search, const Eigen::VectorXd& x, c
 }
 
 /// Whether a state in this unit is a speed, although the model may have no state that it is the rate of.
-SUREFOOT_INLINE bool is_speed_unit(const std::string& unit) {
+SUREFOOT_ONCE bool is_speed_unit(const std::string& unit) {
   constexpr std::array<const char*, 9> speeds{"m/s",   "cm/s", "mm/s",    "km/h", "rad/s",
                                                "deg/s", "rpm",  "rev/min", "rev/s"};
   return std::ranges::find(speeds, unit) != speeds.end();
 }
 
 /// Compares the rates at a point with those after each state was moved from it.
-SUREFOOT_INLINE void find_dependencies(StructureSearch& search, const SimulatorAnswers& answers,
-                                       const Eigen::VectorXd& x, const Eigen::VectorXd& u, const Eigen::VectorXd& rate,
-                                       double scale, Rng& rng) {
+SUREFOOT_ONCE void find_dependencies(StructureSearch& search, const SimulatorAnswers& answers,
+                                     const Eigen::VectorXd& x, const Eigen::VectorXd& u, const Eigen::VectorXd& rate,
+                                     double scale, Rng& rng) {
   for (std::size_t j = 0; j < search.speed.size(); ++j) {
     Eigen::VectorXd moved = x;
     moved[static_cast<Eigen::Index>(j)] += scale * (0.1 + rng.uniform());
@@ -83,7 +83,7 @@ SUREFOOT_INLINE void find_dependencies(StructureSearch& search, const SimulatorA
 }
 
 /// States whose next values depend on inputs alone, or on others of that kind.
-SUREFOOT_INLINE std::vector<bool> states_that_remember(const StructureSearch& search) {
+SUREFOOT_ONCE std::vector<bool> states_that_remember(const StructureSearch& search) {
   const std::size_t n = search.depends_on.size();
   std::vector<bool> remembers(n, false);
   for (std::size_t round = 0; round < n; ++round) {  // each finds what keeps what the one before keeps
@@ -97,8 +97,8 @@ SUREFOOT_INLINE std::vector<bool> states_that_remember(const StructureSearch& se
 }
 
 /// Fills in what remains true.
-SUREFOOT_INLINE void conclude_structure(const StructureSearch& search, const SimulatorInfo& info,
-                                        SimulatorStructure& structure) {
+SUREFOOT_ONCE void conclude_structure(const StructureSearch& search, const SimulatorInfo& info,
+                                      SimulatorStructure& structure) {
   const std::size_t n = info.states.size();
   structure.position_of.assign(n, -1);
   structure.velocity.assign(n, false);
@@ -128,8 +128,8 @@ SUREFOOT_INLINE void conclude_structure(const StructureSearch& search, const Sim
   }
 }
 
-SUREFOOT_INLINE SimulatorStructure find_structure(const SimulatorAnswers& answers, const SimulatorInfo& info,
-                                                  const Recording& example) {
+SUREFOOT_ONCE SimulatorStructure find_structure(const SimulatorAnswers& answers, const SimulatorInfo& info,
+                                                const Recording& example) {
   const auto n = info.states.size(), m = info.inputs.size(), k = info.outputs.size();
   SimulatorStructure structure;
   structure.driven_signal.assign(info.signals.size(), false);

@@ -13,7 +13,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE Evidence evidence_for(const Selection& selection, std::size_t effect) {
+SUREFOOT_ONCE Evidence evidence_for(const Selection& selection, std::size_t effect) {
   const Comparison gain = effect < selection.evidence.size() ? selection.evidence[effect] : Comparison{};
   const auto& effects = selection.chosen.hypothesis.effects;
   const AttachedEffect& mine = effects[selection.nominal.hypothesis.effects.size() + effect];
@@ -27,7 +27,7 @@ SUREFOOT_INLINE Evidence evidence_for(const Selection& selection, std::size_t ef
   return {gain.gain, gain.stderr_, gain.p_value, std::min(1.0, confidence)};
 }
 
-SUREFOOT_INLINE std::string names_of(const Hypothesis& hypothesis, std::size_t known) {
+SUREFOOT_ONCE std::string names_of(const Hypothesis& hypothesis, std::size_t known) {
   std::vector<std::string> names;
   for (std::size_t e = known; e < hypothesis.effects.size(); ++e) {
     std::string name = hypothesis.effects[e].effect->name;
@@ -37,7 +37,7 @@ SUREFOOT_INLINE std::string names_of(const Hypothesis& hypothesis, std::size_t k
   return names.empty() ? "no effect at all" : in_list(names);
 }
 
-SUREFOOT_INLINE Alternatives find_alternatives(const Selection& selection, const SelectionCriteria& criteria) {
+SUREFOOT_ONCE Alternatives find_alternatives(const Selection& selection, const SelectionCriteria& criteria) {
   constexpr std::size_t most = 20;  // alternatives that are told: nobody reads more
   const std::size_t known = selection.nominal.hypothesis.effects.size();
   const bool found_any = selection.chosen.hypothesis.effects.size() > known;

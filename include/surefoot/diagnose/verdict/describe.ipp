@@ -16,10 +16,10 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE std::vector<CalibratedParameter> calibrated_parameters(const BoundSimulator& bound,
-                                                                       const Hypothesis& hypothesis,
-                                                                       const StandardErrors& errors,
-                                                                       const DescriptionCriteria& criteria) {
+SUREFOOT_ONCE std::vector<CalibratedParameter> calibrated_parameters(const BoundSimulator& bound,
+                                                                     const Hypothesis& hypothesis,
+                                                                     const StandardErrors& errors,
+                                                                     const DescriptionCriteria& criteria) {
   std::vector<CalibratedParameter> result;
   for (std::size_t i = 0; i < bound.info.parameters.size(); ++i) {
     const ParameterInfo& info = bound.info.parameters[i];
@@ -40,8 +40,8 @@ SUREFOOT_INLINE std::vector<CalibratedParameter> calibrated_parameters(const Bou
   return result;
 }
 
-SUREFOOT_INLINE std::vector<std::string> correlated_pairs(const BoundSimulator& bound, const StandardErrors& errors,
-                                                          const DescriptionCriteria& criteria) {
+SUREFOOT_ONCE std::vector<std::string> correlated_pairs(const BoundSimulator& bound, const StandardErrors& errors,
+                                                        const DescriptionCriteria& criteria) {
   std::vector<std::string> result;
   for (std::size_t a = 0; a < errors.variables.size(); ++a) {
     for (std::size_t b = a + 1; b < errors.variables.size(); ++b) {
@@ -57,8 +57,8 @@ SUREFOOT_INLINE std::vector<std::string> correlated_pairs(const BoundSimulator& 
   return result;
 }
 
-SUREFOOT_INLINE FoundEffect describe(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t effect,
-                                     const StandardErrors* errors) {
+SUREFOOT_ONCE FoundEffect describe(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t effect,
+                                   const StandardErrors* errors) {
   const AttachedEffect& attached = hypothesis.effects[effect];
   FoundEffect found;
   found.name = attached.effect->name;
@@ -82,7 +82,7 @@ SUREFOOT_INLINE FoundEffect describe(const BoundSimulator& bound, const Hypothes
   return found;
 }
 
-SUREFOOT_INLINE std::string noise_sentence(NoiseKind noise) {
+SUREFOOT_ONCE std::string noise_sentence(NoiseKind noise) {
   switch (noise) {
     case NoiseKind::measurement:
       return "measurement noise: whole recordings are simulated";
@@ -94,13 +94,13 @@ SUREFOOT_INLINE std::string noise_sentence(NoiseKind noise) {
   return "process noise accumulates until the final pose: poses are weighted by its covariance";
 }
 
-SUREFOOT_INLINE std::string rejection_sentence() {
+SUREFOOT_ONCE std::string rejection_sentence() {
   return "effects that seemed to explain the mismatch did not lower the error on the held-out recordings, and were "
          "dropped";
 }
 
 /// The last effect of a hypothesis that another one does not have; if it has all, the last.
-SUREFOOT_INLINE const Effect& effect_beyond(const Hypothesis& hypothesis, const Hypothesis& other) {
+SUREFOOT_ONCE const Effect& effect_beyond(const Hypothesis& hypothesis, const Hypothesis& other) {
   for (std::size_t e = hypothesis.effects.size(); e > 0; --e) {
     const AttachedEffect& mine = hypothesis.effects[e - 1];
     const bool shared = std::ranges::any_of(other.effects, [&](const AttachedEffect& theirs) {
@@ -111,7 +111,7 @@ SUREFOOT_INLINE const Effect& effect_beyond(const Hypothesis& hypothesis, const 
   return *hypothesis.effects.back().effect;
 }
 
-SUREFOOT_INLINE std::string next_experiment(const Hypothesis& chosen, const Hypothesis& other) {
+SUREFOOT_ONCE std::string next_experiment(const Hypothesis& chosen, const Hypothesis& other) {
   const Effect &mine = effect_beyond(chosen, other), &theirs = effect_beyond(other, chosen);
   if (mine.name == theirs.name) return mine.experiment;
   std::string text = mine.experiment + ": separates " + mine.name + " from " + theirs.name;
@@ -120,12 +120,12 @@ SUREFOOT_INLINE std::string next_experiment(const Hypothesis& chosen, const Hypo
 }
 
 /// "1.04 times the noise", or nothing where that is unknown.
-SUREFOOT_INLINE std::string against_noise(const Diagnosis& diagnosis) {
+SUREFOOT_ONCE std::string against_noise(const Diagnosis& diagnosis) {
   return std::isfinite(diagnosis.noise_ratio) ? in_digits(diagnosis.noise_ratio) + " times the noise" : "";
 }
 
 /// Recordings that are further off than noise explains, in a sentence of their own.
-SUREFOOT_INLINE std::string beyond_noise_sentence(const Diagnosis& diagnosis) {
+SUREFOOT_ONCE std::string beyond_noise_sentence(const Diagnosis& diagnosis) {
   constexpr std::size_t most = 3;  // names that are told
   std::vector<std::string> names;
   for (const RecordingFit& one : diagnosis.per_recording) {
@@ -140,7 +140,7 @@ SUREFOOT_INLINE std::string beyond_noise_sentence(const Diagnosis& diagnosis) {
 }
 
 /// By how much the error on held-out recordings falls, in how many of them, and what is left of it.
-SUREFOOT_INLINE std::string gain_sentence(const Diagnosis& diagnosis) {
+SUREFOOT_ONCE std::string gain_sentence(const Diagnosis& diagnosis) {
   const auto better = std::ranges::count_if(diagnosis.per_recording, [](const RecordingFit& one) {
     return one.after < one.before;
   });
@@ -151,13 +151,13 @@ SUREFOOT_INLINE std::string gain_sentence(const Diagnosis& diagnosis) {
          std::to_string(diagnosis.per_recording.size()) + " agree.";
 }
 
-SUREFOOT_INLINE std::string clean_sentence(const Diagnosis& diagnosis, const std::string& parameters) {
+SUREFOOT_ONCE std::string clean_sentence(const Diagnosis& diagnosis, const std::string& parameters) {
   const std::string noise = against_noise(diagnosis);
   return "Nothing is missing: with " + parameters + " parameters the model agrees with the recordings" +
          (noise.empty() ? "." : ", to " + noise + ".");
 }
 
-SUREFOOT_INLINE std::string tie_sentence(const std::vector<std::string>& ties) {
+SUREFOOT_ONCE std::string tie_sentence(const std::vector<std::string>& ties) {
   constexpr std::size_t most = 3;  // that are told in the sentence; the report has all
   if (ties.empty()) return "";
   std::string text = " These recordings cannot tell it from " + ties.front();
@@ -165,7 +165,7 @@ SUREFOOT_INLINE std::string tie_sentence(const std::vector<std::string>& ties) {
   return text + (ties.size() > most ? "; or from others." : ".");
 }
 
-SUREFOOT_INLINE std::string verdict_sentence(const Diagnosis& diagnosis, const std::vector<std::string>& ties) {
+SUREFOOT_ONCE std::string verdict_sentence(const Diagnosis& diagnosis, const std::vector<std::string>& ties) {
   std::vector<std::string> effects;
   for (const FoundEffect& effect : diagnosis.effects) effects.push_back(effect.sentence);
   switch (diagnosis.verdict) {

@@ -11,8 +11,8 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE std::vector<DetectionLimit> detection_limits(const BoundSimulator& bound,
-                                                             const std::vector<Proposal>& proposals) {
+SUREFOOT_ONCE std::vector<DetectionLimit> detection_limits(const BoundSimulator& bound,
+                                                           const std::vector<Proposal>& proposals) {
   std::vector<DetectionLimit> limits;
   for (const Proposal& proposal : proposals) {
     const std::vector<Eigen::Index> strengths = strengths_of(*proposal.effect.effect);

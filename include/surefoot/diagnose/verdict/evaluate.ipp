@@ -24,10 +24,10 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE std::pair<double, double> ratio_interval(const std::vector<double>& before,
-                                                         const std::vector<double>& after,
-                                                         const std::vector<double>& counts, std::uint64_t seed,
-                                                         const EvaluationCriteria& criteria) {
+SUREFOOT_ONCE std::pair<double, double> ratio_interval(const std::vector<double>& before,
+                                                       const std::vector<double>& after,
+                                                       const std::vector<double>& counts, std::uint64_t seed,
+                                                       const EvaluationCriteria& criteria) {
   Rng rng(seed, 0x7e57u);
   std::vector<double> ratios;
   for (std::uint32_t round = 0; round < criteria.rounds; ++round) {
@@ -43,14 +43,14 @@ SUREFOOT_INLINE std::pair<double, double> ratio_interval(const std::vector<doubl
   return {ratios[criteria.tail - 1], ratios[criteria.rounds - criteria.tail - 1]};
 }
 
-SUREFOOT_INLINE bool forest_helps(const Comparison& cross_validated, double held_out_before, double held_out_after,
-                                  const EvaluationCriteria& criteria) {
+SUREFOOT_ONCE bool forest_helps(const Comparison& cross_validated, double held_out_before, double held_out_after,
+                                const EvaluationCriteria& criteria) {
   return cross_validated.gain > criteria.min_forest_gain && cross_validated.t > criteria.min_forest_t &&
          held_out_after < held_out_before;
 }
 
-SUREFOOT_INLINE double corrected_error(const EstimationSetup& setup, const FittedModel& model, const Parallel& parallel,
-                                       std::uint64_t seed) {
+SUREFOOT_ONCE double corrected_error(const EstimationSetup& setup, const FittedModel& model, const Parallel& parallel,
+                                     std::uint64_t seed) {
   const auto& [training, held_out, folds, cross_fitted] = setup.split;
   std::vector<SimulatedRun> runs(held_out.size());
   const auto correct = [&](const std::vector<std::size_t>& learned_from,
@@ -77,9 +77,9 @@ SUREFOOT_INLINE double corrected_error(const EstimationSetup& setup, const Fitte
   return error_over_all(setup.bound, held_out, runs);
 }
 
-SUREFOOT_INLINE ForestResidual offer_forest(const EstimationSetup& setup, const FittedModel& chosen,
-                                            double held_out_before, const Parallel& parallel, std::uint64_t seed,
-                                            const EvaluationCriteria& criteria) {
+SUREFOOT_ONCE ForestResidual offer_forest(const EstimationSetup& setup, const FittedModel& chosen,
+                                          double held_out_before, const Parallel& parallel, std::uint64_t seed,
+                                          const EvaluationCriteria& criteria) {
   const auto& training = setup.split.training;
   const std::vector<SimulatedRun>& runs = chosen.runs.whole_training;
   Weighting weighting = setup.problem.weighting;
@@ -97,8 +97,8 @@ SUREFOOT_INLINE ForestResidual offer_forest(const EstimationSetup& setup, const 
   return offer;
 }
 
-SUREFOOT_INLINE double output_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                    Eigen::Index output, const WhitenessTest& residuals, double error) {
+SUREFOOT_ONCE double output_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                  Eigen::Index output, const WhitenessTest& residuals, double error) {
   constexpr double significance = 0.01;  // of structure in the residuals
   const double stated = bound.info.outputs[static_cast<std::size_t>(output)].noise;
   if (stated > 0) return stated;
@@ -108,14 +108,14 @@ SUREFOOT_INLINE double output_noise(const BoundSimulator& bound, const std::vect
 }
 
 /// The same where noise adds up from row to row: as stated, or as far as it is fast.
-SUREFOOT_INLINE double noise_of_steps(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                      Eigen::Index output, double error) {
+SUREFOOT_ONCE double noise_of_steps(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                    Eigen::Index output, double error) {
   const double stated = bound.info.outputs[static_cast<std::size_t>(output)].noise;
   return stated > 0 ? stated : std::min(fast_noise(bound, recordings, output), error);
 }
 
-SUREFOOT_INLINE std::vector<ChannelMismatch> mismatch_by_output(const EstimationSetup& setup,
-                                                                const FittedModels& models) {
+SUREFOOT_ONCE std::vector<ChannelMismatch> mismatch_by_output(const EstimationSetup& setup,
+                                                              const FittedModels& models) {
   const BoundSimulator& bound = setup.bound;
   const auto& held_out = setup.split.held_out;
   const std::array all = {&models.nominal, &models.calibrated, &models.chosen};
@@ -148,7 +148,7 @@ SUREFOOT_INLINE std::vector<ChannelMismatch> mismatch_by_output(const Estimation
   return result;
 }
 
-SUREFOOT_INLINE double noise_floor(const std::vector<ChannelMismatch>& outputs, const Eigen::VectorXd& scale) {
+SUREFOOT_ONCE double noise_floor(const std::vector<ChannelMismatch>& outputs, const Eigen::VectorXd& scale) {
   double squares = 0;
   for (std::size_t k = 0; k < outputs.size(); ++k) {
     if (!(outputs[k].noise > 0)) return std::numeric_limits<double>::quiet_NaN();
@@ -159,7 +159,7 @@ SUREFOOT_INLINE double noise_floor(const std::vector<ChannelMismatch>& outputs, 
 }
 
 /// Values of the held-out errors of a recording that are independent of each other.
-SUREFOOT_INLINE double independent_errors(const BoundSimulator& bound, std::size_t r, const SimulatedRun& run) {
+SUREFOOT_ONCE double independent_errors(const BoundSimulator& bound, std::size_t r, const SimulatedRun& run) {
   double count = 0;
   for (std::size_t k = 0; k < bound.info.outputs.size(); ++k) {
     const Eigen::VectorXd series = series_of(bound, r, run, static_cast<Eigen::Index>(k));
@@ -171,8 +171,8 @@ SUREFOOT_INLINE double independent_errors(const BoundSimulator& bound, std::size
 }
 
 /// Recordings whose curves are kept for pictures: all if they are few.
-SUREFOOT_INLINE void keep_curves(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
-                                 std::size_t most) {
+SUREFOOT_ONCE void keep_curves(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
+                               std::size_t most) {
   const auto& held_out = setup.split.held_out;
   for (std::size_t n = 0; n < std::min(most, held_out.size()); ++n) {
     const std::size_t i = held_out.size() <= most ? n : n * held_out.size() / most;
@@ -183,8 +183,8 @@ SUREFOOT_INLINE void keep_curves(const EstimationSetup& setup, const FittedModel
   }
 }
 
-SUREFOOT_INLINE void evaluate_errors(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
-                                     std::uint64_t seed, const EvaluationCriteria& criteria) {
+SUREFOOT_ONCE void evaluate_errors(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
+                                   std::uint64_t seed, const EvaluationCriteria& criteria) {
   const BoundSimulator& bound = setup.bound;
   const auto& [nominal, calibrated, chosen] = models;
   const auto &held_out = setup.split.held_out, &training = setup.split.training;
@@ -211,8 +211,8 @@ SUREFOOT_INLINE void evaluate_errors(const EstimationSetup& setup, const FittedM
   diagnosis.noise_ratio = diagnosis.held_out_after / diagnosis.noise_floor;
 }
 
-SUREFOOT_INLINE void offer_forests(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
-                                   const Parallel& parallel, std::uint64_t seed, const EvaluationCriteria& criteria) {
+SUREFOOT_ONCE void offer_forests(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
+                                 const Parallel& parallel, std::uint64_t seed, const EvaluationCriteria& criteria) {
   if (setup.noise == NoiseKind::final_pose) return;
   diagnosis.held_out_forest = corrected_error(setup, models.calibrated, parallel, seed);
   if (diagnosis.verdict != Verdict::unexplained) return;

@@ -14,10 +14,10 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE VerdictEvidence gather_evidence(const EstimationSetup& setup, const FittedModels& models,
-                                                const Diagnosis& diagnosis, const Comparison& calibration,
-                                                const VerdictCriteria& verdict, const Parallel& parallel,
-                                                std::uint64_t seed) {
+SUREFOOT_ONCE VerdictEvidence gather_evidence(const EstimationSetup& setup, const FittedModels& models,
+                                              const Diagnosis& diagnosis, const Comparison& calibration,
+                                              const VerdictCriteria& verdict, const Parallel& parallel,
+                                              std::uint64_t seed) {
   const auto& [nominal, calibrated, chosen] = models;
   const BoundSimulator& bound = setup.bound;
   const auto& folds = setup.split.folds;
@@ -47,7 +47,7 @@ SUREFOOT_INLINE VerdictEvidence gather_evidence(const EstimationSetup& setup, co
   return evidence;
 }
 
-SUREFOOT_INLINE void mark_beyond_noise(Diagnosis& diagnosis, const VerdictCriteria& verdict) {
+SUREFOOT_ONCE void mark_beyond_noise(Diagnosis& diagnosis, const VerdictCriteria& verdict) {
   if (!std::isfinite(diagnosis.noise_ratio)) return;  // noise adds up on the way
   for (RecordingFit& one : diagnosis.per_recording) {
     const double ratio = one.fitted / diagnosis.noise_floor;

@@ -13,8 +13,8 @@
 namespace surefoot::diagnosis {
 
 /// By held-out recording: the fit to all folds but its own.
-SUREFOOT_INLINE std::vector<Hypothesis> cross_fitted(const EstimationSetup& setup, const Hypothesis& hypothesis,
-                                                     bool refit, const Parallel& parallel) {
+SUREFOOT_ONCE std::vector<Hypothesis> cross_fitted(const EstimationSetup& setup, const Hypothesis& hypothesis,
+                                                   bool refit, const Parallel& parallel) {
   const auto& [training, held_out, folds, cross_fitted] = setup.split;
   std::vector<Hypothesis> result(held_out.size(), hypothesis);
   if (!refit) return result;
@@ -27,8 +27,8 @@ SUREFOOT_INLINE std::vector<Hypothesis> cross_fitted(const EstimationSetup& setu
   return result;
 }
 
-SUREFOOT_INLINE FittedModel simulate_model(const EstimationSetup& setup, const Hypothesis& hypothesis,
-                                           const Parallel& parallel, bool refit) {
+SUREFOOT_ONCE FittedModel simulate_model(const EstimationSetup& setup, const Hypothesis& hypothesis,
+                                         const Parallel& parallel, bool refit) {
   const BoundSimulator& bound = setup.bound;
   const auto &training = setup.split.training, &held_out = setup.split.held_out;
   FittedModel model;
@@ -62,8 +62,8 @@ SUREFOOT_INLINE FittedModel simulate_model(const EstimationSetup& setup, const H
   return model;
 }
 
-SUREFOOT_INLINE FittedModel fitted_model(const EstimationSetup& setup, const Hypothesis& hypothesis,
-                                         const Parallel& parallel) {
+SUREFOOT_ONCE FittedModel fitted_model(const EstimationSetup& setup, const Hypothesis& hypothesis,
+                                       const Parallel& parallel) {
   FittedModel model = simulate_model(setup, hypothesis, parallel, true);
   model.mismatch = measure_mismatch(setup.bound, setup.split.training, model.runs.training,
                                     setup.problem.weighting.sigma, setup.noise, &model.by_output);

@@ -14,21 +14,21 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE HeldOutErrors held_out_errors(const EstimationSetup& setup, const FittedModel& model) {
+SUREFOOT_ONCE HeldOutErrors held_out_errors(const EstimationSetup& setup, const FittedModel& model) {
   const auto& held_out = setup.split.held_out;
   return {block_losses(setup.bound, held_out, model.runs.held_out, setup.problem.weighting).rms(),
           error_over_all(setup.bound, held_out, model.runs.whole_held_out)};
 }
 
-SUREFOOT_INLINE bool confirmed(const HeldOutErrors& without, const HeldOutErrors& with,
-                               const HeldOutCriteria& criteria) {
+SUREFOOT_ONCE bool confirmed(const HeldOutErrors& without, const HeldOutErrors& with,
+                             const HeldOutCriteria& criteria) {
   return with.weighted < criteria.error_ratio * without.weighted &&
          with.whole < criteria.whole_error_ratio * without.whole;
 }
 
-SUREFOOT_INLINE CheckedChoice check_on_held_out(const EstimationSetup& setup, const FittedModel& calibrated,
-                                                const Selection& selection, const HeldOutCriteria& criteria,
-                                                const Parallel& parallel) {
+SUREFOOT_ONCE CheckedChoice check_on_held_out(const EstimationSetup& setup, const FittedModel& calibrated,
+                                              const Selection& selection, const HeldOutCriteria& criteria,
+                                              const Parallel& parallel) {
   if (selection.chosen.hypothesis.effects.size() == calibrated.hypothesis.effects.size()) {
     return {selection, calibrated};
   }

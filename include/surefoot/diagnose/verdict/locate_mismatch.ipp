@@ -11,8 +11,8 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE MismatchLocation locate_mismatch(const EstimationSetup& setup, const FittedModel& calibrated,
-                                                 std::uint64_t seed, const LocationCriteria& criteria) {
+SUREFOOT_ONCE MismatchLocation locate_mismatch(const EstimationSetup& setup, const FittedModel& calibrated,
+                                               std::uint64_t seed, const LocationCriteria& criteria) {
   if (setup.noise == NoiseKind::final_pose) return {};
   const BoundSimulator& bound = setup.bound;
   const auto& recordings = setup.split.training;

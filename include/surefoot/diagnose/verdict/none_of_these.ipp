@@ -11,8 +11,8 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE double probability_of_none(const Selection& selection, const Eigen::VectorXd& noise,
-                                           const SearchProblem& problem) {
+SUREFOOT_ONCE double probability_of_none(const Selection& selection, const Eigen::VectorXd& noise,
+                                         const SearchProblem& problem) {
   constexpr double parameters = 2, told_by = 5;  // [nat]: a parameter known to about 1 % of its range
   const SelectionCriteria& criteria = problem.criteria;
   EvaluatedHypothesis unknown = selection.chosen;

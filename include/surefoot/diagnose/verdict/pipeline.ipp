@@ -35,7 +35,7 @@ namespace surefoot::diagnosis {
 /// Shares of the work done at the begin of a stage, as far as it is known beforehand.
 inline constexpr double progress_calibration = 0.05, progress_search = 0.15, progress_evaluation = 0.85;
 
-SUREFOOT_INLINE std::vector<Remark> screen_recordings(const SimulatorInfo& info, std::vector<Recording>& recordings) {
+SUREFOOT_ONCE std::vector<Remark> screen_recordings(const SimulatorInfo& info, std::vector<Recording>& recordings) {
   if (recordings.empty()) throw DiagnoseError("there is no recording to diagnose");
   std::vector<Remark> remarks;
   for (Recording& recording : recordings) {
@@ -49,13 +49,13 @@ SUREFOOT_INLINE std::vector<Remark> screen_recordings(const SimulatorInfo& info,
   return remarks;
 }
 
-SUREFOOT_INLINE std::vector<Effect> nameable_effects(const DiagnoseOptions& options) {
+SUREFOOT_ONCE std::vector<Effect> nameable_effects(const DiagnoseOptions& options) {
   std::vector<Effect> effects = all_effects();
   effects.insert(effects.end(), options.more_effects.begin(), options.more_effects.end());
   return effects;
 }
 
-SUREFOOT_INLINE Hypothesis nominal_with_known(const BoundSimulator& bound, const DiagnoseOptions& options) {
+SUREFOOT_ONCE Hypothesis nominal_with_known(const BoundSimulator& bound, const DiagnoseOptions& options) {
   const std::vector<Effect> effects = nameable_effects(options);
   Hypothesis hypothesis = nominal_hypothesis(bound);
   for (const NamedEffect& named : options.known) {
@@ -66,8 +66,8 @@ SUREFOOT_INLINE Hypothesis nominal_with_known(const BoundSimulator& bound, const
   return hypothesis;
 }
 
-SUREFOOT_INLINE std::vector<LogFault> examine_recordings(const BindSimulator& bind, std::vector<Recording>& recordings,
-                                                         const RunContext& run) {
+SUREFOOT_ONCE std::vector<LogFault> examine_recordings(const BindSimulator& bind, std::vector<Recording>& recordings,
+                                                       const RunContext& run) {
   const auto nominal = [&](const BoundSimulator& bound) { return nominal_with_known(bound, run.options); };
   LogExamination examined =
       examine_log({bind, nominal, run.parallel, {}, [run] { return run.search_has_ended(); }}, recordings);
@@ -79,8 +79,8 @@ SUREFOOT_INLINE std::vector<LogFault> examine_recordings(const BindSimulator& bi
   return examined.faults;
 }
 
-SUREFOOT_INLINE std::vector<Recording> cut_few_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
-                                                          const RunContext& run) {
+SUREFOOT_ONCE std::vector<Recording> cut_few_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
+                                                        const RunContext& run) {
   const PreparationCriteria criteria;
   if (recordings.size() < criteria.enough && run.options.held_out.empty()) {
     const BoundSimulator whole = bind(recordings);
@@ -102,8 +102,8 @@ SUREFOOT_INLINE std::vector<Recording> cut_few_recordings(const BindSimulator& b
   return recordings;
 }
 
-SUREFOOT_INLINE EstimationSetup hold_out_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
-                                                    const RunContext& run) {
+SUREFOOT_ONCE EstimationSetup hold_out_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
+                                                  const RunContext& run) {
   EstimationSetup setup{bind(std::move(recordings)), {}};
   setup.split = split_recordings(setup.bound.recordings, run.options.held_out, run.options.held_out_share,
                                  PreparationCriteria{}.folds, run.seed);
@@ -111,7 +111,7 @@ SUREFOOT_INLINE EstimationSetup hold_out_recordings(const BindSimulator& bind, s
   return setup;
 }
 
-SUREFOOT_INLINE Calibration calibrate_model(EstimationSetup& setup, const RunContext& run) {
+SUREFOOT_ONCE Calibration calibrate_model(EstimationSetup& setup, const RunContext& run) {
   auto& [bound, split, noise, problem] = setup;
   const Parallel& parallel = run.parallel;
   const Hypothesis nominal = nominal_with_known(bound, run.options);
@@ -137,8 +137,8 @@ SUREFOOT_INLINE Calibration calibrate_model(EstimationSetup& setup, const RunCon
   return {with_estimated_initial_states(bound, nominal, split.training, problem, parallel), calibrated, runs};
 }
 
-SUREFOOT_INLINE std::vector<AttachedEffect> candidate_effects(const EstimationSetup& setup,
-                                                              const Calibration& calibration, const RunContext& run) {
+SUREFOOT_ONCE std::vector<AttachedEffect> candidate_effects(const EstimationSetup& setup,
+                                                            const Calibration& calibration, const RunContext& run) {
   const auto& names = run.options.effects;
   std::vector<Effect> effects = nameable_effects(run.options);
   std::erase_if(effects, [&](const Effect& effect) {
@@ -153,9 +153,9 @@ SUREFOOT_INLINE std::vector<AttachedEffect> candidate_effects(const EstimationSe
 }
 
 /// Whether the residuals of a hypothesis hold what noise does not; final poses are too few to tell.
-SUREFOOT_INLINE bool holds_structure(const EstimationSetup& setup, const Hypothesis& hypothesis,
-                                     const Integration& integration, const SelectionCriteria& criteria,
-                                     const Parallel& parallel) {
+SUREFOOT_ONCE bool holds_structure(const EstimationSetup& setup, const Hypothesis& hypothesis,
+                                   const Integration& integration, const SelectionCriteria& criteria,
+                                   const Parallel& parallel) {
   if (setup.noise == NoiseKind::final_pose) return true;
   const auto& training = setup.split.training;
   const auto runs = simulate_all(setup.bound, hypothesis, training, integration, parallel);
@@ -163,8 +163,8 @@ SUREFOOT_INLINE bool holds_structure(const EstimationSetup& setup, const Hypothe
   return mismatch.p_value < criteria.structure_significance && mismatch.share > criteria.structure_share;
 }
 
-SUREFOOT_INLINE SearchProblem search_problem(const EstimationSetup& setup, const Calibration& calibration,
-                                             const RunContext& run) {
+SUREFOOT_ONCE SearchProblem search_problem(const EstimationSetup& setup, const Calibration& calibration,
+                                           const RunContext& run) {
   const auto& training = setup.split.training;
   SearchProblem problem;
   problem.fit = setup.problem;
@@ -191,8 +191,8 @@ SUREFOOT_INLINE SearchProblem search_problem(const EstimationSetup& setup, const
   return problem;
 }
 
-SUREFOOT_INLINE void describe_models(const EstimationSetup& setup, const FittedModels& models,
-                                     const Selection& selection, const RunContext& run, Diagnosis& diagnosis) {
+SUREFOOT_ONCE void describe_models(const EstimationSetup& setup, const FittedModels& models,
+                                   const Selection& selection, const RunContext& run, Diagnosis& diagnosis) {
   const BoundSimulator& bound = setup.bound;
   const Hypothesis &calibrated = models.calibrated.hypothesis, &chosen = models.chosen.hypothesis;
   const std::size_t known = calibrated.effects.size();
@@ -216,7 +216,7 @@ SUREFOOT_INLINE void describe_models(const EstimationSetup& setup, const FittedM
   }
 }
 
-SUREFOOT_INLINE std::vector<std::string> describe_alternatives(const Selection& selection, Diagnosis& diagnosis) {
+SUREFOOT_ONCE std::vector<std::string> describe_alternatives(const Selection& selection, Diagnosis& diagnosis) {
   const Alternatives others = find_alternatives(selection);
   diagnosis.probability = selection.probability;
   diagnosis.alternatives = others.list;
@@ -228,8 +228,8 @@ SUREFOOT_INLINE std::vector<std::string> describe_alternatives(const Selection& 
 }
 
 /// Probabilities of structures beside that of none of them.
-SUREFOOT_INLINE void weigh_against_none(const EstimationSetup& setup, const Selection& selection,
-                                        const SearchProblem& problem, Diagnosis& diagnosis) {
+SUREFOOT_ONCE void weigh_against_none(const EstimationSetup& setup, const Selection& selection,
+                                      const SearchProblem& problem, Diagnosis& diagnosis) {
   if (setup.noise != NoiseKind::measurement) return;  // noise adds up on the way
   Eigen::VectorXd noise(static_cast<Eigen::Index>(diagnosis.channels.size()));
   for (std::size_t k = 0; k < diagnosis.channels.size(); ++k) {
@@ -240,9 +240,9 @@ SUREFOOT_INLINE void weigh_against_none(const EstimationSetup& setup, const Sele
   for (Alternative& other : diagnosis.alternatives) other.probability *= 1 - diagnosis.probability_of_none;
 }
 
-SUREFOOT_INLINE void describe_limits(const EstimationSetup& setup, const FittedModels& models,
-                                     const SearchProblem& problem, const std::vector<AttachedEffect>& candidates,
-                                     const RunContext& run, Diagnosis& diagnosis) {
+SUREFOOT_ONCE void describe_limits(const EstimationSetup& setup, const FittedModels& models,
+                                   const SearchProblem& problem, const std::vector<AttachedEffect>& candidates,
+                                   const RunContext& run, Diagnosis& diagnosis) {
   if (!diagnosis.effects.empty() || diagnosis.verdict == Verdict::unexplained) return;
   FitProblem few = setup.problem;
   few.recordings = problem.screened;
@@ -250,16 +250,16 @@ SUREFOOT_INLINE void describe_limits(const EstimationSetup& setup, const FittedM
       detection_limits(setup.bound, propose(setup.bound, models.calibrated.hypothesis, few, candidates, run.parallel));
 }
 
-SUREFOOT_INLINE void name_recordings(const EstimationSetup& setup, Diagnosis& diagnosis) {
+SUREFOOT_ONCE void name_recordings(const EstimationSetup& setup, Diagnosis& diagnosis) {
   for (const std::size_t r : setup.split.training) diagnosis.fit.push_back(setup.bound.recordings[r].name);
   diagnosis.select = diagnosis.fit;  // structures are weighed on the same recordings
   for (const std::size_t r : setup.split.held_out) diagnosis.held_out.push_back(setup.bound.recordings[r].name);
 }
 
-SUREFOOT_INLINE void evaluate_selection(const EstimationSetup& setup, const Calibration& calibration,
-                                        const SearchProblem& problem, const Selection& selection,
-                                        const std::vector<AttachedEffect>& candidates, const RunContext& run,
-                                        Diagnosis& diagnosis) {
+SUREFOOT_ONCE void evaluate_selection(const EstimationSetup& setup, const Calibration& calibration,
+                                      const SearchProblem& problem, const Selection& selection,
+                                      const std::vector<AttachedEffect>& candidates, const RunContext& run,
+                                      Diagnosis& diagnosis) {
   const VerdictCriteria verdict;
   const auto& training = setup.split.training;
   const FittedModel calibrated = fitted_model(setup, calibration.calibrated.hypothesis, run.parallel);
@@ -287,7 +287,7 @@ SUREFOOT_INLINE void evaluate_selection(const EstimationSetup& setup, const Cali
 }
 
 /// The choice, fitted to all recordings, may need finer steps than the search took: it is fitted once more with these.
-SUREFOOT_INLINE void refit_with_finer_steps(EstimationSetup& setup, Selection& selection, const RunContext& run) {
+SUREFOOT_ONCE void refit_with_finer_steps(EstimationSetup& setup, Selection& selection, const RunContext& run) {
   auto& [bound, split, noise, problem] = setup;
   Hypothesis& chosen = selection.chosen.hypothesis;
   if (chosen.effects.size() == selection.nominal.hypothesis.effects.size()) return;
@@ -298,14 +298,14 @@ SUREFOOT_INLINE void refit_with_finer_steps(EstimationSetup& setup, Selection& s
   chosen = fit(bound, chosen, problem, run.parallel).hypothesis;
 }
 
-SUREFOOT_INLINE std::string shortening_sentence(Eigen::Index rows) {
+SUREFOOT_ONCE std::string shortening_sentence(Eigen::Index rows) {
   return "of so many rows only the first " + std::to_string(rows) +
          " of each recording were used; max_rows (--max-rows) takes more, in proportionally more time";
 }
 
 /// Takes out single readings that are far from a model while their neighbours are not: no physics lasts for one row.
-SUREFOOT_INLINE void remove_outliers_from(EstimationSetup& setup, const Hypothesis& model, const RunContext& run,
-                                          Diagnosis& diagnosis) {
+SUREFOOT_ONCE void remove_outliers_from(EstimationSetup& setup, const Hypothesis& model, const RunContext& run,
+                                        Diagnosis& diagnosis) {
   if (setup.noise != NoiseKind::measurement) return;
   BoundSimulator& bound = setup.bound;
   const auto runs = simulate_all(bound, model, setup.split.training, bound.integration, run.parallel);
@@ -317,8 +317,8 @@ SUREFOOT_INLINE void remove_outliers_from(EstimationSetup& setup, const Hypothes
 }
 
 /// All stages after the recordings were screened and examined.
-SUREFOOT_INLINE void diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
-                                         const RunContext& run, Diagnosis& diagnosis) {
+SUREFOOT_ONCE void diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
+                                       const RunContext& run, Diagnosis& diagnosis) {
   recordings = cut_few_recordings(bind, std::move(recordings), run);
   EstimationSetup setup = hold_out_recordings(bind, std::move(recordings), run);
   name_recordings(setup, diagnosis);
@@ -339,9 +339,9 @@ SUREFOOT_INLINE void diagnose_recordings(const BindSimulator& bind, std::vector<
   evaluate_selection(setup, calibration, problem, selection, candidates, run, diagnosis);
 }
 
-SUREFOOT_INLINE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorInfo& info,
-                                       std::vector<Recording> recordings, const DiagnoseOptions& options,
-                                       const Parallel& parallel, std::uint64_t seed, std::stop_token stop) {
+SUREFOOT_ONCE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorInfo& info,
+                                     std::vector<Recording> recordings, const DiagnoseOptions& options,
+                                     const Parallel& parallel, std::uint64_t seed, std::stop_token stop) {
   check(options);
   const RunContext run{options, parallel, seed, stop};
   Diagnosis diagnosis;

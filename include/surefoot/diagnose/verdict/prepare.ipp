@@ -19,9 +19,9 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE std::vector<Recording> cut_recordings(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                                      const std::vector<SimulatedRun>& trajectories, std::size_t parts,
-                                                      const PreparationCriteria& criteria) {
+SUREFOOT_ONCE std::vector<Recording> cut_recordings(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                    const std::vector<SimulatedRun>& trajectories, std::size_t parts,
+                                                    const PreparationCriteria& criteria) {
   std::vector<Recording> result;
   for (std::size_t r = 0; r < bound.recordings.size(); ++r) {
     const Recording& whole = bound.recordings[r];
@@ -47,8 +47,8 @@ SUREFOOT_INLINE std::vector<Recording> cut_recordings(const BoundSimulator& boun
   return result;
 }
 
-SUREFOOT_INLINE void free_measured_initial_states(BoundSimulator& bound, const std::vector<std::size_t>& training,
-                                                  const PreparationCriteria& criteria) {
+SUREFOOT_ONCE void free_measured_initial_states(BoundSimulator& bound, const std::vector<std::size_t>& training,
+                                                const PreparationCriteria& criteria) {
   const Eigen::VectorXd deviations = output_deviations(bound, training);
   for (std::size_t i = 0; i < bound.info.states.size(); ++i) {
     const int output = bound.structure.output_of[i];
@@ -62,7 +62,7 @@ SUREFOOT_INLINE void free_measured_initial_states(BoundSimulator& bound, const s
   }
 }
 
-SUREFOOT_INLINE void sort_recordings(std::vector<Recording>& recordings) {
+SUREFOOT_ONCE void sort_recordings(std::vector<Recording>& recordings) {
   const auto compare = [](const auto& a, const auto& b) {
     return std::lexicographical_compare_three_way(a.data(), a.data() + a.size(), b.data(), b.data() + b.size());
   };
@@ -74,7 +74,7 @@ SUREFOOT_INLINE void sort_recordings(std::vector<Recording>& recordings) {
 }
 
 /// Whether the first rows hold about their share of the measurements: not where only the end was measured.
-SUREFOOT_INLINE bool measured_early(const Recording& one, Eigen::Index rows) {
+SUREFOOT_ONCE bool measured_early(const Recording& one, Eigen::Index rows) {
   constexpr double about = 0.5;  // of their share
   double early = 0, all = 0;
   for (Eigen::Index row = 0; row < one.outputs.cols(); ++row) {
@@ -87,7 +87,7 @@ SUREFOOT_INLINE bool measured_early(const Recording& one, Eigen::Index rows) {
   return early > about * all * static_cast<double>(rows) / static_cast<double>(one.rows());
 }
 
-SUREFOOT_INLINE Eigen::Index shorten_recordings(std::vector<Recording>& recordings, std::size_t most) {
+SUREFOOT_ONCE Eigen::Index shorten_recordings(std::vector<Recording>& recordings, std::size_t most) {
   std::vector<std::size_t> rows;
   for (const Recording& one : recordings) rows.push_back(static_cast<std::size_t>(one.rows()));
   std::sort(rows.begin(), rows.end());

@@ -6,7 +6,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE bool is_unexplained(const VerdictEvidence& evidence, const VerdictCriteria& criteria) {
+SUREFOOT_ONCE bool is_unexplained(const VerdictEvidence& evidence, const VerdictCriteria& criteria) {
   if (evidence.noise == NoiseKind::final_pose) return evidence.sequence_p_value < criteria.sequence_significance;
 
   const bool beside_effects = evidence.effects_found && evidence.noise != NoiseKind::process;
@@ -25,7 +25,7 @@ SUREFOOT_INLINE bool is_unexplained(const VerdictEvidence& evidence, const Verdi
   return predicts(evidence.prediction) || predicts(evidence.by_place);
 }
 
-SUREFOOT_INLINE Verdict decide(const VerdictEvidence& evidence, const VerdictCriteria& criteria) {
+SUREFOOT_ONCE Verdict decide(const VerdictEvidence& evidence, const VerdictCriteria& criteria) {
   if (!evidence.search_finished) return Verdict::unfinished;
   if (is_unexplained(evidence, criteria)) return Verdict::unexplained;
   if (evidence.effects_found) return Verdict::missing_physics;

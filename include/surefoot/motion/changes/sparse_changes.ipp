@@ -20,7 +20,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const SparseChangeOptions& options) {
+SUREFOOT_ONCE void check(const SparseChangeOptions& options) {
   if (!(options.nothing > 0 && options.nothing < 1)) {
     throw MotionError("SparseChangeOptions: nothing must be between 0 and 1, got " + std::to_string(options.nothing));
   }

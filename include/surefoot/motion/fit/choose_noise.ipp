@@ -16,7 +16,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const NoiseChoiceOptions& options) {
+SUREFOOT_ONCE void check(const NoiseChoiceOptions& options) {
   check(options.fit);
   if (options.folds < 2) {
     throw MotionError("NoiseChoiceOptions: folds must be at least 2, got " + std::to_string(options.folds));

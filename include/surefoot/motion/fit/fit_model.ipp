@@ -16,7 +16,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const ModelFitOptions& options) {
+SUREFOOT_ONCE void check(const ModelFitOptions& options) {
   check(options.accuracy);
   if (!(options.prior > 0)) {
     throw MotionError("ModelFitOptions: prior must be above 0, got " + std::to_string(options.prior));

@@ -185,7 +185,7 @@ SUREFOOT_INLINE MotionNoise fit_pose_noise(const AnyMotionModel& model, std::spa
   return noise_of(cma_es(cost, Eigen::VectorXd::Zero(3 * free), 1.0, search, Serial{}, 1).best);
 }
 
-SUREFOOT_INLINE void check(const NoiseFitOptions& options) {
+SUREFOOT_ONCE void check(const NoiseFitOptions& options) {
   check(options.accuracy);
   if (!(options.scale.minCoeff() > 0 && all_finite(options.scale))) {
     throw MotionError("NoiseFitOptions: scale must be finite and above 0 in every component");

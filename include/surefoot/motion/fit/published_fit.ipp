@@ -16,7 +16,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const PublishedFitOptions& options) {
+SUREFOOT_ONCE void check(const PublishedFitOptions& options) {
   const auto demand = [](bool condition, const char* what, double value) {
     if (!condition) throw MotionError(std::string("PublishedFitOptions: ") + what + ", got " + std::to_string(value));
   };

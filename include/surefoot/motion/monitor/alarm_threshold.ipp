@@ -22,7 +22,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const ThresholdOptions& options) {
+SUREFOOT_ONCE void check(const ThresholdOptions& options) {
   const auto fail = [](const char* what, double value) {
     std::ostringstream text;
     text << "ThresholdOptions: " << what << ", got " << value;

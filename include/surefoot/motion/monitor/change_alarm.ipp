@@ -17,7 +17,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const AlarmOptions& options) {
+SUREFOOT_ONCE void check(const AlarmOptions& options) {
   const auto fail = [](const char* what, double value) {
     std::ostringstream text;
     text << "AlarmOptions: " << what << ", got " << value;

@@ -27,7 +27,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const CommandBounds& bounds) {
+SUREFOOT_ONCE void check(const CommandBounds& bounds) {
   for (Eigen::Index i = 0; i < 3; ++i) {
     const std::string name(detail::command_components[static_cast<std::size_t>(i)].name);
     const auto fail = [&](const std::string& field, const std::string& what, double value) {
@@ -97,7 +97,7 @@ SUREFOOT_INLINE std::optional<std::string> commands_within(const CommandBounds& 
 
 namespace detail {
 
-SUREFOOT_INLINE void check_space(std::size_t sequences, int runs, double kept) {
+SUREFOOT_ONCE void check_space(std::size_t sequences, int runs, double kept) {
   if (sequences == 0) throw MotionError("space_needed: there are no commands");
   if (runs < 1) throw MotionError("space_needed: runs must be at least 1, got " + std::to_string(runs));
   if (!(kept > 0 && kept <= 1)) throw MotionError("space_needed: kept must be in (0, 1], got " + std::to_string(kept));

@@ -40,7 +40,7 @@ SUREFOOT_INLINE std::vector<Eigen::Matrix3Xd> plan_held_commands(const CommandBo
   return plan;
 }
 
-SUREFOOT_INLINE void check(const InformativeOptions& options) {
+SUREFOOT_ONCE void check(const InformativeOptions& options) {
   check(options.bounds);
   if (options.sequences < 1) {
     throw MotionError("InformativeOptions: sequences must be at least 1, got " + std::to_string(options.sequences));

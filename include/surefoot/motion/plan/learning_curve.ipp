@@ -17,7 +17,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE void check(const LearningCurveOptions& options) {
+SUREFOOT_ONCE void check(const LearningCurveOptions& options) {
   check(options.predictor.calibration);
   check(options.predictor.published);
   if (options.validation < 1) throw MotionError("LearningCurveOptions: validation must be at least 1, got 0");
