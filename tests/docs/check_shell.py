@@ -1,6 +1,6 @@
 """Every shell block of the documentation runs, in a scratch folder that looks like the repository after a build.
 
-check_shell.py --bin FOLDER --scratch FOLDER [--page README.md ...]
+check_shell.py --bin FOLDER --scratch FOLDER [--page README.md ... | --but README.md ...]
 
 Blocks of a page run one after the other and share a folder; build/release/bin holds the programs that the tests built.
 Files (toml, csv, json) are written as they stand, for the commands to read. Of every command, run or not, each --option
@@ -127,13 +127,14 @@ def main():
     parser.add_argument("--bin", required=True)
     parser.add_argument("--scratch", required=True)
     parser.add_argument("--page", action="append", help="only these pages")
+    parser.add_argument("--but", action="append", default=[], help="all pages but these")
     options = parser.parse_args()
     programs, scratch = pathlib.Path(options.bin).resolve(), pathlib.Path(options.scratch).resolve()
     faults, count, page, folder = [], 0, None, None
     for block in all_blocks():
         if block.quoted or block.language in ("cpp", "c", "cmake") or "prints" in block.rule:
             continue
-        if options.page and block.page not in options.page:
+        if (options.page and block.page not in options.page) or block.page in options.but:
             continue
         if block.page != page:
             page, folder = block.page, scratch / block.page.replace("/", "_")
@@ -149,6 +150,8 @@ def main():
             if fault:
                 faults.append(f"{block.where}: {fault}")
     print(f"{count} blocks run")
+    if count == 0:
+        raise Fault("no block was run: is the page spelt right?")
     print("\n".join(faults), file=sys.stderr)
     return 1 if faults else 0
 
