@@ -19,7 +19,8 @@
 namespace calibrate_program {
 namespace {
 
-constexpr const char* compared_files = R"(OLD and NEW: one file each, or several by --old and --new. They are read as `fit` does; OLD may also be the
+constexpr const char* compared_files =
+    R"(OLD and NEW: one file each, or several by --old and --new. They are read as `fit` does; OLD may also be the
 motion.json of a calibration, with its covariance and noise.
 A statement is made if its posterior probability is at least --certainty. With --out, writes compare.json.)";
 
@@ -27,7 +28,7 @@ using Paths = std::vector<std::filesystem::path>;
 
 struct CompareWalksOptions {
   SequenceOptions read;
-  Paths both, before, after;
+  Paths both, before, after, joints_before, joints_after;
   std::string model = "auto";
   double certainty = surefoot::WalkChangeOptions().certainty;
   std::filesystem::path out;
@@ -64,8 +65,7 @@ surefoot::FallCount falls_of(const LoadedSequences& loaded) {
 /// which side is hardly seen.
 surefoot::AnyMotionModel model_for(const std::string& name, const LoadedSequences& before,
                                    const LoadedSequences& after) {
-  const bool cycles =
-      surefoot::sees_single_cycles(before.sequences) && surefoot::sees_single_cycles(after.sequences);
+  const bool cycles = surefoot::sees_single_cycles(before.sequences) && surefoot::sees_single_cycles(after.sequences);
   if (name == "sides" || (name == "auto" && cycles)) return surefoot::OneSidedCorrection();
   return default_model(name == "auto" ? ModelKind::full : *model_named(name));
 }
@@ -93,9 +93,9 @@ ComparedWalks compare_with_recordings(const CompareWalksOptions& options) {
                       .before = before.sequences.size(),
                       .after = after.sequences.size(),
                       .certainty = options.certainty};
-  walks.comparison = surefoot::compare_walks(
-      {.model = model_for(options.model, before, after), .recorded = before.sequences}, after.sequences,
-      change_options(options, before.sequences), walks.falls);
+  walks.comparison =
+      surefoot::compare_walks({.model = model_for(options.model, before, after), .recorded = before.sequences},
+                              after.sequences, change_options(options, before.sequences), walks.falls);
   return walks;
 }
 
@@ -125,8 +125,11 @@ void run(CompareWalksOptions options) {
   check(options.read);
   sort_files(options);
   if (!options.out.empty()) example::prepare_output(options.out / "compare.json");
-  const ComparedWalks walks =
+  ComparedWalks walks =
       is_calibration(options.before) ? compare_with_calibration(options) : compare_with_recordings(options);
+  if (!options.joints_before.empty()) {
+    walks.joints = compare_joints(read_joint_logs(options.joints_before), read_joint_logs(options.joints_after));
+  }
   std::cout << compare_report(walks) << std::flush;
   if (options.out.empty()) return;
   example::write_text(options.out / "compare.json", compare_json(walks));
@@ -137,7 +140,8 @@ void run(CompareWalksOptions options) {
 
 void add_compare(CLI::App& program) {
   auto options = std::make_shared<CompareWalksOptions>();
-  CLI::App* command = program.add_subcommand("compare", "What changed in a walk since a former calibration or recording");
+  CLI::App* command =
+      program.add_subcommand("compare", "What changed in a walk since a former calibration or recording");
   command->footer(compared_files);
   command->add_option("walks", options->both, "OLD and NEW: a file each")->expected(0, 2);
   command->add_option("--old", options->before, "recordings of the old walk (CSV), or its motion.json");
@@ -153,6 +157,11 @@ void add_compare(CLI::App& program) {
   command->add_option("--certainty", options->certainty, "posterior probability from which on a statement is made")
       ->check(CLI::Range(0.6, 0.9999))
       ->capture_default_str();
+  auto* old_joints = command->add_option("--old-joints", options->joints_before,
+                                         "logs of the joints in the old walk, as surefoot-walk --log writes them");
+  auto* new_joints = command->add_option("--new-joints", options->joints_after, "the same of the new walk");
+  old_joints->needs(new_joints);
+  new_joints->needs(old_joints);
   command->add_option("--out", options->out, "folder for compare.json, made if needed");
   command->callback([options] { run(*options); });
 }

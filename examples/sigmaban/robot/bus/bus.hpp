@@ -71,6 +71,11 @@ class Bus {
     return ask_one(id, 0, [&] { return Protocol::write(packet_, id, address, data, Instruction::reg_write); });
   }
 
+  /// After its answer the servo starts anew: without torque and errors, its RAM as from the factory.
+  Reply reboot(std::uint8_t id) {
+    return ask_one(id, 0, [&] { return Protocol::reboot(packet_, id); });
+  }
+
   /// To all. None answers.
   void action() { send(Protocol::action(packet_)); }
 
@@ -80,6 +85,15 @@ class Bus {
     send(Protocol::sync_write(packet_, address, static_cast<std::uint16_t>(data.size() / ids.size()), ids, data));
   }
 
+  /// To each servo its own registers: `data` holds the bytes of all items, one after the other. None answers. Protocol
+  /// 2.0 alone.
+  void bulk_write(std::span<const BulkItem> items, Bytes data) requires requires(Buffer out) {
+    Protocol::bulk_write(out, items, data);
+  }
+  {
+    if (!items.empty()) send(Protocol::bulk_write(packet_, items, data));
+  }
+
   /// The same bytes of each servo: `out` holds them in the order of `ids`, untouched where `outcomes` are not
   /// `answered`. Returns how many answered. In Protocol 1.0 this is a bulk read.
   std::size_t sync_read(std::uint16_t address, std::uint16_t count, Bytes ids, Buffer out, std::span<Outcome> outcomes,
@@ -87,6 +101,12 @@ class Bus {
     check(ids.size() <= max_servos, "asks too many servos at once, the most are 64");
     std::array<BulkItem, max_servos> items;
     for (std::size_t i = 0; i < ids.size(); ++i) items[i] = {ids[i], address, count};
+    if constexpr (Protocol::version == 2) {
+      bool fast = options_.fast_sync_read;  // but once: what it did not bring is asked servo by servo
+      return ask_for(std::span(items).first(ids.size()), out, outcomes, deadline, [&](std::span<const BulkItem> now) {
+        return Protocol::read_many(packet_, now, std::exchange(fast, false));
+      });
+    }
     return bulk_read(std::span(items).first(ids.size()), out, outcomes, deadline);
   }
 
