@@ -17,7 +17,6 @@
 using approach_program::ScratchFolder;
 using approach_program::write_text;
 using calibrate_test::calibrate;
-namespace program = calibrate_program;
 
 namespace {
 
@@ -58,12 +57,12 @@ std::string joint_log(const std::vector<Servo>& servos, std::uint64_t seed, doub
   return text + "\n";
 }
 
-program::JointComparison compared(const std::vector<Servo>& before, const std::vector<Servo>& after) {
+calibrate_program::JointComparison compared(const std::vector<Servo>& before, const std::vector<Servo>& after) {
   const ScratchFolder folder;
   write_text(folder.file("old.csv"), joint_log(before, 1));
   write_text(folder.file("new.csv"), joint_log(after, 2));
-  return program::compare_joints(program::read_joint_logs({folder.file("old.csv")}),
-                                 program::read_joint_logs({folder.file("new.csv")}));
+  return calibrate_program::compare_joints(calibrate_program::read_joint_logs({folder.file("old.csv")}),
+                                           calibrate_program::read_joint_logs({folder.file("new.csv")}));
 }
 
 }  // namespace
@@ -74,12 +73,12 @@ TEST_CASE("the joint whose friction grew is named, and that alone") {
   after[3].friction = 0.012;
   const auto result = compared(before, after);
   REQUIRE(result.changed.size() == 2);  // in its angle and in its current
-  for (const program::JointChange& one : result.changed) CHECK(one.joint == "j3");
-  const auto friction = std::ranges::find(result.changed, "friction", &program::JointChange::what);
+  for (const calibrate_program::JointChange& one : result.changed) CHECK(one.joint == "j3");
+  const auto friction = std::ranges::find(result.changed, "friction", &calibrate_program::JointChange::what);
   REQUIRE(friction != result.changed.end());
   CHECK(friction->difference() == doctest::Approx(0.008).epsilon(0.1));
   CHECK(result.common.empty());
-  CHECK(program::joint_report(result).find("j3: has more friction") != std::string::npos);
+  CHECK(calibrate_program::joint_report(result).find("j3: has more friction") != std::string::npos);
 }
 
 TEST_CASE("what changed alike in all joints is said of most joints") {
@@ -96,7 +95,7 @@ TEST_CASE("joints that did not change are not named") {
   const auto result = compared(same, same);
   CHECK(result.changed.empty());
   CHECK(result.common.empty());
-  CHECK(program::joint_report(result).find("none follows its goals in another way") != std::string::npos);
+  CHECK(calibrate_program::joint_report(result).find("none follows its goals in another way") != std::string::npos);
 }
 
 TEST_CASE("compare goes on to the joints, and says what their logs need") {
