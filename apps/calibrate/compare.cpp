@@ -48,15 +48,26 @@ void sort_files(CompareWalksOptions& options) {
 
 bool is_calibration(const Paths& files) { return files.size() == 1 && files.front().extension() == ".json"; }
 
-/// How many sequences have fewer cycles than most of them, or no final position.
-surefoot::FallCount falls_of(const LoadedSequences& loaded) {
+/// The cycles that most sequences have; none where they were meant to differ.
+std::optional<Eigen::Index> usual_cycles(const LoadedSequences& loaded) {
   std::map<Eigen::Index, std::size_t> lengths;
   for (const surefoot::WalkSequence& sequence : loaded.sequences) ++lengths[sequence.cycles()];
   const auto usual = std::ranges::max_element(lengths, {}, [](const auto& length) { return length.second; });
+  return 2 * usual->second > loaded.sequences.size() ? std::optional(usual->first) : std::nullopt;
+}
+
+/// The same of a new walk: as many as in the old one, if any has them, since most may have ended early.
+std::optional<Eigen::Index> usual_cycles(const LoadedSequences& after, const LoadedSequences& before) {
+  Eigen::Index longest = 0;
+  for (const surefoot::WalkSequence& sequence : after.sequences) longest = std::max(longest, sequence.cycles());
+  const auto usual = usual_cycles(before);
+  return usual == longest ? usual : usual_cycles(after);
+}
+
+/// How many sequences have fewer cycles than usual, or no final position.
+surefoot::FallCount falls_of(const LoadedSequences& loaded, std::optional<Eigen::Index> usual) {
   std::size_t fell = loaded.skipped.size();
-  if (2 * usual->second > loaded.sequences.size()) {  // else they were meant to differ
-    for (const auto& [cycles, count] : lengths) fell += cycles < usual->first ? count : 0;
-  }
+  for (const surefoot::WalkSequence& sequence : loaded.sequences) fell += usual && sequence.cycles() < *usual ? 1 : 0;
   return {.fell = static_cast<int>(fell),
           .sequences = static_cast<int>(loaded.sequences.size() + loaded.skipped.size())};
 }
@@ -89,7 +100,8 @@ ComparedWalks compare_with_recordings(const CompareWalksOptions& options) {
   warn_of_skipped(before);
   warn_of_skipped(after);
   ComparedWalks walks{.comparison = {.before = default_model(ModelKind::full), .after = default_model(ModelKind::full)},
-                      .falls = surefoot::WalkFalls{falls_of(before), falls_of(after)},
+                      .falls = surefoot::WalkFalls{falls_of(before, usual_cycles(before)),
+                                                   falls_of(after, usual_cycles(after, before))},
                       .before = before.sequences.size(),
                       .after = after.sequences.size(),
                       .certainty = options.certainty};

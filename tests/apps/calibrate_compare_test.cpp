@@ -88,6 +88,10 @@ TEST_CASE("compare says what can cause a change, and does not call a likely one 
   CAPTURE(likely.output);
   CHECK(likely.output.find("too little for a statement") != std::string::npos);
   CHECK(likely.output.find("The likeliest: the robot falls more often: 5 of 12") != std::string::npos);
+
+  write_text(folder.file("most.csv"), with_falls(walks_csv_of(0, 0, 12, 2), 10));
+  const auto fell = compared(folder, folder.file("some.csv") + " " + folder.file("most.csv"));
+  CHECK(fell["falls"]["new"] == 10);
 }
 
 TEST_CASE("compare says what it needs") {
