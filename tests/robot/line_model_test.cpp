@@ -96,6 +96,23 @@ TEST_CASE("a line on which nobody answers has the usual model, and a servo that 
                        BusError);
 }
 
+TEST_CASE("currents are read where all servos of a line have the same") {
+  ModelLine<Protocol2> same({"XM430-W350", "XM430-W350"}), mixed({"MX-64(2.0)", "XM430-W350"});
+  const LineModel line = line_model(same.bus, same.joints, mx_64_protocol_2);
+  CHECK(line.feedback == FeedbackKind::everything);
+  CHECK(line_model(mixed.bus, mixed.joints, mx_64_protocol_2).feedback == FeedbackKind::motion_and_health);
+  same.answerer.servo(1).load_nm = 1;
+  ServoGroup group(same.bus, *line.model, same.joints, {.soft_start_s = 0.2, .feedback = line.feedback});
+  group.start();
+  for (int i = 0; i < 100; ++i) {
+    group.set_goals(std::vector<double>{0.2, 0.2});
+    group.update();
+    same.bus.port().wait(from_seconds(0.005));
+    same.answerer.advance(same.bus.port().now());
+  }
+  CHECK(std::abs(group.states()[0].current_a - group.states()[1].current_a) > 0.3);  // 1 N m is 0.6 A
+}
+
 TEST_CASE("the alarms of a servo are within what its model is made for") {
   const AlarmOptions mx = alarms_of(mx_64_protocol_2), small = alarms_of(*find_model("XL330-M288"));
   CHECK(mx.low_voltage_v == 10.5);
