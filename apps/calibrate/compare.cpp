@@ -19,7 +19,8 @@
 namespace calibrate_program {
 namespace {
 
-constexpr const char* compared_files = R"(OLD and NEW: one file each, or several by --old and --new. They are read as `fit` does; OLD may also be the
+constexpr const char* compared_files =
+    R"(OLD and NEW: one file each, or several by --old and --new. They are read as `fit` does; OLD may also be the
 motion.json of a calibration, with its covariance and noise.
 A statement is made if its posterior probability is at least --certainty. With --out, writes compare.json.)";
 
@@ -27,7 +28,7 @@ using Paths = std::vector<std::filesystem::path>;
 
 struct CompareWalksOptions {
   SequenceOptions read;
-  Paths both, before, after;
+  Paths both, before, after, joints_before, joints_after;
   std::string model = "auto";
   double certainty = surefoot::WalkChangeOptions().certainty;
   std::filesystem::path out;
@@ -47,15 +48,26 @@ void sort_files(CompareWalksOptions& options) {
 
 bool is_calibration(const Paths& files) { return files.size() == 1 && files.front().extension() == ".json"; }
 
-/// How many sequences have fewer cycles than most of them, or no final position.
-surefoot::FallCount falls_of(const LoadedSequences& loaded) {
+/// The cycles that most sequences have; none where they were meant to differ.
+std::optional<Eigen::Index> usual_cycles(const LoadedSequences& loaded) {
   std::map<Eigen::Index, std::size_t> lengths;
   for (const surefoot::WalkSequence& sequence : loaded.sequences) ++lengths[sequence.cycles()];
   const auto usual = std::ranges::max_element(lengths, {}, [](const auto& length) { return length.second; });
+  return 2 * usual->second > loaded.sequences.size() ? std::optional(usual->first) : std::nullopt;
+}
+
+/// The same of a new walk: as many as in the old one, if any has them, since most may have ended early.
+std::optional<Eigen::Index> usual_cycles(const LoadedSequences& after, const LoadedSequences& before) {
+  Eigen::Index longest = 0;
+  for (const surefoot::WalkSequence& sequence : after.sequences) longest = std::max(longest, sequence.cycles());
+  const auto usual = usual_cycles(before);
+  return usual == longest ? usual : usual_cycles(after);
+}
+
+/// How many sequences have fewer cycles than usual, or no final position.
+surefoot::FallCount falls_of(const LoadedSequences& loaded, std::optional<Eigen::Index> usual) {
   std::size_t fell = loaded.skipped.size();
-  if (2 * usual->second > loaded.sequences.size()) {  // else they were meant to differ
-    for (const auto& [cycles, count] : lengths) fell += cycles < usual->first ? count : 0;
-  }
+  for (const surefoot::WalkSequence& sequence : loaded.sequences) fell += usual && sequence.cycles() < *usual ? 1 : 0;
   return {.fell = static_cast<int>(fell),
           .sequences = static_cast<int>(loaded.sequences.size() + loaded.skipped.size())};
 }
@@ -64,8 +76,7 @@ surefoot::FallCount falls_of(const LoadedSequences& loaded) {
 /// which side is hardly seen.
 surefoot::AnyMotionModel model_for(const std::string& name, const LoadedSequences& before,
                                    const LoadedSequences& after) {
-  const bool cycles =
-      surefoot::sees_single_cycles(before.sequences) && surefoot::sees_single_cycles(after.sequences);
+  const bool cycles = surefoot::sees_single_cycles(before.sequences) && surefoot::sees_single_cycles(after.sequences);
   if (name == "sides" || (name == "auto" && cycles)) return surefoot::OneSidedCorrection();
   return default_model(name == "auto" ? ModelKind::full : *model_named(name));
 }
@@ -89,13 +100,14 @@ ComparedWalks compare_with_recordings(const CompareWalksOptions& options) {
   warn_of_skipped(before);
   warn_of_skipped(after);
   ComparedWalks walks{.comparison = {.before = default_model(ModelKind::full), .after = default_model(ModelKind::full)},
-                      .falls = surefoot::WalkFalls{falls_of(before), falls_of(after)},
+                      .falls = surefoot::WalkFalls{falls_of(before, usual_cycles(before)),
+                                                   falls_of(after, usual_cycles(after, before))},
                       .before = before.sequences.size(),
                       .after = after.sequences.size(),
                       .certainty = options.certainty};
-  walks.comparison = surefoot::compare_walks(
-      {.model = model_for(options.model, before, after), .recorded = before.sequences}, after.sequences,
-      change_options(options, before.sequences), walks.falls);
+  walks.comparison =
+      surefoot::compare_walks({.model = model_for(options.model, before, after), .recorded = before.sequences},
+                              after.sequences, change_options(options, before.sequences), walks.falls);
   return walks;
 }
 
@@ -125,8 +137,11 @@ void run(CompareWalksOptions options) {
   check(options.read);
   sort_files(options);
   if (!options.out.empty()) example::prepare_output(options.out / "compare.json");
-  const ComparedWalks walks =
+  ComparedWalks walks =
       is_calibration(options.before) ? compare_with_calibration(options) : compare_with_recordings(options);
+  if (!options.joints_before.empty()) {
+    walks.joints = compare_joints(read_joint_logs(options.joints_before), read_joint_logs(options.joints_after));
+  }
   std::cout << compare_report(walks) << std::flush;
   if (options.out.empty()) return;
   example::write_text(options.out / "compare.json", compare_json(walks));
@@ -137,7 +152,8 @@ void run(CompareWalksOptions options) {
 
 void add_compare(CLI::App& program) {
   auto options = std::make_shared<CompareWalksOptions>();
-  CLI::App* command = program.add_subcommand("compare", "What changed in a walk since a former calibration or recording");
+  CLI::App* command =
+      program.add_subcommand("compare", "What changed in a walk since a former calibration or recording");
   command->footer(compared_files);
   command->add_option("walks", options->both, "OLD and NEW: a file each")->expected(0, 2);
   command->add_option("--old", options->before, "recordings of the old walk (CSV), or its motion.json");
@@ -153,6 +169,11 @@ void add_compare(CLI::App& program) {
   command->add_option("--certainty", options->certainty, "posterior probability from which on a statement is made")
       ->check(CLI::Range(0.6, 0.9999))
       ->capture_default_str();
+  auto* old_joints = command->add_option("--old-joints", options->joints_before,
+                                         "logs of the joints in the old walk, as surefoot-walk --log writes them");
+  auto* new_joints = command->add_option("--new-joints", options->joints_after, "the same of the new walk");
+  old_joints->needs(new_joints);
+  new_joints->needs(old_joints);
   command->add_option("--out", options->out, "folder for compare.json, made if needed");
   command->callback([options] { run(*options); });
 }

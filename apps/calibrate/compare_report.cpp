@@ -31,6 +31,22 @@ std::vector<std::string_view> changed_coefficients(const ComparedWalks& walks) {
   return names;
 }
 
+/// Where nothing is certain: that nothing was seen, or what may have happened.
+std::string nothing_certain(const ComparedWalks& walks) {
+  const surefoot::WalkComparison& result = walks.comparison;
+  const double nothing = result.posterior.nothing;
+  if (nothing >= 0.5) {
+    return example::printed(
+        "Nothing changed that these sequences could show (probability that nothing changed: %.2f; something is said "
+        "from %.2f against it on).\nThe column \"visible from\" tells what would have been found.\n",
+        nothing, walks.certainty);
+  }
+  return example::printed(
+      "Something changed with a probability of %.2f, too little for a statement (%.2f): record more sequences.\n"
+      "The likeliest: %s\n",
+      1 - nothing, walks.certainty, likeliest_change(result, walks.falls).c_str());
+}
+
 std::string coefficient_table(const ComparedWalks& walks) {
   std::string text;
   text += example::printed("\n%-22s %10s %10s %10s %24s %12s  %s\n", "coefficient", "old", "new", "difference",
@@ -118,18 +134,27 @@ Json noise_json(const surefoot::WalkComparison& result) {
   return list;
 }
 
+Json joints_json(const std::vector<JointChange>& changes) {
+  Json list = Json::array();
+  for (const JointChange& one : changes) {
+    list.push_back({{"joint", one.joint},
+                    {"what", one.what},
+                    {"unit", one.unit},
+                    {"old", one.before},
+                    {"new", one.after},
+                    {"difference", one.difference()},
+                    {"standard_error", one.standard_error}});
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string compare_report(const ComparedWalks& walks) {
   const surefoot::WalkComparison& result = walks.comparison;
   std::string text;
   text += example::printed("%zu new sequences, compared with %zu old ones.\n\n", walks.after, walks.before);
-  if (result.found.empty()) {
-    text += example::printed(
-        "Nothing changed that these sequences could show (probability that nothing changed: %.2f; something is said "
-        "from %.2f against it on).\nThe column \"visible from\" tells what would have been found.\n",
-        result.posterior.nothing, walks.certainty);
-  }
+  if (result.found.empty()) text += nothing_certain(walks);
   for (const std::string& sentence : change_sentences(result, walks.falls)) text += sentence + "\n";
   std::string names;
   for (const std::string_view name : changed_coefficients(walks))
@@ -139,6 +164,11 @@ std::string compare_report(const ComparedWalks& walks) {
     text += example::printed("Already the old walk responded later than its commands, by %d cycles.\n",
                              result.former_delay);
   }
+  const std::vector<std::string> causes = possible_causes(result);
+  if (!causes.empty()) text += "\nWhat can cause it:\n";
+  for (const std::string& cause : causes) text += "  " + cause + "\n";
+  if (walks.joints) text += joint_report(*walks.joints);
+  if (!walks.joints && !causes.empty()) text += "  Logs of the joints tell which joint: --old-joints, --new-joints.\n";
   text += coefficient_table(walks) + noise_table(walks);
   if (walks.falls && !result.falls) text += "\nNo sequence ended early.\n";
   text += example::printed(
@@ -161,6 +191,12 @@ std::string compare_json(const ComparedWalks& walks) {
             {"former_delay_cycles", result.former_delay},
             {"inflation", result.inflation},
             {"sequences", {{"old", walks.before}, {"new", walks.after}}}};
+  if (walks.joints) {
+    json["joints"] = {{"changed", joints_json(walks.joints->changed)},
+                      {"shifted", joints_json(walks.joints->shifted)},
+                      {"common", joints_json(walks.joints->common)},
+                      {"all", joints_json(walks.joints->all)}};
+  }
   if (walks.falls) {
     json["falls"] = {{"old", walks.falls->before.fell},
                      {"of_old", walks.falls->before.sequences},

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "joint_changes.hpp"
 #include "surefoot/motion/walk_changes.hpp"
 
 namespace calibrate_program {
@@ -13,6 +14,7 @@ struct ComparedWalks {
   std::optional<surefoot::WalkFalls> falls;
   std::size_t before = 0, after = 0;  // sequences
   double certainty = 0.95;
+  std::optional<JointComparison> joints = {};
 };
 
 std::string compare_report(const ComparedWalks& walks);

@@ -145,6 +145,55 @@ std::string name_of_change(const WalkComparison& comparison, int change) {
   return change < 0 ? "whole cycles" : comparison.changes[static_cast<std::size_t>(change)].name;
 }
 
+std::string likeliest_change(const WalkComparison& comparison, const std::optional<WalkFalls>& falls) {
+  int likeliest = -1;
+  double probability = comparison.posterior.any_of(std::array{-1});
+  for (int i = 0; i < static_cast<int>(comparison.changes.size()); ++i) {
+    const double other = comparison.posterior.any_of(std::array{i});
+    if (other > probability) likeliest = i, probability = other;
+  }
+  return "the robot " + sentence(comparison, likeliest, falls) + ": " + name_of_change(comparison, likeliest) +
+         example::printed(" (%.2f).", probability);
+}
+
+std::vector<std::string> possible_causes(const WalkComparison& comparison) {
+  struct Cause {
+    bool found;
+    const char* sentence;
+  };
+  bool late = false, partly_late = false, offset = false, coefficient = false, noise = false;
+  for (const surefoot::FoundChange& found : comparison.found) {
+    const int change = found.any_of.front();  // the likeliest of them
+    if (change < 0) {
+      late = true;
+      continue;
+    }
+    const WalkChange& what = comparison.changes[static_cast<std::size_t>(change)];
+    if (what.direction.size() == 0) {
+      noise = true;  // or falls
+    } else if (what.name == "part of a cycle") {
+      partly_late = true;
+    } else {
+      (what.name.ends_with("offset") ? offset : coefficient) = true;
+    }
+  }
+  std::vector<std::string> result;
+  for (const Cause& cause : {Cause{late, "A whole cycle: commands are passed on later."},
+                             Cause{partly_late,
+                                   "A part of a cycle: friction, a low supply or weaker gains of the servos; "
+                                   "displacements do not tell these apart."},
+                             Cause{offset,
+                                   "A drift: the zero of a joint, legs of different length, a load that moved, or a "
+                                   "slope; displacements do not tell these apart."},
+                             Cause{coefficient,
+                                   "Other steps for the same commands: free play, friction, the supply, the ground, or "
+                                   "settings of the walk; displacements do not tell these apart."},
+                             Cause{noise, "Noise and falls: a slope, soft or slippery ground, or loose parts."}}) {
+    if (cause.found) result.emplace_back(cause.sentence);
+  }
+  return result;
+}
+
 std::vector<std::string> change_sentences(const WalkComparison& comparison, const std::optional<WalkFalls>& falls) {
   std::vector<std::string> result;
   for (const surefoot::FoundChange& found : comparison.found) {

@@ -34,8 +34,8 @@ std::vector<EvaluatedModel> compare(Sequences sequences, const PredictorOptions&
   std::vector<surefoot::AnyMotionModel> models;
   for (const ModelKind kind : all_models) models.push_back(default_model(kind));
   std::vector<EvaluatedModel> result;
-  for (const surefoot::ModelEvaluation& score : surefoot::compare_models(std::span<const surefoot::AnyMotionModel>(models),
-                                                                    sequences, compare, executor, settings.seed)) {
+  for (const surefoot::ModelEvaluation& score : surefoot::compare_models(
+           std::span<const surefoot::AnyMotionModel>(models), sequences, compare, executor, settings.seed)) {
     result.push_back(evaluated(score));
   }
   return result;

@@ -1,8 +1,10 @@
 // surefoot-calibrate compare as a whole.
 #include <doctest/doctest.h>
 
+#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/apps/calibrate_walks.hpp"
 
@@ -58,6 +60,38 @@ TEST_CASE("compare names what changed since old recordings, and since an old cal
   const auto since = compared(folder, folder.file("fit/motion.json") + " " + folder.file("new.csv"));
   CHECK(since["found"][0]["any_of"][0]["change"] == "dy offset");
   CHECK(compared(folder, folder.file("fit/motion.json") + " " + folder.file("same.csv"))["changed"] == false);
+}
+
+TEST_CASE("compare says what can cause a change, and does not call a likely one nothing") {
+  const ScratchFolder folder;
+  write_text(folder.file("old.csv"), walks_csv_of(0, 0, 25, 1));
+  write_text(folder.file("new.csv"), walks_csv_of(4, 0.015, 10, 3));  // dy offset
+  const Outcome drift = calibrate("compare " + folder.file("old.csv") + " " + folder.file("new.csv"));
+  CHECK(drift.output.find("A drift: the zero of a joint, legs of different length") != std::string::npos);
+  CHECK(drift.output.find("--new-joints") != std::string::npos);
+
+  // Six of ten fell, where one of ten did: likely more, but not certain.
+  const auto with_falls = [](std::string csv, int falls) {
+    std::string text;
+    std::istringstream lines(csv);
+    for (std::string line; std::getline(lines, line);) {
+      int sequence = 0, cycle = 0;
+      const bool row = std::sscanf(line.c_str(), "%d,%d", &sequence, &cycle) == 2;
+      if (!row || sequence > falls || cycle < 12) text += line + "\n";
+    }
+    return text;
+  };
+  write_text(folder.file("some.csv"), with_falls(walks_csv_of(0, 0, 12, 1), 0));
+  write_text(folder.file("more.csv"), with_falls(walks_csv_of(0, 0, 12, 2), 5));
+  const Outcome likely = calibrate("compare " + folder.file("some.csv") + " " + folder.file("more.csv"));
+  REQUIRE_MESSAGE(likely.code == 0, likely.output);
+  CAPTURE(likely.output);
+  CHECK(likely.output.find("too little for a statement") != std::string::npos);
+  CHECK(likely.output.find("The likeliest: the robot falls more often: 5 of 12") != std::string::npos);
+
+  write_text(folder.file("most.csv"), with_falls(walks_csv_of(0, 0, 12, 2), 10));
+  const auto fell = compared(folder, folder.file("some.csv") + " " + folder.file("most.csv"));
+  CHECK(fell["falls"]["new"] == 10);
 }
 
 TEST_CASE("compare says what it needs") {

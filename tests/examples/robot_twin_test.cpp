@@ -211,6 +211,37 @@ TEST_CASE("a robot sinks into soft ground and still walks") {
   CHECK(mean_cycle(soft, {0.02, 0, 0})[0] > 0.02);
 }
 
+TEST_CASE("a switch of one joint acts there alone, and the log of the joints shows it") {
+  TwinSwitches switches;
+  set_switch(switches, "servo_friction:left_knee=0.3");
+  CHECK(switches.servo_friction == 0.3);
+  CHECK(joint_names[static_cast<std::size_t>(switches.joint)] == "left_knee");
+  const std::string xml = mjcf({}, switches);
+  CHECK(xml.find("frictionloss=\"0.39\"") == xml.rfind("frictionloss=\"0.39\""));
+  CHECK_THROWS_WITH_AS(set_switch(switches, "backlash:right_knee"), doctest::Contains("give one joint alone"),
+                       TwinError);
+  CHECK_THROWS_WITH_AS(set_switch(switches, "soft_ground:left_knee"), doctest::Contains("has no joint"), TwinError);
+
+  WalkingTwinOptions options;
+  set_switch(options.switches, "joint_zero:left_knee=0.05");
+  const Eigen::Matrix3Xd commands = Eigen::Matrix3Xd::Zero(3, 2);
+  const TwinSequence moved = record_sequence(options, commands, 0, 1, true),
+                     plain = record_sequence({}, commands, 0, 1, true);
+  REQUIRE(moved.joints.size() == plain.joints.size());
+  const std::size_t knee = 3;
+  double told = 0;
+  for (std::size_t i = 0; i < moved.joints.size(); ++i) {
+    told = std::max(told, std::abs(moved.joints[i].goals[knee] - plain.joints[i].goals[knee]));
+    CHECK(std::abs(moved.joints[i].goals[knee] - moved.joints[i].positions[knee]) < 0.2);  // by its own zero
+  }
+  CHECK(told < 1e-9);  // the goals are the same, the leg is not
+  const TwinSequence sequences[] = {moved};
+  const std::string csv = joints_csv(sequences);
+  CHECK(csv.starts_with("seq,t_s,goal_left_hip_yaw_rad"));
+  CHECK(csv.find("current_right_ankle_roll_A") != std::string::npos);
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == static_cast<std::ptrdiff_t>(moved.joints.size()) + 1);
+}
+
 TEST_CASE("switches by name: a usual value, a given one, and what is no switch") {
   TwinSwitches switches;
   set_switch(switches, "backlash");
@@ -218,7 +249,7 @@ TEST_CASE("switches by name: a usual value, a given one, and what is no switch")
   CHECK(switches.backlash > 0);
   CHECK(switches.slope_left == -0.05);
   CHECK(refusal("wind") ==
-        "switch wind: there is no such switch; there are backlash, servo_friction, order_delay, "
+        "switch wind: there is no such switch; there are backlash, servo_friction, joint_zero, order_delay, "
         "slope_forward, slope_left, short_left_leg, battery_drop, soft_ground, slippery_radius");
   CHECK(refusal("backlash=much").find("a number was expected") != std::string::npos);
   CHECK(refusal("backlash=-1").find("from 0 to 0.1 rad, got -1") != std::string::npos);

@@ -6,6 +6,8 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -125,7 +127,9 @@ double limp_after(Robot<Protocol>& robot, Program& program, Action action) {
   const Clock::time_point begin = Clock::now();
   action();
   const bool limp = within(20, [&] { return robot.with_torque() == 0; });
-  return limp ? seconds_since(begin) : 100;
+  const double seconds = limp ? seconds_since(begin) : 100;
+  if (std::getenv("SUREFOOT_PRINT_FAULTS") != nullptr) std::printf("program | limp after %.3f s\n", seconds);
+  return seconds;
 }
 
 }  // namespace

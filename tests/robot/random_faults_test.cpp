@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -104,12 +105,12 @@ class RandomRun {
   void fault() {
     const auto id = static_cast<std::uint8_t>(1 + rng_.below(joints));
     VirtualServo& servo = answerer_.servo(id);
-    const std::uint32_t kind = rng_.below(20);
+    const std::uint32_t kind = rng_.below(23);
     story_ += std::to_string(kind) + " (servo " + std::to_string(id) + ") ";
     fault_of_line(kind);
     fault_of_servo(kind, servo);
     if (kind == 16) wait(rng_.uniform(0, 1));  // freezes
-    if (kind >= 17) asked_ = static_cast<int>(kind) - 16;
+    if (kind >= 17 && kind < 20) asked_ = static_cast<int>(kind) - 16;
   }
 
   void fault_of_line(std::uint32_t kind) {
@@ -124,6 +125,7 @@ class RandomRun {
     if (kind == 6) bus_.port().hang_up();
     if (kind == 7) answerer_.set_voltage(rng_.uniform(4, 18));
     if (kind == 8) answerer_.swap_ids(1, 2);
+    if (kind == 20) answerer_.set_latency_timer(rng_.uniform(0, 0.016));
   }
 
   void fault_of_servo(std::uint32_t kind, VirtualServo& servo) {
@@ -135,6 +137,8 @@ class RandomRun {
     if (kind == 13) servo.temperature_celsius = rng_.uniform(20, 100);
     if (kind == 14) servo.set("torque_enable", 0);
     if (kind == 15) servo.set(Protocol::version == 1 ? "p_gain" : "position_p_gain", chance(30));
+    if (kind == 21) servo.set("status_return_level", chance(3));
+    if (kind == 22) servo.set("return_delay_time", chance(251));
   }
 
   surefoot::Rng rng_;
@@ -157,8 +161,10 @@ int wrong_runs(std::uint64_t first, std::uint64_t count) {
 }
 
 TEST_CASE("ten thousand sequences of faults by chance: no hang, no torque that could have been switched off") {
-  CHECK(wrong_runs<Protocol1>(1, 5'000) == 0);
-  CHECK(wrong_runs<Protocol2>(1, 5'000) == 0);
+  const char* const given = std::getenv("SUREFOOT_FAULT_SEED");  // for another draw
+  const std::uint64_t first = given != nullptr ? std::strtoull(given, nullptr, 10) : 1;
+  CHECK(wrong_runs<Protocol1>(first, 5'000) == 0);
+  CHECK(wrong_runs<Protocol2>(first, 5'000) == 0);
 }
 
 }  // namespace

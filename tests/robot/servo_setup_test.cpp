@@ -134,6 +134,17 @@ TEST_CASE("a single servo gets another id and its zero, and both back; Protocol 
   CHECK(ax.memory() == ax_before);
 }
 
+TEST_CASE("a servo that shut itself down takes torque again after a reboot") {
+  NewServos<Protocol2> one({VirtualServo(*find_model("XM430-W350"), 1)});
+  one.bus.with([](auto& answerer) { answerer.servo(1).shut_down(protocol2::overload_error); });
+  auto bus = open_patiently<Protocol2>(one.bus.path(), 57'600);
+  const std::uint8_t on = 1;
+  CHECK_FALSE(bus.write(1, 64, Bytes(&on, 1)));
+  reboot_servo(bus, 1);
+  CHECK(bus.write(1, 64, Bytes(&on, 1)));
+  CHECK_THROWS_WITH_AS(reboot_servo(bus, 9), doctest::Contains("servo 9 does not answer"), BusError);
+}
+
 TEST_CASE("nothing is changed where anything asked for cannot be") {
   NewServos<Protocol2> servos(new_servos(2));
   const ScratchFolder folder;

@@ -6,8 +6,10 @@ namespace sigmaban {
 
 void add_twin_options(CLI::App& command, TwinOptions& options) {
   std::ostringstream help;
-  help << "physics that is off by default, NAME or NAME=VALUE, several times:";
-  for (const TwinSwitch& s : twin_switches) help << ' ' << s.name << '=' << s.usual << " [" << s.unit << ']';
+  help << "physics that is off by default, NAME or NAME=VALUE (of one joint: NAME:JOINT=VALUE), several times:";
+  for (const TwinSwitch& s : twin_switches) {
+    help << ' ' << s.name << (s.of_joints ? "[:JOINT]=" : "=") << s.usual << " [" << s.unit << ']';
+  }
   command.add_option("--switch", options.switches, help.str());
   command.add_option("--noise", options.noise, "[rad] standard deviation of noise on every joint target")
       ->check(CLI::Range(0.0, 1.0))

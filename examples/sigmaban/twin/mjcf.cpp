@@ -1,5 +1,6 @@
 #include "mjcf.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <locale>
@@ -64,10 +65,15 @@ constexpr std::string_view light =
     "<light pos=\"1 1 3\" dir=\"-0.3 -0.3 -1\" directional=\"true\" diffuse=\"0.7 0.7 0.7\"/>\n";
 
 /// A servo, and the free play behind it.
-std::string joint(const std::string& name, std::string_view axis, const TwinSwitches& switches) {
+std::string joint(const std::string& name, std::string_view axis, const TwinParameters& p,
+                  const TwinSwitches& switches) {
   const std::string along = attribute("axis", std::string(axis));
-  std::string result = "<joint class=\"servo\"" + attribute("name", name) + along + "/>\n";
-  if (switches.backlash > 0) result += "<joint class=\"play\"" + attribute("name", name + "_play") + along + "/>\n";
+  const auto place = static_cast<std::size_t>(std::ranges::find(joint_names, name) - joint_names.begin());
+  const double friction = p.servo.dry_friction + (switches.at(place) ? switches.servo_friction : 0);
+  std::string result =
+      "<joint class=\"servo\"" + attribute("name", name) + along + attribute("frictionloss", friction) + "/>\n";
+  if (switches.backlash > 0 && switches.at(place))
+    result += "<joint class=\"play\"" + attribute("name", name + "_play") + along + "/>\n";
   return result;
 }
 
@@ -91,7 +97,7 @@ std::string leg(const std::string& side, double outwards, double knee_to_ankle, 
   const auto body = [&](const std::string& name, const Vector& position, const std::string& joint_name,
                         std::string_view axis, const TwinLink& link) {
     return "<body" + attribute("name", side + "_" + name) + attribute("pos", text(position)) + ">\n" +
-           joint(side + "_" + joint_name, axis, switches) + block(link);
+           joint(side + "_" + joint_name, axis, p, switches) + block(link);
   };
   return body("hip_yaw", {0, outwards * p.feet_distance / 2, 0}, "hip_yaw", z, p.hip_yaw) +
          body("hip_block", {0, 0, 0}, "hip_roll", x, p.hip_block) + body("thigh", {0, 0, 0}, "hip_pitch", y, p.thigh) +
@@ -107,7 +113,6 @@ std::string defaults(const TwinParameters& p, const TwinSwitches& switches) {
   return "<default>\n<geom contype=\"0\" conaffinity=\"0\" rgba=\"0.75 0.77 0.8 1\"/>\n"
          "<default class=\"servo\"><joint type=\"hinge\"" +
          attribute("armature", servo.armature) + attribute("damping", servo.damping) +
-         attribute("frictionloss", servo.dry_friction + switches.servo_friction) +
          "/></default>\n"
          // The inertia of the gear wheels that are free; the stop is as stiff as the time step allows.
          "<default class=\"play\"><joint type=\"hinge\" armature=\"0.0003\" damping=\"0.01\" limited=\"true\"" +

@@ -20,7 +20,7 @@ namespace {
 struct RecordOptions {
   TwinOptions twin;
   int sequences = 25, cycles = 25;
-  std::filesystem::path commands, out;
+  std::filesystem::path commands, out, joints;
 };
 
 /// Per cycle, one matrix per sequence.
@@ -42,11 +42,13 @@ void run(const RecordOptions& options) {
   const WalkingTwinOptions twin = walking_twin_options(options.twin);
   const std::vector<Eigen::Matrix3Xd> commands = commands_of(options);
   example::prepare_output(options.out);
+  if (!options.joints.empty()) example::prepare_output(options.joints);
   calibrate_program::until_interrupted(options.twin.threads, [&](const calibrate_program::StoppableThreads& threads) {
-    const auto sequences =
-        record_sequences(twin, commands, options.twin.seed, threads, ProgressLine("sequences", commands.size()));
+    const auto sequences = record_sequences(twin, commands, options.twin.seed, threads,
+                                            ProgressLine("sequences", commands.size()), !options.joints.empty());
     const auto falls = std::ranges::count_if(sequences, &TwinSequence::fell);
     example::write_text(options.out, sequences_csv(sequences));
+    if (!options.joints.empty()) example::write_text(options.joints, joints_csv(sequences));
     std::printf("%s: %zd sequences", options.out.c_str(), std::ssize(sequences) - falls);
     if (falls > 0) std::printf("; %zd more ended in a fall and are left out", falls);
     std::printf("\n");
@@ -68,6 +70,7 @@ void add_record(CLI::App& program) {
                    "CSV file of commands in place of random ones, as written by surefoot-calibrate plan or by record")
       ->check(CLI::ExistingFile);
   add_twin_options(*command, options->twin);
+  command->add_option("--joints", options->joints, "CSV file for the joints: goals, positions, currents");
   command->add_option("--out", options->out, "CSV file to write")->required();
   command->callback([options] { run(*options); });
 }

@@ -140,8 +140,10 @@ void print(const std::vector<Table4Row>& rows, const Table4Options& options) {
       char published[16] = "-";
       if (i < options.published.size()) std::snprintf(published, sizeof published, "%.2f", options.published[i]);
       ++i;
-      std::printf("%-8s %-12s %s%7.1f +- %4.1f %9d %6d %6d %6d %10s\n", problem == "ha" ? "HA" : "ANHA",
-                  std::string(policy).c_str(), cell.failed > 0 ? ">" : " ", cell.seconds, cell.half_width, cell.reached,
+      char width[16] = "-";  // of a single run from each start it is not known
+      if (std::isfinite(cell.half_width)) std::snprintf(width, sizeof width, "%.1f", cell.half_width);
+      std::printf("%-8s %-12s %s%7.1f +- %4s %9d %6d %6d %6d %10s\n", problem == "ha" ? "HA" : "ANHA",
+                  std::string(policy).c_str(), cell.failed > 0 ? ">" : " ", cell.seconds, width, cell.reached,
                   cell.runs, cell.fell, cell.lost, published);
     }
   }

@@ -74,8 +74,8 @@ void Twin::reset(const JointTargets& stand) {
   mj_resetData(m, d);
   const auto targets = stand.array();
   for (std::size_t i = 0; i < 12; ++i) {
-    d->qpos[position_[i]] = targets[i];
-    d->ctrl[i] = targets[i];
+    d->qpos[position_[i]] = targets[i] + zero(i);
+    d->ctrl[i] = targets[i] + zero(i);
   }
   // The free joint's seven coordinates come first: position, then orientation as a quaternion.
   mj_kinematics(m, d);
@@ -94,7 +94,7 @@ void Twin::reset(const JointTargets& stand) {
 void Twin::drive(const JointTargets& targets) {
   if (!all_finite(targets)) throw TwinError("Twin::drive: a joint target is not finite");
   const auto angles = targets.array();
-  std::copy(angles.begin(), angles.end(), data_->ctrl);
+  for (std::size_t i = 0; i < 12; ++i) data_->ctrl[i] = angles[i] + zero(i);
   using surefoot::Vec;
   const Vec<3> velocity = Vec<3>::Map(data_->qvel);
   reading_ = {};
@@ -152,7 +152,24 @@ bool Twin::fallen() const {
 
 std::array<double, 12> Twin::joint_positions() const {
   std::array<double, 12> result{};
-  for (std::size_t i = 0; i < 12; ++i) result[i] = data_->qpos[position_[i]];
+  for (std::size_t i = 0; i < 12; ++i) result[i] = data_->qpos[position_[i]] - zero(i);
+  return result;
+}
+
+std::array<double, 12> Twin::joint_goals() const {
+  std::array<double, 12> result{};
+  for (std::size_t i = 0; i < 12; ++i) result[i] = data_->ctrl[i] - zero(i);
+  return result;
+}
+
+std::array<double, 12> Twin::joint_currents() const {
+  const dynamixel::MotorParameters motor;
+  const double back_emf_damping = motor.torque_constant * motor.torque_constant / motor.resistance_ohm;
+  std::array<double, 12> result{};
+  for (std::size_t i = 0; i < 12; ++i) {
+    const double speed = data_->qvel[model_->jnt_dofadr[model_->actuator_trnid[2 * i]]];
+    result[i] = (data_->actuator_force[i] - back_emf_damping * speed) / motor.torque_constant;
+  }
   return result;
 }
 

@@ -48,6 +48,12 @@ class Twin {
   /// What the servos measure, in the order of joint_names [rad]: free play lies behind them.
   std::array<double, 12> joint_positions() const;
 
+  /// What they were told last, in the order of joint_names [rad].
+  std::array<double, 12> joint_goals() const;
+
+  /// What they draw, in the order of joint_names [A].
+  std::array<double, 12> joint_currents() const;
+
   /// The torques that the servos' voltages cause, in the order of joint_names [N m].
   std::array<double, 12> joint_torques() const;
 
@@ -73,6 +79,7 @@ class Twin {
 
   void set_frictions();
   void add_loads();
+  double zero(std::size_t joint) const { return switches_.at(joint) ? switches_.joint_zero : 0; }
 
   TwinParameters parameters_;
   TwinSwitches switches_;

@@ -9,12 +9,16 @@
 namespace sigmaban {
 
 TwinSequence record_sequence(const WalkingTwinOptions& options, const Eigen::Matrix3Xd& commands, std::size_t number,
-                             std::uint64_t seed) {
-  TwinSequence result{.number = number, .commands = {}, .moved = {}};
+                             std::uint64_t seed, bool with_joints) {
+  TwinSequence result{.number = number, .commands = {}, .moved = {}, .joints = {}};
   WalkingTwin robot(options, surefoot::Rng(seed, number).stream(1));
   for (Eigen::Index cycle = 0; cycle < commands.cols() && !robot.fallen(); ++cycle) {
     const surefoot::Vec<3> command = commands.col(cycle) / steps_per_cycle;
-    const surefoot::Pose2 moved = robot.cycle(command);
+    const surefoot::Pose2 moved = robot.cycle(command, [&](const Twin& twin) {
+      if (with_joints) {
+        result.joints.push_back({twin.time(), twin.joint_goals(), twin.joint_positions(), twin.joint_currents()});
+      }
+    });
     if (robot.fallen()) break;
     result.commands.push_back(command);
     result.moved.push_back(moved);
@@ -68,6 +72,29 @@ std::string sequences_csv(std::span<const TwinSequence> sequences) {
     }
   }
   return text;
+}
+
+std::string joints_csv(std::span<const TwinSequence> sequences) {
+  std::string text = "seq,t_s";
+  for (const std::string_view what : {"goal_", "position_", "current_"}) {
+    for (const std::string_view joint : joint_names) {
+      text += "," + std::string(what) + std::string(joint) + (what == "current_" ? "_A" : "_rad");
+    }
+  }
+  for (const TwinSequence& sequence : sequences) {
+    for (const JointRow& row : sequence.joints) {
+      std::array<char, 40> cell{};
+      std::snprintf(cell.data(), cell.size(), "\n%zu,%.3f", sequence.number, row.time);
+      text += cell.data();
+      for (const auto* values : {&row.goals, &row.positions, &row.currents}) {
+        for (const double value : *values) {
+          std::snprintf(cell.data(), cell.size(), ",%.5f", value);
+          text += cell.data();
+        }
+      }
+    }
+  }
+  return text + "\n";
 }
 
 Eigen::Matrix<double, 3, 4> walk_gains(std::span<const TwinSequence> sequences) {

@@ -71,6 +71,11 @@ class Bus {
     return ask_one(id, 0, [&] { return Protocol::write(packet_, id, address, data, Instruction::reg_write); });
   }
 
+  /// After its answer the servo starts anew: without torque and errors, its RAM as from the factory.
+  Reply reboot(std::uint8_t id) {
+    return ask_one(id, 0, [&] { return Protocol::reboot(packet_, id); });
+  }
+
   /// To all. None answers.
   void action() { send(Protocol::action(packet_)); }
 
@@ -80,6 +85,15 @@ class Bus {
     send(Protocol::sync_write(packet_, address, static_cast<std::uint16_t>(data.size() / ids.size()), ids, data));
   }
 
+  /// To each servo its own registers: `data` holds the bytes of all items, one after the other. None answers. Protocol
+  /// 2.0 alone.
+  void bulk_write(std::span<const BulkItem> items, Bytes data) requires requires(Buffer out) {
+    Protocol::bulk_write(out, items, data);
+  }
+  {
+    if (!items.empty()) send(Protocol::bulk_write(packet_, items, data));
+  }
+
   /// The same bytes of each servo: `out` holds them in the order of `ids`, untouched where `outcomes` are not
   /// `answered`. Returns how many answered. In Protocol 1.0 this is a bulk read.
   std::size_t sync_read(std::uint16_t address, std::uint16_t count, Bytes ids, Buffer out, std::span<Outcome> outcomes,
@@ -87,14 +101,17 @@ class Bus {
     check(ids.size() <= max_servos, "asks too many servos at once, the most are 64");
     std::array<BulkItem, max_servos> items;
     for (std::size_t i = 0; i < ids.size(); ++i) items[i] = {ids[i], address, count};
+    fast_ = Protocol::version == 2 && options_.fast_sync_read;
     return bulk_read(std::span(items).first(ids.size()), out, outcomes, deadline);
   }
 
   /// Of each servo its own bytes, one after the other.
   std::size_t bulk_read(std::span<const BulkItem> items, Buffer out, std::span<Outcome> outcomes,
                         Time deadline = Time::max()) {
-    return ask_for(items, out, outcomes, deadline,
-                   [&](std::span<const BulkItem> now) { return Protocol::read_many(packet_, now); });
+    return ask_for(items, out, outcomes, deadline, [&](std::span<const BulkItem> now) {
+      if constexpr (Protocol::version == 2) return Protocol::read_many(packet_, now, fast_round_);
+      return Protocol::read_many(packet_, now);
+    });
   }
 
   /// Counts of one servo.
@@ -118,7 +135,8 @@ class Bus {
   void set_table_end(std::uint16_t address) { options_.table_end = address; }
 
  private:
-  static constexpr std::size_t marks = 10;  // lengths that reads take turns with
+  static constexpr std::size_t marks = 10;      // lengths that reads take turns with
+  static constexpr std::size_t fast_marks = 3;  // a packet of all that is late by so many cycles is not out any more
 
   struct Question {
     BulkItem item;
@@ -192,14 +210,16 @@ class Bus {
     while (count > 0) {
       drain(kinds == 1 ? options_.latency_s : 0);  // where it could not be told from one that comes twice
       const Time now = port_.now();
-      mark_ = next_mark(count, kinds, now);
+      fast_round_ =
+          std::exchange(fast_, false) && kinds > 1;  // but once: what it does not bring is asked servo by servo
+      mark_ = fast_round_ ? (mark_ + 1) % std::min(kinds, fast_marks) : next_mark(count, kinds, now);
       std::array<BulkItem, max_servos> items;
       std::array<std::size_t, max_servos> places;
       std::size_t asked = 0;
       for (std::size_t i = 0; i < count; ++i) {
         BulkItem item = questions_[i].item;
         item.count = static_cast<std::uint16_t>(item.count + mark_);
-        if (listener_.may_come(item.id, item.count, now)) continue;
+        if (!fast_round_ && listener_.may_come(item.id, item.count, now)) continue;
         items[asked] = item;
         places[asked++] = i;
       }
@@ -222,6 +242,8 @@ class Bus {
         const Question& q = questions_[places[turn]];
         std::copy_n(data.begin(), out.empty() ? 0 : q.item.count, out.begin() + static_cast<std::ptrdiff_t>(q.offset));
       });
+      if (fast_round_ && listener_.round().open() == asked)
+        continue;  // the packet of all did not come: as if not asked
       count = book(std::span(places).first(asked), count, outcomes);
     }
   }
@@ -332,6 +354,7 @@ class Bus {
   std::array<std::uint8_t, 1024> received_{};
   Time line_free_{};  // when the last byte sent is on the line
   std::size_t mark_ = 0;
+  bool fast_ = false, fast_round_ = false;  // the next read, the present round is a fast sync read
 };
 
 }  // namespace dynamixel

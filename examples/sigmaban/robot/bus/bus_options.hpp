@@ -14,6 +14,7 @@ struct BusOptions {
   int retries = 1;                 // per servo and call; none where the last two calls were in vain
   Chain chain = Chain::stops;
   bool echo = false;            // the adapter hands back what is sent; needed for Protocol 1.0 alone
+  bool fast_sync_read = false;  // of Protocol 2.0: new firmware answers it; what it does not bring is asked as usual
   std::uint16_t table_end = 0;  // address behind the last byte that may be read; 0: that of MX servos
 };
 

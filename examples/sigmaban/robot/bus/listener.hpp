@@ -60,6 +60,11 @@ class Listener {
   /// An instruction was sent. `packet` must stay until the next one.
   void note_sent(Bytes packet) {
     sent_ = packet;
+    if constexpr (Protocol::version == 2) {
+      constexpr std::size_t code = 7;  // its place in a packet
+      in_blocks_ = packet.size() > code && packet[code] == static_cast<std::uint8_t>(Instruction::fast_sync_read);
+      decoder_.set_longest(in_blocks_ ? longest_packet : longest_status);
+    }
     ++line_.instructions;
   }
 
@@ -110,10 +115,19 @@ class Listener {
   const LineStatistics& line() const { return line_; }
 
  private:
+  static constexpr std::size_t longest_status = 256;                                  // [bytes]
+  static constexpr std::size_t longest_packet = Protocol::version == 2 ? 2048 : 256;  // the answer of many at once
+
   template <class Accept>
   void take_packets(Accept accept) {
     while (const auto packet = decoder_.next()) {
       note_garbage();
+      if constexpr (Protocol::version == 2) {
+        if (packet->id == broadcast_id && static_cast<Instruction>(packet->code) == Instruction::status) {
+          judge_blocks(packet->parameters, accept);
+          continue;
+        }
+      }
       const auto status = Protocol::as_status(*packet);
       if (!status || (echo_ && is_echo(*packet))) {
         ++line_.echoes;
@@ -130,6 +144,24 @@ class Listener {
                       std::equal(packet.parameters.begin(), packet.parameters.end(), sent_.begin() + head);
     if (same) sent_ = {};  // it comes once
     return same;
+  }
+
+  /// The answers of all to a fast sync read, in turn. An older one has other lengths.
+  template <class Accept>
+  void judge_blocks(Bytes rest, Accept accept) {
+    constexpr std::size_t overhead = Protocol::block_overhead, head = 2, last_crc = 2;
+    std::size_t size = 0;
+    for (std::size_t i = 0; i < round_.size(); ++i) size += overhead + round_.length(i);
+    if (!in_blocks_ || size != rest.size() + last_crc) {
+      ++line_.strangers;
+      return;
+    }
+    for (std::size_t i = 0; i < round_.size(); ++i) {
+      const std::size_t length = round_.length(i);
+      if (round_.turn_of(rest[1]) != i) return note_wrong_id();
+      judge({rest[1], rest[0], (rest[0] & ~protocol2::alert_bit) != 0, rest.subspan(head, length)}, accept);
+      rest = rest.subspan(std::min(rest.size(), length + overhead));
+    }
   }
 
   template <class Accept>
@@ -219,7 +251,8 @@ class Listener {
 
   Chain chain_;
   bool echo_;
-  typename Protocol::template Decoder<256> decoder_;
+  bool in_blocks_ = false;  // the last instruction was a fast sync read
+  typename Protocol::template Decoder<longest_packet> decoder_;
   Round round_{Chain::stops, 0};
   Unanswered unanswered_;
   std::array<ServoStatistics, 256> servos_{};

@@ -39,6 +39,7 @@ struct Protocol1 {
 
   static Bytes ping(Buffer out, std::uint8_t id) { return protocol1::ping(out, id); }
   static Bytes action(Buffer out) { return protocol1::action(out); }
+  static Bytes reboot(Buffer out, std::uint8_t id) { return protocol1::reboot(out, id); }
   static Bytes write(Buffer out, std::uint8_t id, std::uint16_t address, Bytes data, Instruction code) {
     return protocol1::write(out, id, address, data, code);
   }
@@ -74,6 +75,10 @@ struct Protocol2 {
 
   static Bytes ping(Buffer out, std::uint8_t id) { return protocol2::ping(out, id); }
   static Bytes action(Buffer out) { return protocol2::action(out); }
+  static Bytes reboot(Buffer out, std::uint8_t id) { return protocol2::reboot(out, id); }
+  static Bytes bulk_write(Buffer out, std::span<const BulkItem> items, Bytes data) {
+    return protocol2::bulk_write(out, items, data);
+  }
   static Bytes write(Buffer out, std::uint8_t id, std::uint16_t address, Bytes data, Instruction code) {
     return protocol2::write(out, id, address, data, code);
   }
@@ -83,10 +88,11 @@ struct Protocol2 {
   static Bytes read_one(Buffer out, const BulkItem& item) {
     return protocol2::read(out, item.id, item.address, item.count);
   }
+  static constexpr std::size_t block_overhead = 4;  // bytes of a block of a fast sync read that carry no data
   /// A sync read where all are asked for the same bytes.
-  static Bytes read_many(Buffer out, std::span<const BulkItem> items) {
+  static Bytes read_many(Buffer out, std::span<const BulkItem> items, bool fast = false) {
     if (!reads_the_same(items)) return protocol2::bulk_read(out, items);
-    protocol2::PacketWriter packet(out, broadcast_id, Instruction::sync_read);
+    protocol2::PacketWriter packet(out, broadcast_id, fast ? Instruction::fast_sync_read : Instruction::sync_read);
     packet.put_word(items.front().address);
     packet.put_word(items.front().count);
     for (const BulkItem& item : items) packet.put_id(item.id);

@@ -59,6 +59,7 @@ struct FactorySettings {
   std::uint16_t min_voltage_limit = 95, max_voltage_limit = 160;
   std::uint8_t temperature_limit = 80;
   std::uint16_t p_gain = 850;  // of the position
+  double supply_v = 12;        // that it is made for, rounded [V]
 };
 
 /// A kind of servo with one of its firmwares. Registers are sorted by address.
@@ -82,6 +83,16 @@ struct ServoModel {
     return nullptr;
   }
 };
+
+/// The angle of a tick, from the centre [rad].
+constexpr double angle_of(const ServoModel& model, double ticks) { return (ticks - model.center) * model.tick_rad; }
+
+/// The nearest tick of its one turn; none for angles beyond it or not finite.
+inline std::optional<std::uint16_t> ticks_of(const ServoModel& model, double angle_rad) {
+  const double ticks = std::round(angle_rad / model.tick_rad + model.center);
+  if (!(ticks >= 0 && ticks <= 2 * model.center - 1)) return std::nullopt;
+  return static_cast<std::uint16_t>(ticks);
+}
 
 /// Of a register in bytes that begin at address `begin` and hold all of it.
 constexpr std::uint32_t bits_in(Bytes bytes, std::size_t begin, const Register& r) {

@@ -44,7 +44,7 @@ class PacketDecoder {
   std::optional<Packet> next() {
     remove_taken();
     while (size_ > 0) {
-      const Frame frame = Framing::judge(Bytes(bytes_.data(), size_), Capacity);
+      const Frame frame = Framing::judge(Bytes(bytes_.data(), size_), longest_);
       if (frame.verdict == Verdict::incomplete) return std::nullopt;
       if (frame.verdict == Verdict::packet) {
         if (const auto packet = Framing::open(Buffer(bytes_.data(), frame.size))) {
@@ -59,6 +59,9 @@ class PacketDecoder {
     }
     return std::nullopt;
   }
+
+  /// From now on longer packets count as garbage; at most Capacity.
+  void set_longest(std::size_t bytes) { longest_ = std::min(bytes, Capacity); }
 
   /// Pushes all of `bytes` and calls sink(packet) for every packet they complete.
   template <class Sink>
@@ -104,6 +107,7 @@ class PacketDecoder {
 
   std::array<std::uint8_t, Capacity> bytes_{};
   std::size_t size_ = 0;
+  std::size_t longest_ = Capacity;
   std::size_t taken_ = 0;  // bytes of the packet handed out last, at the front
   Statistics statistics_;
 };

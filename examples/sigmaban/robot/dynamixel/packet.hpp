@@ -13,7 +13,7 @@ using Buffer = std::span<std::uint8_t>;
 /// Every servo carries the instruction out and none answers (but ping and the reads of many, in Protocol 2.0).
 inline constexpr std::uint8_t broadcast_id = 0xFE;
 
-/// sync_read, bulk_write, clear and status belong to Protocol 2.0 alone.
+/// sync_read, fast_sync_read, bulk_write, clear and status belong to Protocol 2.0 alone.
 enum class Instruction : std::uint8_t {
   ping = 0x01,
   read = 0x02,
@@ -26,6 +26,7 @@ enum class Instruction : std::uint8_t {
   status = 0x55,
   sync_read = 0x82,
   sync_write = 0x83,
+  fast_sync_read = 0x8A,
   bulk_read = 0x92,
   bulk_write = 0x93
 };

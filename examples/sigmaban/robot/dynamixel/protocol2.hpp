@@ -153,9 +153,11 @@ inline Bytes reg_write(Buffer out, std::uint8_t id, std::uint16_t address, Bytes
   return write(out, id, address, data, Instruction::reg_write);
 }
 
-/// The same `count` bytes of each id; the servos answer in this order.
-inline Bytes sync_read(Buffer out, std::uint16_t address, std::uint16_t count, Bytes ids) {
-  PacketWriter packet(out, broadcast_id, Instruction::sync_read);
+/// The same `count` bytes of each id; the servos answer in this order. A fast one is answered by one packet of all, to
+/// which each servo adds a block: error, id, data, and the CRC of all bytes before it; nothing in it is stuffed.
+inline Bytes sync_read(Buffer out, std::uint16_t address, std::uint16_t count, Bytes ids,
+                       Instruction code = Instruction::sync_read) {
+  PacketWriter packet(out, broadcast_id, code);
   packet.put_word(address);
   packet.put_word(count);
   for (const std::uint8_t id : ids) packet.put_id(id);

@@ -137,8 +137,8 @@ inline constexpr std::array xl_320{
     Register{"hardware_error_status", 50, 1, read_only},
     Register{"punch", 51, 2, read_write}};
 
-inline constexpr FactorySettings xl330_factory{1, 35, 70, 70, 400}, xl430_factory{1, 60, 140, 72, 640},
-    x_factory{1, 95, 160, 80, 800}, xh430_factory{1, 95, 160, 80, 900}, xl320_factory{3, 60, 90, 65, 32},
+inline constexpr FactorySettings xl330_factory{1, 35, 70, 70, 400, 5}, xl430_factory{1, 60, 140, 72, 640},
+    x_factory{1, 95, 160, 80, 800}, xh430_factory{1, 95, 160, 80, 900}, xl320_factory{3, 60, 90, 65, 32, 7.4},
     ax_factory{1, 60, 140, 70, 0};
 
 }  // namespace control_table_detail

@@ -40,6 +40,7 @@ struct Options {
   std::uint32_t bits_per_s = 3'000'000;
   std::uint64_t seed = 1;
   Faults faults{.lost = 0.01, .corrupted = 0.01};
+  bool fast_sync_read = false;
 };
 
 struct Findings {
@@ -67,8 +68,14 @@ struct Line {
             servos(joints),
             {.bits_per_s = options.bits_per_s, .faults = options.faults, .seed = options.seed + number})),
         bus(BackgroundPort(SerialPort(simulated.path(), options.bits_per_s)),
-            {.return_delay_s = 0, .latency_s = options.latency_s, .memory_s = options.memory_s}),
-        group(bus, mx_64_protocol_2, joints, {.listen_s = 0.7 / options.rate_hz, .care = {.silent_longest_s = 1e9}}) {}
+            {.return_delay_s = 0,
+             .latency_s = options.latency_s,
+             .memory_s = options.memory_s,
+             .fast_sync_read = options.fast_sync_read}),
+        // Listening and care together take less than a cycle.
+        group(bus, mx_64_protocol_2, joints,
+              {.listen_s = 0.7 / options.rate_hz, .care = {.poll_s = 0.2 / options.rate_hz, .silent_longest_s = 1e9}}) {
+  }
 
   static std::vector<VirtualServo> servos(const std::vector<Joint>& joints) {
     std::vector<VirtualServo> made;
@@ -215,18 +222,22 @@ int check(const Options& options) {
                "missed control cycles: " + std::to_string(found.missed) +
                    ", of them while the machine stood still: " + std::to_string(found.stalled) +
                    " (threads that only sleep woke late " + std::to_string(watch.count()) + " times)");
-  // An answer that the system hands over late may look like another fault.
-  const bool comparable = ours.late == 0;
-  const std::string note = comparable ? "" : "; kinds not compared, as the system handed over some answers late";
-  right &= say(!comparable || ours.corrupted == made.corrupted,
-               "corrupted answers: " + pair(ours.corrupted, made.corrupted) + note);
-  right &= say(!comparable || ours.lost == made.lost + made.silent,
+  // An answer that the system hands over late may look like another fault, each late one like one at most. In a fast
+  // sync read one fault costs the packet of all, so that there is nothing to compare.
+  const auto agree = [&](std::uint64_t counted, std::uint64_t truth) {
+    return options.fast_sync_read || std::max(counted, truth) - std::min(counted, truth) <= ours.late;
+  };
+  const std::string note =
+      ours.late == 0 ? "" : " (late ones, which may count as others: " + std::to_string(ours.late) + ")";
+  right &=
+      say(agree(ours.corrupted, made.corrupted), "corrupted answers: " + pair(ours.corrupted, made.corrupted) + note);
+  right &= say(agree(ours.lost, made.lost + made.silent),
                "lost answers, with those of the silent servo: " + pair(ours.lost, made.lost + made.silent) + note);
-  right &= say(!comparable || ours.corrupted + unheard == made.corrupted + unsent,
+  right &= say(agree(ours.corrupted + unheard, made.corrupted + unsent),
                "all of these, with those not sent behind a silent one: " +
                    pair(ours.corrupted + unheard, made.corrupted + unsent) + note);
   const std::uint64_t others = ours.wrong_id + ours.wrong_length + ours.duplicates + ours.refused;
-  right &= say(!comparable || others == 0, "faults counted but not made: " + std::to_string(others) + note);
+  right &= say(agree(others, 0), "faults counted but not made: " + std::to_string(others) + note);
   right &= say(found.wrong == 0, "wrong values accepted: " + std::to_string(found.wrong));
   right &= say(found.false_reports == 0, "false reports of silence: " + std::to_string(found.false_reports));
   right &= say(found.reported_s && *found.reported_s <= 0.050,
@@ -257,6 +268,8 @@ int main(int argc, char** argv) {
   program.add_option("--silent-for", options.silent_for_s, "[s]")->capture_default_str();
   program.add_option("--lost", options.faults.lost, "share of answers")->capture_default_str();
   program.add_option("--corrupted", options.faults.corrupted, "share of answers")->capture_default_str();
+  program.add_flag("--fast-sync-read", options.fast_sync_read,
+                   "one packet of all servos in a cycle, where it comes through");
   program.add_option("--seed", options.seed)->capture_default_str();
   int code = EXIT_SUCCESS;
   program.callback([&] { code = check(options); });

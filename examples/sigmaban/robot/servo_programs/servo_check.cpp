@@ -10,6 +10,7 @@
 #include "../../../../apps/common/run_program.hpp"
 #include "../bus/bus.hpp"
 #include "../bus/serial_port.hpp"
+#include "../dynamixel/servo_models.hpp"
 #include "../servos/feedback.hpp"
 #include "servo_ids.hpp"
 
@@ -23,14 +24,6 @@ struct Options {
   int protocol = 2;
   std::uint32_t bits_per_s = 1'000'000;
 };
-
-/// Null where the number is none of those known.
-const ServoModel* find_model(unsigned number) {
-  for (const ServoModel* model : {&mx_28_protocol_1, &mx_64_protocol_1, &mx_28_protocol_2, &mx_64_protocol_2}) {
-    if (model->model_number == number) return model;
-  }
-  return nullptr;
-}
 
 template <class Protocol>
 void print_row(Bus<Protocol, SerialPort>& bus, std::uint8_t id) {

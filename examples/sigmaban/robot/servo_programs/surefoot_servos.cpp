@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../../../../apps/common/run_program.hpp"
+#include "../bus/realtime.hpp"
 #include "../setup/change.hpp"
 #include "../setup/measure.hpp"
 #include "../setup/scan.hpp"
@@ -153,6 +154,20 @@ void add_restore(CLI::App& program) {
   });
 }
 
+void add_reboot(CLI::App& program) {
+  auto options = std::make_shared<LineOptions>();
+  CLI::App* command = program.add_subcommand("reboot", "Start servos anew: a hardware error keeps their torque off");
+  add_line(*command, *options);
+  command->callback([options] {
+    const auto ids = options->wanted();
+    with_protocol(options->line.protocol, [&](auto protocol) {
+      auto bus = open_patiently<decltype(protocol)>(options->line.port, options->line.bits_per_s);
+      for (const std::uint8_t id : ids) reboot_servo(bus, id);
+    });
+    std::printf("%zu servos have started anew\n", ids.size());
+  });
+}
+
 void add_measure(CLI::App& program) {
   struct Options : LineOptions {
     int cycles = 200;
@@ -165,6 +180,7 @@ void add_measure(CLI::App& program) {
   command->add_option("--cycles", options->cycles)->check(CLI::Range(10, 100'000))->capture_default_str();
   command->callback([options] {
     const auto ids = options->wanted();
+    ask_for_realtime();  // as a walk does
     with_protocol(options->line.protocol, [&](auto protocol) {
       print(measure_line<decltype(protocol)>(options->line, ids, options->cycles), options->line.port);
     });
@@ -180,6 +196,7 @@ int main(int argc, char** argv) {
   add_show(program);
   add_setup(program);
   add_restore(program);
+  add_reboot(program);
   add_measure(program);
   return example::run_program(program, argc, argv);
 }

@@ -27,7 +27,7 @@ struct Options {
   std::string silent;
   double silent_from_s = 0, silent_to_s = 1e9;
   std::string hot;
-  double voltage_v = 12;
+  double voltage_v = 0;
   double return_delay_us = 0;
   int status_return_level = 2;
   std::string reboot, overload, cut;
@@ -67,7 +67,7 @@ void each(const std::string& ids, Action action) {
 /// What is so from the start.
 template <class Protocol>
 void set_up(Answerer<Protocol>& answerer, const Options& options) {
-  answerer.set_voltage(options.voltage_v);
+  if (options.voltage_v > 0) answerer.set_voltage(options.voltage_v);
   each(options.hot, [&](std::uint8_t id) { answerer.servo(id).temperature_celsius = 90; });
   each(options.ids, [&](std::uint8_t id) {
     const double counts = options.return_delay_us * 1e-6 / return_delay_s;
@@ -173,7 +173,8 @@ int main(int argc, char** argv) {
   program.add_option("--silent-from", options.silent_from_s, "[s] after the start");
   program.add_option("--silent-to", options.silent_to_s, "[s] after the start");
   program.add_option("--hot", options.hot, "ids that are 90 degrees hot");
-  program.add_option("--voltage", options.voltage_v, "[V]")->check(CLI::Range(0.0, 25.0))->capture_default_str();
+  program.add_option("--voltage", options.voltage_v, "[V]; else what each model is made for")
+      ->check(CLI::Range(0.1, 25.0));
   program.add_option("--unheard", faults.unheard, "share of instructions that no servo hears")
       ->check(CLI::Range(0.0, 1.0));
   program.add_option("--return-delay", options.return_delay_us, "of the servos; new ones have 500 [us]")

@@ -1,6 +1,10 @@
 // Temperature and voltage beyond what is good for a servo.
 #pragma once
 
+#include <algorithm>
+
+#include "../dynamixel/control_tables.hpp"
+
 namespace dynamixel {
 
 struct AlarmOptions {
@@ -10,6 +14,19 @@ struct AlarmOptions {
   double high_voltage_v = 14.8;   // what an MX-64 may get
   double voltage_margin_v = 0.3;  // by which a voltage must be right again
 };
+
+/// Of servos of that model: those for 12 V within their own limits, others by their own limits alone.
+inline AlarmOptions alarms_of(const ServoModel& model) {
+  constexpr double three_cells_v = 11;  // what is made for more than that is fed by three cells [V]
+  AlarmOptions alarms;
+  const double low = model.factory.min_voltage_limit * voltage_v, high = model.factory.max_voltage_limit * voltage_v;
+  const bool cells = model.factory.supply_v > three_cells_v;
+  alarms.low_voltage_v = cells ? std::max(alarms.low_voltage_v, low) : low;
+  alarms.high_voltage_v = cells ? std::min(alarms.high_voltage_v, high) : high;
+  alarms.hot_celsius = std::min(alarms.hot_celsius, model.factory.temperature_limit - 5.0);
+  alarms.cool_celsius = std::min(alarms.cool_celsius, alarms.hot_celsius - 5);
+  return alarms;
+}
 
 struct Alarms {
   bool hot = false;

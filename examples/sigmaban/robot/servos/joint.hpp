@@ -9,7 +9,7 @@
 #include <string>
 
 #include "../bus/transport.hpp"
-#include "../dynamixel/units.hpp"
+#include "../dynamixel/control_tables.hpp"
 
 namespace dynamixel {
 
@@ -25,8 +25,8 @@ struct Joint {
 inline double servo_angle(const Joint& joint, double joint_rad) { return joint.zero_rad + joint.sign * joint_rad; }
 inline double joint_angle(const Joint& joint, double servo_rad) { return joint.sign * (servo_rad - joint.zero_rad); }
 
-/// Throws BusError, naming the joint and what is wrong with it.
-inline void check_joints(std::span<const Joint> joints, std::size_t most) {
+/// Throws BusError, naming the joint and what is wrong with it. `model` is that of the servos.
+inline void check_joints(std::span<const Joint> joints, std::size_t most, const ServoModel& model = mx_64_protocol_2) {
   const auto fail = [](const Joint& joint, const std::string& what) {
     throw BusError("joint " + joint.name + ": " + what);
   };
@@ -37,7 +37,7 @@ inline void check_joints(std::span<const Joint> joints, std::size_t most) {
     if (joint.sign != 1 && joint.sign != -1) fail(joint, "its sign must be 1 or -1");
     if (!(joint.min_rad < joint.max_rad)) fail(joint, "its lower limit must be below its upper one");
     for (const double limit : {joint.min_rad, joint.max_rad}) {
-      if (!ticks_from_radians(servo_angle(joint, limit))) {
+      if (!ticks_of(model, servo_angle(joint, limit))) {
         fail(joint, "its limit " + std::to_string(limit) + " rad is beyond the servo's turn; mind its zero");
       }
     }

@@ -8,17 +8,17 @@
 #include <span>
 #include <vector>
 
-#include "../dynamixel/units.hpp"
+#include "../dynamixel/control_tables.hpp"
 #include "joint.hpp"
 #include "soft_start.hpp"
 
 namespace dynamixel {
 
-/// Nothing is allocated after construction. `joints` must outlive this.
+/// Nothing is allocated after construction. `joints` and `model` must outlive this.
 class JointGoals {
  public:
-  explicit JointGoals(const std::vector<Joint>& joints)
-      : joints_(&joints), goals_(joints.size()), starts_(joints.size()), ticks_(joints.size()) {}
+  JointGoals(const std::vector<Joint>& joints, const ServoModel& model)
+      : model_(&model), joints_(&joints), goals_(joints.size()), starts_(joints.size()), ticks_(joints.size()) {}
 
   /// What the joint should get to; clamped, or left as it was where `refuse`. False where that is beyond its limits.
   bool set(std::size_t i, double goal_rad, bool refuse) {
@@ -42,20 +42,19 @@ class JointGoals {
       const double lowest = std::min((*joints_)[i].min_rad, starts_[i].from_rad);
       const double highest = std::max((*joints_)[i].max_rad, starts_[i].from_rad);
       const double softly = std::clamp(starts_[i](goals_[i], now), lowest, highest);
-      const double within =
-          std::clamp(servo_angle((*joints_)[i], softly), radians_from_ticks(0), radians_from_ticks(max_ticks));
-      ticks_[i] = ticks_from_radians(within).value_or(center_ticks);  // there always is one
+      const double within = std::clamp(servo_angle((*joints_)[i], softly), angle_of(*model_, 0),
+                                       angle_of(*model_, 2 * model_->center - 1));
+      ticks_[i] = ticks_of(*model_, within).value_or(model_->center);  // there always is one
     }
     return ticks_;
   }
   /// What the joint was sent last [rad].
-  double sent(std::size_t i) const {
-    return joint_angle((*joints_)[i], radians_from_ticks(static_cast<std::int32_t>(ticks_[i])));
-  }
+  double sent(std::size_t i) const { return joint_angle((*joints_)[i], angle_of(*model_, ticks_[i])); }
   /// As sent last.
   const std::vector<std::uint32_t>& last_ticks() const { return ticks_; }
 
  private:
+  const ServoModel* model_;
   const std::vector<Joint>* joints_;
   std::vector<double> goals_;  // [rad]
   std::vector<SoftStart> starts_;

@@ -48,6 +48,7 @@ class JointStates {
     state.implausible = 0;
     state.position_rad = position;
     state.velocity_rad_per_s = (*joints_)[i].sign * servo.velocity_rad_per_s;
+    state.current_a = (*joints_)[i].sign * servo.current_a;
     state.measured = now;
     return Plausibility::taken;
   }

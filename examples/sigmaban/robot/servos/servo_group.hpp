@@ -47,10 +47,10 @@ class ServoGroup {
         torque_(bus, registers_, options_.guard),
         keeper_(registers_, joints_.size(), options_.care),
         states_(joints_),
-        goals_(joints_),
+        goals_(joints_, model),
         presences_(joints_.size(), Presence(bus.port().now())),
         events_(joints_.size()) {
-    check_joints(joints_, max_servos);
+    check_joints(joints_, max_servos, model);
     const std::size_t sitting = options_.sitting_rad.size();
     if (sitting != 0 && sitting != joints_.size()) throw BusError("joints: the way they sit is of another number");
   }
@@ -267,7 +267,7 @@ class ServoGroup {
     const Plausibility plausibility = states_.take_motion(i, servo, now, options_.care, torque_on());
     if (plausibility == Plausibility::implausible) find(i, Finding::implausible);
     if (plausibility != Plausibility::taken) return false;
-    if (reader_.kind() == FeedbackKind::motion_and_health) take_supply(i, servo);
+    if (reader_.kind() != FeedbackKind::motion) take_supply(i, servo);
     return true;
   }
 

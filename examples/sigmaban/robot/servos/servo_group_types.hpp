@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "../bus/transport.hpp"
@@ -39,10 +40,11 @@ struct ServoGroupOptions {
 struct JointState {
   double position_rad = 0;  // of the joint
   double velocity_rad_per_s = 0;
-  double voltage_v = 0;            // as last read
-  double temperature_celsius = 0;  // as last read
-  Time measured{};                 // when it was received
-  bool fresh = false;              // in the last update()
+  double current_a = std::numeric_limits<double>::quiet_NaN();  // where it is read, with the sign of the joint
+  double voltage_v = 0;                                         // as last read
+  double temperature_celsius = 0;                               // as last read
+  Time measured{};                                              // when it was received
+  bool fresh = false;                                           // in the last update()
   bool silent = false;
   Alarms alarms{};
   std::uint64_t goals_beyond_limits = 0;  // clamped or refused

@@ -21,10 +21,25 @@ struct SettingsBlock {
   std::uint8_t count = 0;  // of bytes; 0: no such block
 };
 
-/// What is to be put back after a reset. Goals, torque and watchdog are no settings.
+/// From the first of these registers that the model has to the end of the last one that it has.
+constexpr SettingsBlock block_of(const ServoModel& model, std::initializer_list<std::string_view> first,
+                                 std::initializer_list<std::string_view> last) {
+  const auto found = [&](std::initializer_list<std::string_view> names) {
+    const Register* result = nullptr;
+    for (const std::string_view name : names) result = result != nullptr ? result : model.find(name);
+    return result;
+  };
+  const Register *begin = found(first), *end = found(last);
+  if (begin == nullptr || end == nullptr) return {};
+  return {begin->address, static_cast<std::uint8_t>(end->end() - begin->address)};
+}
+
+/// What is to be put back after a reset: gains (of an AX-12 compliances), and profile, or speed and torque limit.
+/// Goals, torque and watchdog are no settings.
 constexpr std::array<SettingsBlock, 2> settings_of(const ServoModel& model) {
-  if (model.protocol == 1) return {{{26, 3}, {32, 4}}};  // gains; moving speed and torque limit
-  return {{{76, 16}, {108, 8}}};                         // gains; profile
+  return {block_of(model, {"velocity_i_gain", "d_gain", "cw_compliance_margin"},
+                   {"feedforward_1st_gain", "p_gain", "ccw_compliance_slope"}),
+          block_of(model, {"profile_acceleration", "moving_speed"}, {"profile_velocity", "torque_limit"})};
 }
 
 inline constexpr std::size_t settings_size = 24;  // of the blocks together, at most [bytes]
@@ -41,7 +56,9 @@ class HealthRegisters {
         gains_(settings_of(model)[0]) {
     address_ = torque_->address;
     std::size_t end = std::max(torque_->end(), std::size_t{gains_.address} + gains_.count);
-    if (watchdog_ != nullptr) end = std::max(end, watchdog_->end());
+    for (const Register* r : {watchdog_, error_}) {
+      if (r != nullptr) end = std::max(end, r->end());
+    }
     count_ = static_cast<std::uint16_t>(end - address_);
   }
 

@@ -191,4 +191,15 @@ void restore_settings(const std::string& port, const SettingsBackup& backup) {
   }
 }
 
+/// Until it answers again. Throws BusError, naming the servo, where it does not.
+template <class ServoBus>
+void reboot_servo(ServoBus& bus, std::uint8_t id) {
+  const ServoModel& model = change_detail::known_model(bus, id);
+  ServoSettings<ServoBus> servo(bus, model, id);
+  if (!keep_trying(bus, patience_s, [&] { return bool(bus.reboot(id)); })) {
+    servo.fail("does not take the instruction to start anew; switch its power off and on");
+  }
+  static_cast<void>(change_detail::known_model(bus, id));
+}
+
 }  // namespace dynamixel

@@ -12,6 +12,7 @@
 #include "../bus/protocols.hpp"
 #include "../bus/transport.hpp"
 #include "answerer_options.hpp"
+#include "fast_answer.hpp"
 #include "outgoing_queue.hpp"
 #include "surefoot/core/rng.hpp"
 #include "virtual_servo.hpp"
@@ -135,8 +136,16 @@ class Answerer {
     switch (static_cast<Instruction>(packet.code)) {
       case Instruction::sync_write:
         return obey_sync_write(rest);
+      case Instruction::bulk_write:
+        if constexpr (Protocol::version == 2) obey_bulk_write(rest);
+        return;
       case Instruction::sync_read:
         if constexpr (Protocol::version == 2) obey_sync_read(rest);
+        return;
+      case Instruction::fast_sync_read:
+        if constexpr (Protocol::version == 2) {
+          if (options_.knows_fast_reads) obey_fast_sync_read(rest);
+        }
         return;
       case Instruction::bulk_read:
         return obey_bulk_read(rest);
@@ -195,11 +204,56 @@ class Answerer {
     }
   }
 
+  void obey_bulk_write(Bytes rest) {
+    while (rest.size() > 1) {
+      const auto at = find(rest[0]);
+      rest = rest.subspan(1);
+      const auto address = take_number(rest), count = take_number(rest);
+      if (!address || !count || *count > rest.size()) return;
+      if (at && hears(servos_[*at])) static_cast<void>(servos_[*at].write(*address, rest.first(*count)));
+      rest = rest.subspan(*count);
+    }
+  }
+
   void obey_sync_read(Bytes rest) {
     const auto address = take_number(rest), count = take_number(rest);
     if (!address || !count) return;
     bool goes_on = true;
     for (const std::uint8_t id : rest) goes_on = answer_in_chain(id, *address, *count, goes_on);
+  }
+
+  /// Each servo adds its block to one packet; where one is silent, it ends.
+  void obey_fast_sync_read(Bytes ids) {
+    const auto address = take_number(ids), count = take_number(ids);
+    if (!address || !count) return;
+    fast_.begin(ids.size(), *count);
+    bool goes_on = true;
+    for (const std::uint8_t id : ids) {
+      const auto at = find(id);
+      if (!goes_on && at) note_fault(per_servo_[*at], &FaultCounts::withheld);
+      goes_on = goes_on && at && add_block(servos_[*at], *address, *count);
+    }
+  }
+
+  bool add_block(VirtualServo& servo, std::size_t address, std::size_t count) {
+    PerServo& its = per_servo_[place(servo.id())];
+    std::array<std::uint8_t, 160> data{};
+    if (servo.status_return_level() < 1 || count > data.size()) return false;
+    if (its.silent || !hears(servo)) return note_fault(its, &FaultCounts::silent), false;
+    const Fault fault = draw_fault(options_.faults, rng_);
+    if (fault == Fault::lost || fault == Fault::late) return note_fault(its, &FaultCounts::lost), false;
+    const Refusal refusal = servo.read(address, Buffer(data).first(count));
+    note_given(its, Bytes(data).first(count));
+    if (!fast_.begun()) line_free_ += from_seconds(servo.return_delay());
+    OutgoingPacket packet = fast_.add(servo.id(), servo.error_bits(refusal), Bytes(data).first(count));
+    line_free_ += line_time(packet.size, options_.bits_per_s);
+    packet.due = answers_end_ = line_free_;
+    if (fault == Fault::corrupted) {
+      corrupt(Buffer(packet.bytes).first(packet.size), options_.faults.corrupted_bytes, rng_);
+      note_fault(its, &FaultCounts::corrupted);
+    }
+    hand_over(packet);
+    return true;
   }
 
   void obey_bulk_read(Bytes rest) {
@@ -225,7 +279,7 @@ class Answerer {
   bool answer_in_chain(std::uint8_t id, std::size_t address, std::size_t length, bool goes_on) {
     const auto at = find(id);
     if (!goes_on) {
-      if (at) count(per_servo_[*at], &FaultCounts::withheld);
+      if (at) note_fault(per_servo_[*at], &FaultCounts::withheld);
       return false;
     }
     if (at && answer_read(id, address, length)) return true;
@@ -253,34 +307,31 @@ class Answerer {
   /// Puts a status packet on the line, with what happens to it. False where the servo sends nothing in its turn.
   bool answer(VirtualServo& servo, Status status) {
     PerServo& its = per_servo_[place(servo.id())];
-    if (its.silent || !hears(servo)) return count(its, &FaultCounts::silent), false;
+    if (its.silent || !hears(servo)) return note_fault(its, &FaultCounts::silent), false;
     const Fault fault = draw_fault(options_.faults, rng_);
-    if (fault == Fault::lost) return count(its, &FaultCounts::lost), false;
+    if (fault == Fault::lost) return note_fault(its, &FaultCounts::lost), false;
     if (fault == Fault::wrong_id && servos_.size() > 1) {
       const auto other =
           (place(servo.id()) + 1 + rng_.below(static_cast<std::uint32_t>(servos_.size()) - 1)) % servos_.size();
       status.id = servos_[other].id();
-      count(its, &FaultCounts::wrong_id);
+      note_fault(its, &FaultCounts::wrong_id);
     } else {
-      GivenAnswer& given = its.answers[its.next_answer++ % its.answers.size()];
-      given.instruction = instructions_;
-      given.size = status.data.size();
-      std::copy(status.data.begin(), status.data.end(), given.data.begin());
+      note_given(its, status.data);
     }
     OutgoingPacket packet;
     packet.size = Protocol::status(packet.bytes, status).size();
     if (fault == Fault::late) {
       packet.due = line_free_ + from_seconds(options_.faults.late_s);
       hand_over(packet);
-      return count(its, &FaultCounts::late), false;
+      return note_fault(its, &FaultCounts::late), false;
     }
     line_free_ += from_seconds(servo.return_delay()) + line_time(packet.size, options_.bits_per_s);
     packet.due = line_free_;
     if (fault == Fault::corrupted) {
       corrupt(Buffer(packet.bytes).first(packet.size), options_.faults.corrupted_bytes, rng_);
-      count(its, &FaultCounts::corrupted);
+      note_fault(its, &FaultCounts::corrupted);
     } else if (fault == Fault::duplicated) {
-      count(its, &FaultCounts::duplicated);
+      note_fault(its, &FaultCounts::duplicated);
       hand_over(packet);
       line_free_ += line_time(packet.size, options_.bits_per_s);
       packet.due = line_free_;
@@ -290,6 +341,13 @@ class Answerer {
     return true;
   }
 
+  void note_given(PerServo& its, Bytes data) {
+    GivenAnswer& given = its.answers[its.next_answer++ % its.answers.size()];
+    given.instruction = instructions_;
+    given.size = data.size();
+    std::copy(data.begin(), data.end(), given.data.begin());
+  }
+
   /// The adapter hands bytes over each time its latency timer has run out.
   void hand_over(OutgoingPacket packet) {
     const Time period = from_seconds(options_.latency_timer_s);
@@ -297,7 +355,7 @@ class Answerer {
     outgoing_.add(packet);
   }
 
-  void count(PerServo& its, std::uint64_t FaultCounts::*which) {
+  void note_fault(PerServo& its, std::uint64_t FaultCounts::*which) {
     ++(counts_.*which);
     ++(its.counts.*which);
   }
@@ -314,6 +372,7 @@ class Answerer {
   std::uint64_t instructions_ = 0;
   std::uint64_t collisions_ = 0;
   std::uint64_t sent_bytes_ = 0;
+  FastAnswer fast_;
 };
 
 }  // namespace dynamixel

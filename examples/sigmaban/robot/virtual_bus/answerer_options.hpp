@@ -17,7 +17,8 @@ struct AnswererOptions {
   double latency_timer_s = 0;        // of the adapter: what it received is handed over each time it runs out [s]
   Faults faults{};
   std::uint64_t seed = 1;
-  bool own_speeds = false;  // each servo hears and answers only at the speed of its own Baud Rate
+  bool knows_fast_reads = true;  // of Protocol 2.0, which older firmware does not
+  bool own_speeds = false;       // each servo hears and answers only at the speed of its own Baud Rate
 };
 
 /// One answer that a servo gave, before any fault.

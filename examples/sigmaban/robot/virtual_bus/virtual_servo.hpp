@@ -29,6 +29,7 @@ class VirtualServo {
   VirtualServo(const ServoModel& model, std::uint8_t id, double angle_rad = 0, const MotorParameters& motor = {})
       : model_(&model), known_(model), motor_(motor) {
     state_.position_rad = angle_rad;
+    voltage_v = model.factory.supply_v;
     set("model_number", model.model_number);
     set("firmware_version", model.protocol == 1 ? 41 : 43);
     set("id", id);
@@ -53,14 +54,15 @@ class VirtualServo {
   std::uint8_t id() const { return static_cast<std::uint8_t>(value(known_.id)); }
   const MotorState& state() const { return state_; }
 
-  double voltage_v = 12.0;
+  double voltage_v = 12.0;  // at first what its model is made for
   double temperature_celsius = 35.0;
   double load_nm = 0;       // torque on the shaft [N m]
   double load_inertia = 0;  // of what hangs on it [kg m^2]
   bool deaf = false;        // its cable is cut: it hears nothing and says nothing
 
   static constexpr double starts_within_s = 0.3;  // after a reboot, until it hears and answers [s]
-  static constexpr double least_supply_v = 6.5;   // below it the servo's own computer stops [V]
+  /// Below it the servo's own computer stops [V].
+  double least_supply_v() const { return std::min(6.5, model_->factory.min_voltage_limit * dynamixel::voltage_v); }
 
   /// As after a moment without power: no torque, no errors, registers of the RAM as new, silent until it has started.
   void reboot(Time now) {
@@ -79,7 +81,7 @@ class VirtualServo {
     if (model_->protocol == 1) set(known_.torque_limit, 0);
     show();
   }
-  bool hears(Time now) const { return !deaf && now >= starts_at_ && voltage_v >= least_supply_v; }
+  bool hears(Time now) const { return !deaf && now >= starts_at_ && voltage_v >= least_supply_v(); }
   bool torque_on() const { return value(known_.torque_enable) != 0; }
   bool watchdog_tripped() const { return watchdog() < 0; }
   /// A device without that register answers all.
@@ -94,7 +96,7 @@ class VirtualServo {
     constexpr Time step_time = std::chrono::milliseconds(1);
     if (now - moved_to_ > std::chrono::seconds(1)) moved_to_ = now - step_time;
     if (now - moved_to_ < step_time) return;
-    if (voltage_v < least_supply_v) reboot(now);
+    if (voltage_v < least_supply_v()) reboot(now);
     if (overheated()) set(known_.torque_enable, 0);
     look_at_watchdog(now);
     const MotorInputs inputs{

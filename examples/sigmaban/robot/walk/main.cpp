@@ -27,6 +27,9 @@ void add_run(CLI::App& program) {
       ->delimiter(',')
       ->capture_default_str();
   command->add_option("--baud", options->bits_per_s, "[bit/s]")->capture_default_str();
+  command->add_flag(
+      "--fast-sync-read", options->fast_sync_read,
+      "servos answer in one packet (Protocol 2.0, new firmware); what it does not bring is asked as usual");
   command->add_option("--protocol", options->protocol, "of the servos")
       ->check(CLI::IsMember({1, 2}))
       ->capture_default_str();

@@ -13,6 +13,7 @@
 #include "../bus/serial_port.hpp"
 #include "../servos/joint_lines.hpp"
 #include "../servos/torque_guard.hpp"
+#include "../setup/line_model.hpp"
 #include "../virtual_bus/virtual_bus.hpp"
 #include "joints_file.hpp"
 #include "sitting_pose.hpp"
@@ -82,14 +83,19 @@ class RobotLines {
           name(simulated ? "virtual bus " + simulated->path() : port),
           bus(dynamixel::BackgroundPort(
                   dynamixel::SerialPort(simulated ? simulated->path() : port, options.bits_per_s)),
-              {.return_delay_s = simulated ? 0 : 500e-6, .latency_s = 1.5e-3}),
+              {.return_delay_s = simulated ? 0 : 500e-6,
+               .latency_s = 1.5e-3,
+               .fast_sync_read = options.fast_sync_read}),
           guard(simulated
                     ? nullptr
                     : new dynamixel::TorqueGuard(bus.port().port().file(), {.name = "surefoot-walk: torque guard"})),
-          group(bus, model, joints_at(robot, places), group_options(options, robot, rise_s)) {}
+          model(dynamixel::line_model(bus, joints_at(robot, places), usual)),
+          group(bus, *model.model, joints_at(robot, places), group_options(options, robot, rise_s)) {}
 
     dynamixel::ServoGroupOptions group_options(const WalkRun& options, const RobotJoints& robot, double rise_s) const {
       dynamixel::ServoGroupOptions made = line_options(options, robot, places, rise_s);
+      made.alarms = model.alarms;
+      made.feedback = model.feedback;
       made.guard = guard.get();  // none for virtual servos, which end with this program
       if (simulated) made.watchdog_s = made.care.group.line_is_dead_s = 1;  // a machine that simulates may stand still
       return made;
@@ -100,10 +106,11 @@ class RobotLines {
     std::string name;
     Bus bus;
     std::unique_ptr<dynamixel::TorqueGuard> guard;
+    dynamixel::LineModel model;
     Group group;
   };
 
-  static constexpr const dynamixel::ServoModel& model =
+  static constexpr const dynamixel::ServoModel& usual =
       Protocol::version == 1 ? dynamixel::mx_64_protocol_1 : dynamixel::mx_64_protocol_2;
 
   /// One for each port that the joints name; a single virtual one stands for as many as there are.
@@ -145,7 +152,7 @@ class RobotLines {
     if (port != "virtual") return nullptr;
     std::vector<dynamixel::VirtualServo> servos;
     for (const dynamixel::Joint& joint : joints) {
-      servos.emplace_back(model, joint.id, dynamixel::servo_angle(joint, 0));
+      servos.emplace_back(usual, joint.id, dynamixel::servo_angle(joint, 0));
     }
     return std::make_unique<dynamixel::VirtualBus<Protocol>>(
         dynamixel::Answerer<Protocol>(servos, {.bits_per_s = options.bits_per_s, .seed = options.seed + number}));

@@ -34,6 +34,7 @@ struct LogRow {
   std::array<double, 3> ball{};                        // x, y, kick direction, as believed [m, m, rad]
   std::array<double, most_logged_joints> goals{};      // as sent [rad], as the next
   std::array<double, most_logged_joints> positions{};  // measured
+  std::array<double, most_logged_joints> currents{};   // [A]
   std::array<double, most_logged_joints> voltages{};   // [V]
   double lateness = 0;                                 // of the cycle's start [s]
 };
@@ -83,9 +84,9 @@ class WalkLog {
 
   void write_header() {
     std::string line = "t_s,order_dx_m,order_dy_m,order_dtheta_rad,enabled_1,phase_1,ball_x_m,ball_y_m,kick_rad";
-    for (const char* what : {"goal", "position", "voltage"}) {
+    for (const char* what : {"goal", "position", "current", "voltage"}) {
       for (const std::string& joint : joints_) {
-        line += "," + std::string(what) + "_" + joint + (*what == 'v' ? "_V" : "_rad");
+        line += "," + std::string(what) + "_" + joint + (*what == 'v' ? "_V" : *what == 'c' ? "_A" : "_rad");
       }
     }
     std::fprintf(file_, "%s,lateness_s\n", line.c_str());
@@ -118,7 +119,7 @@ class WalkLog {
     put(row.enabled);
     put(row.phase);
     for (const double value : row.ball) put(value);
-    for (const auto* joints : {&row.goals, &row.positions, &row.voltages}) {
+    for (const auto* joints : {&row.goals, &row.positions, &row.currents, &row.voltages}) {
       for (std::size_t i = 0; i < joints_.size(); ++i) put((*joints)[i]);
     }
     put(row.lateness);

@@ -151,6 +151,7 @@ class Walk {
       const dynamixel::JointState& joint = group_->states()[i];
       row.goals[i] = group_->sent_goal(i);
       row.positions[i] = joint.fresh ? joint.position_rad : unknown;
+      row.currents[i] = joint.fresh ? joint.current_a : unknown;
       row.voltages[i] = joint.fresh ? joint.voltage_v : unknown;
     }
     row.lateness = lateness;

@@ -22,6 +22,7 @@ struct WalkRun {
   std::filesystem::path log;
   double rate_hz = 100, seconds = 30;
   double bus_watchdog_s = 0.5;
+  bool fast_sync_read = false;
   int protocol = 2;
   std::uint32_t bits_per_s = 3'000'000;
   std::uint64_t seed = 1;
