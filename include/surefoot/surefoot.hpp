@@ -6,6 +6,7 @@
 #include "surefoot/diagnose.hpp"
 #include "surefoot/forest.hpp"
 #include "surefoot/motion.hpp"
+#include "surefoot/motion/walk_changes.hpp"
 #include "surefoot/optimize.hpp"
 #include "surefoot/solve.hpp"
 #include "surefoot/solve/policy_search.hpp"

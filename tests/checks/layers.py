@@ -45,10 +45,10 @@ LAYERS = {
 FACE_IN_ROOMS = ["surefoot/diagnose/effects/effect.hpp", "surefoot/diagnose/effects/catalogue.hpp",
                  "surefoot/diagnose/effects/named_effect.hpp"]
 NO_FACE = ["surefoot/core/compiled.hpp",  # the switch between the two ways to build
-           "surefoot/optimize/householder.hpp", "surefoot/optimize/linear_algebra.hpp",
-           "surefoot/optimize/symmetric_eigen.hpp"]  # compiled once, for others
+           "surefoot/core/positive_definite.hpp", "surefoot/optimize/householder.hpp",
+           "surefoot/optimize/linear_algebra.hpp", "surefoot/optimize/symmetric_eigen.hpp"]  # compiled once, for others
 # Part of the face, but not in the header of their area: what they need costs other users too much to compile.
-ON_THEIR_OWN = ["surefoot/solve/policy_search.hpp"]
+ON_THEIR_OWN = ["surefoot/motion/walk_changes.hpp", "surefoot/solve/policy_search.hpp"]
 
 # Beyond Eigen and the standard library.
 SYSTEM_HEADERS = {

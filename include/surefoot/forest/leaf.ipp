@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/core/positive_definite.hpp"
 #include "surefoot/forest/leaf.hpp"
-#include "surefoot/forest/train/positive_definite.hpp"
 
 namespace surefoot {
 

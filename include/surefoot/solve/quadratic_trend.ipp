@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
-#include "surefoot/forest/train/positive_definite.hpp"
+#include "surefoot/core/positive_definite.hpp"
 #include "surefoot/solve/quadratic_trend.hpp"
 
 namespace surefoot {

@@ -1,4 +1,4 @@
-#include "surefoot/forest/train/positive_definite.hpp"
+#include "surefoot/core/positive_definite.hpp"
 
 #include <doctest/doctest.h>
 

@@ -19,5 +19,5 @@ void solve_positive_definite(std::span<double> a, std::size_t size, std::span<do
 }  // namespace surefoot::detail
 
 #ifndef SUREFOOT_COMPILED
-#include "surefoot/forest/train/positive_definite.ipp"
+#include "surefoot/core/positive_definite.ipp"
 #endif

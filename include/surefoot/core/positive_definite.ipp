@@ -1,4 +1,4 @@
-// Definitions of surefoot/forest/train/positive_definite.hpp.
+// Definitions of surefoot/core/positive_definite.hpp.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <span>
 
 #include "surefoot/core/compiled.hpp"
-#include "surefoot/forest/train/positive_definite.hpp"
+#include "surefoot/core/positive_definite.hpp"
 
 namespace surefoot::detail {
 
