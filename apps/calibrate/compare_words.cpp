@@ -92,16 +92,16 @@ std::string coefficient_sentence(const WalkComparison& comparison, const WalkCha
 }
 
 std::string noise_sentence(const surefoot::NoiseChange& noise) {
-  const double factor = std::sqrt(noise.change.ratio);
-  std::string text =
-      example::printed("has %s %s, %.2f times as before (%.2f to %.2f)", factor > 1 ? "more" : "less",
-                       noise.name.c_str(), factor, std::sqrt(noise.change.low), std::sqrt(noise.change.high));
-  if (noise.name == "noise of turns") {
-    text += example::printed(": %.2g degrees in a cycle, it was %.2g", noise.after / degree, noise.before / degree);
-  } else if (noise.name != "noise") {
-    text += example::printed(": %.2g mm in a cycle, it was %.2g", 1e3 * noise.after, 1e3 * noise.before);
+  const double factor = std::sqrt(noise.change.ratio);  // of what was measured, readings included
+  std::string text = example::printed("has %s %s", factor > 1 ? "more" : "less", noise.name.c_str());
+  if (noise.name != "noise") {
+    const bool turns = noise.name == "noise of turns";
+    const double unit = turns ? degree : 1e-3;
+    text += example::printed(": %.2g %s in a cycle, it was %.2g; with the readings", noise.after / unit,
+                             turns ? "degrees" : "mm", noise.before / unit);
   }
-  return text;
+  return text + example::printed(" %.2f times as before (%.2f to %.2f)", factor, std::sqrt(noise.change.low),
+                                 std::sqrt(noise.change.high));
 }
 
 std::string fall_sentence(const WalkComparison& comparison, const WalkFalls& falls) {
