@@ -47,7 +47,8 @@ std::vector<EvaluatedHypothesis> fitted_again(const Search& search, const std::v
 /// The same within a pool; the very best ones also from places around.
 void refit_best(const Search& search, std::vector<EvaluatedHypothesis>& pool);
 
-/// A structure without each of its effects in turn, fitted from its parameters on; none for a single effect.
+/// A structure without each of its effects in turn, fitted from its parameters on, under guidance too where the whole
+/// leaves only noise and the rest does not; none for a single effect.
 std::vector<EvaluatedHypothesis> smaller(const Search& search, const EvaluatedHypothesis& whole);
 
 /// Takes each effect of the structures next to the best away: what only led to the others is not needed any more.

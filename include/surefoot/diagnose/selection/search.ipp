@@ -129,10 +129,19 @@ SUREFOOT_INLINE EvaluatedHypothesis refitted(const Search& search, const Evaluat
 }
 
 SUREFOOT_INLINE std::vector<EvaluatedHypothesis> smaller(const Search& search, const EvaluatedHypothesis& whole) {
+  const SearchProblem& problem = search.problem;
   std::vector<EvaluatedHypothesis> rests;
   if (search.effects(whole) < 2) return rests;
-  for (std::size_t e = search.problem.known; e < whole.hypothesis.effects.size(); ++e) {
-    if (!search.problem.stopped()) rests.push_back(search.without(whole, e));
+  const bool whole_is_enough = !leaves_structure(search, whole);
+  for (std::size_t e = problem.known; e < whole.hypothesis.effects.size() && !problem.stopped(); ++e) {
+    EvaluatedHypothesis rest = search.without(whole, e);
+    if (whole_is_enough && leaves_structure(search, rest)) {  // the effect may only have led out of a valley
+      const Fit stuck{rest.hypothesis, rest.loss, true};
+      const Fit guided =
+          guided_fit(search.bound, stuck, without_effect(whole.hypothesis, e), problem.fit, search.parallel);
+      if (guided.loss < stuck.loss) rest = evaluate_fit(search.bound, guided, problem, search.parallel);
+    }
+    rests.push_back(std::move(rest));
   }
   return rests;
 }
