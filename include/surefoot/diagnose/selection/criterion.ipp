@@ -179,14 +179,16 @@ SUREFOOT_INLINE bool same_structure(const Hypothesis& a, const Hypothesis& b) {
 }
 
 SUREFOOT_INLINE bool holds_idle_effect(const EvaluatedHypothesis& one, const std::vector<EvaluatedHypothesis>& pool) {
-  const auto effects = structure_of(one.hypothesis);
+  const std::multiset<std::string> effects = structure_of(one.hypothesis);
   const double error = one.errors.rms();
-  return std::ranges::any_of(pool, [&](const EvaluatedHypothesis& other) {
-    if (other.hypothesis.effects.size() >= one.hypothesis.effects.size()) return false;
+  for (const EvaluatedHypothesis& other : pool) {
+    if (other.hypothesis.effects.size() >= one.hypothesis.effects.size()) continue;
     const double without = other.errors.rms();
-    return error * error > clearly_less * without * without &&
-           std::ranges::includes(effects, structure_of(other.hypothesis));
-  });
+    if (!(error * error > clearly_less * without * without)) continue;
+    const std::multiset<std::string> fewer = structure_of(other.hypothesis);
+    if (std::includes(effects.begin(), effects.end(), fewer.begin(), fewer.end())) return true;
+  }
+  return false;
 }
 
 }  // namespace surefoot::diagnosis
