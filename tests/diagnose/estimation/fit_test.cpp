@@ -159,10 +159,10 @@ TEST_CASE("bounds hold, and what is not free stays") {
 TEST_CASE("the coarsest integration that is good enough is chosen, and a fine one where none is") {
   const BoundSimulator bound = bind_simulator(LeakyTank{}, tanks(1, 100, 1, 1));
   const Hypothesis nominal = nominal_hypothesis(bound);
-  const Integration rough = choose_integration(bound, nominal, Eigen::VectorXd::Constant(1, 0.1), {}, 0);
+  const Integration rough = choose_integration(bound, nominal, Eigen::VectorXd::Constant(1, 0.1), {}, {0}, serially());
   CHECK(rough.order == 2);
   CHECK(rough.step == doctest::Approx(1.5 * 0.05));
-  const Integration fine = choose_integration(bound, nominal, Eigen::VectorXd::Zero(1), {}, 0);
+  const Integration fine = choose_integration(bound, nominal, Eigen::VectorXd::Zero(1), {}, {0}, serially());
   CHECK(fine.order == 4);
   CHECK(fine.step == doctest::Approx(0.05 / 8));
 }

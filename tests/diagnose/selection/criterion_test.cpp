@@ -157,16 +157,17 @@ TEST_CASE("the same seed draws the same recordings, and more rounds change littl
   CHECK(probabilities(two, other)[0] != probabilities(two, selection_criteria)[0]);
 }
 
+AttachedEffect named_at(const std::string& name, const std::string& form, const std::string& place) {
+  Effect effect;
+  effect.name = name;
+  effect.form = form;
+  return {std::make_shared<const Effect>(effect), 0, -1, place, 0};
+}
+
 TEST_CASE("structures are the same with their effects in another order or form, but not at another place") {
-  const auto attached = [](const std::string& name, const std::string& form, const std::string& place) {
-    Effect effect;
-    effect.name = name;
-    effect.form = form;
-    return AttachedEffect{std::make_shared<const Effect>(effect), 0, -1, place, 0};
-  };
   Hypothesis one, other;
-  one.effects = {attached("lag", "", "valve"), attached("leak", "", "level")};
-  other.effects = {attached("leak", "hole", "level"), attached("lag", "", "valve")};
+  one.effects = {named_at("lag", "", "valve"), named_at("leak", "", "level")};
+  other.effects = {named_at("leak", "hole", "level"), named_at("lag", "", "valve")};
   CHECK(same_structure(one, other));
   other.effects[0].place = "second level";
   CHECK_FALSE(same_structure(one, other));
@@ -174,6 +175,23 @@ TEST_CASE("structures are the same with their effects in another order or form, 
   CHECK_FALSE(same_structure(one, other));
   CHECK(same_structure({}, {}));
   CHECK_FALSE(same_structure(one, {}));
+}
+
+TEST_CASE("an effect is idle if a structure without it is as close") {
+  EvaluatedHypothesis small, large;
+  small.hypothesis.effects = {named_at("leak", "", "level")};
+  large.hypothesis.effects = {named_at("lag", "", "valve"), named_at("leak", "hole", "level")};
+  const auto with_error = [](EvaluatedHypothesis one, double mean_square) {
+    one.errors.mean_squares = Eigen::MatrixXd::Constant(1, 1, mean_square);
+    one.errors.counts = Eigen::MatrixXd::Ones(1, 1);
+    return one;
+  };
+  CHECK(holds_idle_effect(with_error(large, 0.99), {with_error(small, 1)}));
+  CHECK(holds_idle_effect(with_error(large, 2), {with_error(small, 1)}));
+  CHECK_FALSE(holds_idle_effect(with_error(large, 0.9), {with_error(small, 1)}));
+  small.hypothesis.effects[0].place = "second level";  // not a part of the larger one
+  CHECK_FALSE(holds_idle_effect(with_error(large, 0.99), {with_error(small, 1)}));
+  CHECK_FALSE(holds_idle_effect(with_error(large, 1), {with_error(large, 1)}));
 }
 
 TEST_CASE("every parameter counts that an effect has") {

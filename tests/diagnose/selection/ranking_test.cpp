@@ -24,7 +24,8 @@ EvaluatedHypothesis made_up(const TankBench& bench, const std::vector<std::strin
 }
 
 TEST_CASE("the most probable structure is named if its odds against none are high enough") {
-  const TankBench bench({});
+  TankBench bench({});
+  bench.problem.structured = [](const Hypothesis&, const Integration&) { return false; };
   const SelectionCriteria& criteria = bench.problem.criteria;
   const double needed = std::log(criteria.named_odds);
   const auto chosen_with = [&](double log_prior) {
@@ -37,6 +38,16 @@ TEST_CASE("the most probable structure is named if its odds against none are hig
   CHECK(unsure.probability < 0.5);  // though it is less probable than the effect
   REQUIRE(unsure.alternatives.size() == 1);
   CHECK(names_in(unsure.alternatives[0]) == "sensor_bias");
+}
+
+TEST_CASE("where residuals show that something is missing it is named with the odds of a tie already") {
+  const TankBench bench({});  // its residuals count as structured
+  const double needed = std::log(bench.problem.criteria.tie_odds);
+  const auto chosen_with = [&](double log_prior) {
+    return ranked(bench.search(), {made_up(bench, {}, 1), made_up(bench, {"sensor_bias"}, 1, log_prior)}).chosen;
+  };
+  CHECK(names_in(chosen_with(needed + 0.1)) == "sensor_bias");
+  CHECK(names_in(chosen_with(needed - 0.1)).empty());
 }
 
 TEST_CASE("all that was evaluated is ranked, whatever way led to it") {

@@ -107,12 +107,56 @@ TEST_CASE("a pool grows as long as a further effect makes the best structure bet
   CHECK(search.problem.fit.weighting.sigma[0] == doctest::Approx(0.01).epsilon(0.1));
 
   Search idle = nothing.search();
+  idle.problem.structured = [](const Hypothesis&, const Integration&) { return false; };
   std::vector<EvaluatedHypothesis> clean{nothing.with({})};
   int rounds = 0;
   idle.problem.on_progress = [&](const std::string&, double) { ++rounds; };
   grow(idle, clean);
   CHECK(rounds == 1);
   CHECK(names_in(clean[best_of(clean, nothing.problem.criteria)]).empty());
+}
+
+TEST_CASE("where residuals hold structure one step that does not pay is followed by another, but not two") {
+  TankBench bench({rate_in_tank, drift_in_tank});
+  bench.problem.criteria.form_cost = 1e4;  // no effect pays
+  bench.problem.effort.hopeless = 1e6;
+  const auto rounds_with = [&bench](const Search& start) {
+    Search search = start;
+    int rounds = 0;
+    search.problem.on_progress = [&](const std::string&, double) { ++rounds; };
+    std::vector<EvaluatedHypothesis> pool{bench.with({})};
+    grow(search, pool);
+    CHECK(names_in(pool[best_of(pool, bench.problem.criteria)]).empty());
+    return rounds;
+  };
+  CHECK(rounds_with(bench.search()) == 2);
+  bench.problem.effort.hopeless = 15;  // behind the best one, beyond which nothing is followed
+  CHECK(rounds_with(bench.search()) == 1);
+  bench.problem.effort.hopeless = 1e6;
+  bench.problem.structured = [](const Hypothesis&, const Integration&) { return false; };
+  CHECK(rounds_with(bench.search()) == 1);
+}
+
+TEST_CASE("an effect that only led to the others is taken away again") {
+  const TankBench bench({rate_in_tank});
+  std::vector<EvaluatedHypothesis> pool{bench.with({"constant_rate", "sensor_drift"}),
+                                        bench.with({"constant_rate", "sensor_bias"})};
+  take_effects_away(bench.search(), pool);
+  CHECK(pool.size() == 4);
+  CHECK(names_in(pool[best_of(pool, bench.problem.criteria)]) == "constant_rate");
+  for (const EvaluatedHypothesis& one : pool) CHECK_FALSE(one.hypothesis.effects.empty());  // none is tried anyway
+}
+
+TEST_CASE("a first effect that leaves only noise needs no other start") {
+  const TankBench bench({rate_in_tank});
+  Search search = bench.search();
+  std::vector<EvaluatedHypothesis> children{bench.with({"constant_rate"})};
+  search.problem.structured = [](const Hypothesis&, const Integration&) { return false; };
+  begin_elsewhere(search, children);
+  CHECK(children.size() == 1);
+  search.problem.structured = [](const Hypothesis&, const Integration&) { return true; };
+  begin_elsewhere(search, children);
+  CHECK(children.size() > 1);
 }
 
 TEST_CASE("no structure has more effects than are allowed") {

@@ -4,10 +4,12 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 
 #include "surefoot/diagnose/diagnose.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
+#include "surefoot/diagnose/verdict/describe.hpp"
 #include "tests/diagnose/verdict/tank_setup.hpp"
 
 namespace surefoot::diagnosis {
@@ -110,6 +112,25 @@ TEST_CASE("small problems get a longer list of proposals, and the search ends wh
   CHECK_FALSE(problem.stopped());
   options.max_seconds = 1e-9;
   CHECK(search_problem(setup, calibration, {options, parallel}).stopped());
+}
+
+TEST_CASE("the search leaves time for fits without each held-out recording, and it is said where these were not made") {
+  DiagnoseOptions options;
+  options.max_seconds = 100;
+  const Parallel parallel = serially();
+  RunContext run{options, parallel};
+  run.began -= std::chrono::seconds(90);
+  CHECK(run.search_has_ended());
+  CHECK_FALSE(run.has_ended());
+  run.began -= std::chrono::seconds(11);
+  CHECK(run.has_ended());
+
+  options.max_seconds = 1e-9;
+  const Diagnosis late =
+      run_pipeline(bind_tank, toys::LeakyTank{}.info(), toys::noisy_tanks({}, 0.01), options, parallel, 1, {});
+  const auto says_so = [](const Remark& one) { return one.text == not_held_out_sentence(); };
+  CHECK(std::ranges::any_of(late.remarks, says_so));
+  CHECK_FALSE(late.complete);
 }
 
 TEST_CASE("residuals are searched for more as long as they hold what noise does not") {

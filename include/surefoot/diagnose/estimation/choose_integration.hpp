@@ -4,20 +4,23 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "surefoot/diagnose/estimation/hypothesis.hpp"
 
 namespace surefoot::diagnosis {
 
-/// The cheapest integration whose error is small against the residuals of each output (5 %; `residual_size` in its
-/// unit), tried on one recording.
+/// The cheapest integration whose error over all of these recordings is small (5 %) against the residuals of each
+/// output
+/// (`residual_size`, in its unit). Cost: at most 56 evaluations a row.
 Integration choose_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                               const Eigen::VectorXd& residual_size, const Integration& now, std::size_t recording);
+                               const Eigen::VectorXd& residual_size, const Integration& now,
+                               const std::vector<std::size_t>& recordings, const Parallel& parallel);
 
 /// The same where it is finer than now: what effects explain leaves smaller residuals. None where it is not.
 std::optional<Integration> finer_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                              const Eigen::VectorXd& residual_size, const Integration& now,
-                                             std::size_t recording);
+                                             const std::vector<std::size_t>& recordings, const Parallel& parallel);
 
 }  // namespace surefoot::diagnosis
 

@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -14,40 +16,67 @@
 
 namespace surefoot::diagnosis {
 
+/// The median interval of the recording that has the shortest.
+SUREFOOT_ONCE double shortest_interval(const BoundSimulator& bound, const std::vector<std::size_t>& recordings) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const std::size_t r : recordings) {
+    const Recording& one = bound.recordings[r];
+    std::vector<double> intervals;
+    for (Eigen::Index i = 1; i < one.rows(); ++i) intervals.push_back(one.time[i] - one.time[i - 1]);
+    const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+    std::nth_element(intervals.begin(), middle, intervals.end());
+    shortest = std::min(shortest, *middle);
+  }
+  return shortest;
+}
+
+/// Root mean square of the differences between runs of the same recordings, by output; infinite where one ran away.
+/// Recordings that cannot be simulated exactly either count for nothing.
+SUREFOOT_ONCE Eigen::VectorXd differences_of_runs(const std::vector<SimulatedRun>& runs,
+                                                  const std::vector<SimulatedRun>& exact, Eigen::Index outputs) {
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(outputs);
+  double rows = 0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    if (!exact[i].finite) continue;
+    if (!runs[i].finite) return Eigen::VectorXd::Constant(outputs, std::numeric_limits<double>::infinity());
+    for (Eigen::Index row = 0; row < exact[i].outputs.cols(); ++row) {
+      for (Eigen::Index k = 0; k < outputs; ++k) {
+        const double off = runs[i].outputs(k, row) - exact[i].outputs(k, row);
+        squares[k] += off * off;
+      }
+    }
+    rows += static_cast<double>(exact[i].outputs.cols());
+  }
+  for (double& value : squares) value = std::sqrt(value / std::max(rows, 1.0));
+  return squares;
+}
+
 SUREFOOT_ONCE Integration choose_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                              const Eigen::VectorXd& residual_size, const Integration& now,
-                                             std::size_t recording) {
+                                             const std::vector<std::size_t>& recordings, const Parallel& parallel) {
   constexpr double error_share = 0.05;   // of the residuals that an integration may add: lost in them
   constexpr double reference_steps = 8;  // per row, of what is held to be exact
   // Steps are a little longer than one, and a little shorter than a half or a quarter of a row, so that rounding does
   // not add one.
   constexpr double one_step = 1.5, two_steps = 1.9, four_steps = 3.9;
   if (bound.info.kind == SimulatorKind::map) return now;
-  const Recording& example = bound.recordings[recording];
-  std::vector<double> intervals;
-  for (Eigen::Index i = 1; i < example.rows(); ++i) intervals.push_back(example.time[i] - example.time[i - 1]);
-  std::nth_element(intervals.begin(), intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2),
-                   intervals.end());
-  const double row = intervals[intervals.size() / 2];
+  const double row = shortest_interval(bound, recordings);
   Integration fine = now;
   fine.order = 4;
   fine.step = row / reference_steps;
-  const SimulatedRun exact = simulate(bound, hypothesis, recording, fine);
-  if (!exact.finite) return fine;
+  const std::vector<SimulatedRun> exact = simulate_all(bound, hypothesis, recordings, fine, parallel);
+  bool any_finite = false;
+  for (const SimulatedRun& run : exact) any_finite = any_finite || run.finite;
+  if (!any_finite) return fine;
   for (const auto& [order, step] :
        {std::pair{2, one_step * row}, {4, one_step * row}, {4, row / two_steps}, {4, row / four_steps}}) {
     Integration coarse = now;
     coarse.order = order;
     coarse.step = step;
-    const SimulatedRun trajectory = simulate(bound, hypothesis, recording, coarse);
-    if (!trajectory.finite) continue;
+    const auto runs = simulate_all(bound, hypothesis, recordings, coarse, parallel);
+    const Eigen::VectorXd off = differences_of_runs(runs, exact, residual_size.size());
     bool good = true;
-    for (Eigen::Index k = 0; k < residual_size.size(); ++k) {
-      Eigen::VectorXd off(exact.outputs.cols());
-      for (Eigen::Index row = 0; row < off.size(); ++row) off[row] = trajectory.outputs(k, row) - exact.outputs(k, row);
-      const double error = root_mean_square(off);
-      good = good && error < error_share * residual_size[k];
-    }
+    for (Eigen::Index k = 0; k < off.size(); ++k) good = good && off[k] < error_share * residual_size[k];
     if (good) return coarse;
   }
   return fine;
@@ -55,8 +84,10 @@ SUREFOOT_ONCE Integration choose_integration(const BoundSimulator& bound, const 
 
 SUREFOOT_ONCE std::optional<Integration> finer_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                                            const Eigen::VectorXd& residual_size,
-                                                           const Integration& now, std::size_t recording) {
-  const Integration chosen = choose_integration(bound, hypothesis, residual_size, now, recording);
+                                                           const Integration& now,
+                                                           const std::vector<std::size_t>& recordings,
+                                                           const Parallel& parallel) {
+  const Integration chosen = choose_integration(bound, hypothesis, residual_size, now, recordings, parallel);
   if (chosen.order <= now.order && chosen.step >= now.step) return std::nullopt;
   return chosen;
 }

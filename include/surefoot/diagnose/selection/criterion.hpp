@@ -142,6 +142,10 @@ std::vector<double> probabilities(const std::vector<EvaluatedHypothesis>& evalua
 /// The same effects at the same places, perhaps in another form or order.
 bool same_structure(const Hypothesis& a, const Hypothesis& b);
 
+/// Whether a structure is hardly closer than one of the pool that lacks some of its effects: what can be said of it is
+/// said of that one.
+bool holds_idle_effect(const EvaluatedHypothesis& one, const std::vector<EvaluatedHypothesis>& pool);
+
 }  // namespace surefoot::diagnosis
 
 #ifndef SUREFOOT_COMPILED

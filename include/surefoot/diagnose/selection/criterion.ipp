@@ -141,9 +141,8 @@ SUREFOOT_INLINE std::vector<double> probabilities(const std::vector<EvaluatedHyp
                                                   const SelectionCriteria& criteria) {
   std::vector<double> result(evaluated.size(), 0.0);
   if (evaluated.empty()) return result;
-  const ErrorSquares& reference = std::ranges::min_element(evaluated, {}, [](const EvaluatedHypothesis& one) {
-                                    return one.errors.rms();
-                                  })->errors;
+  const ErrorSquares& reference =
+      std::ranges::min_element(evaluated, {}, [](const EvaluatedHypothesis& one) { return one.errors.rms(); })->errors;
   std::vector<std::vector<double>> densities;
   for (const EvaluatedHypothesis& one : evaluated) densities.push_back(log_densities(one.errors, reference, criteria));
   const std::size_t recordings = densities.front().size();
@@ -166,15 +165,30 @@ SUREFOOT_INLINE std::vector<double> probabilities(const std::vector<EvaluatedHyp
   return result;
 }
 
+/// The effects of a hypothesis, each with its place, whatever their form.
+SUREFOOT_INLINE std::multiset<std::string> structure_of(const Hypothesis& hypothesis) {
+  std::multiset<std::string> labels;
+  for (const AttachedEffect& effect : hypothesis.effects) {
+    labels.insert(effect.label() + "/" + std::to_string(static_cast<int>(effect.effect->place)));
+  }
+  return labels;
+}
+
 SUREFOOT_INLINE bool same_structure(const Hypothesis& a, const Hypothesis& b) {
-  const auto structure = [](const Hypothesis& hypothesis) {
-    std::multiset<std::string> labels;
-    for (const AttachedEffect& effect : hypothesis.effects) {
-      labels.insert(effect.label() + "/" + std::to_string(static_cast<int>(effect.effect->place)));
-    }
-    return labels;
-  };
-  return structure(a) == structure(b);
+  return structure_of(a) == structure_of(b);
+}
+
+SUREFOOT_INLINE bool holds_idle_effect(const EvaluatedHypothesis& one, const std::vector<EvaluatedHypothesis>& pool) {
+  const std::multiset<std::string> effects = structure_of(one.hypothesis);
+  const double error = one.errors.rms();
+  for (const EvaluatedHypothesis& other : pool) {
+    if (other.hypothesis.effects.size() >= one.hypothesis.effects.size()) continue;
+    const double without = other.errors.rms();
+    if (!(error * error > clearly_less * without * without)) continue;
+    const std::multiset<std::string> fewer = structure_of(other.hypothesis);
+    if (std::includes(effects.begin(), effects.end(), fewer.begin(), fewer.end())) return true;
+  }
+  return false;
 }
 
 }  // namespace surefoot::diagnosis

@@ -32,7 +32,13 @@ bool refine_integration(Search& search, const EvaluatedHypothesis& best);
 /// may have pushed the calibrated ones where no fit finds back from, and where signatures look otherwise.
 std::vector<EvaluatedHypothesis> extended_from(Search search, Hypothesis start);
 
-/// Extends the best structures of a pool, as long as that makes the best one better.
+/// Where first effects leave more than noise: first effects from the nominal parameters on, and pairs of the best.
+void begin_elsewhere(const Search& search, std::vector<EvaluatedHypothesis>& children);
+
+/// Extends the best structures of a pool, as long as that makes the best one better, or did one step before and
+/// something is left. What the best one can do without is taken away at once (floating search; P. Pudil, J. Novovicova,
+/// J. Kittler, Pattern Recognition Letters 15, 1994). Structures with an effect that does nothing, and those far
+/// behind, are not extended.
 void grow(Search& search, std::vector<EvaluatedHypothesis>& pool);
 
 /// The best structures, and the model without effects, fitted and evaluated with the present weights and recordings.
@@ -40,6 +46,13 @@ std::vector<EvaluatedHypothesis> fitted_again(const Search& search, const std::v
 
 /// The same within a pool; the very best ones also from places around.
 void refit_best(const Search& search, std::vector<EvaluatedHypothesis>& pool);
+
+/// A structure without each of its effects in turn, fitted from its parameters on, under guidance too where the whole
+/// leaves only noise and the rest does not; none for a single effect.
+std::vector<EvaluatedHypothesis> smaller(const Search& search, const EvaluatedHypothesis& whole);
+
+/// Takes each effect of the structures next to the best away: what only led to the others is not needed any more.
+void take_effects_away(const Search& search, std::vector<EvaluatedHypothesis>& pool);
 
 /// Takes each effect of the best structure away, and puts others in its place.
 void swap_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool);

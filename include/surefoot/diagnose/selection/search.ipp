@@ -48,12 +48,17 @@ SUREFOOT_ONCE void reweight(Search& search, const EvaluatedHypothesis& best) {
   search.problem.screened = some_by_error(search.bound, problem.recordings, runs, search.problem.screened.size());
 }
 
+/// Whether a hypothesis leaves more than noise: what leaves only noise needs no second effect, nor another start.
+SUREFOOT_ONCE bool leaves_structure(const Search& search, const EvaluatedHypothesis& one) {
+  return search.problem.structured(one.hypothesis, search.problem.fit.integration);
+}
+
 /// The children of one parent into the pool of children.
 SUREFOOT_ONCE void extend(const Search& search, const EvaluatedHypothesis& parent,
                           std::vector<EvaluatedHypothesis>& children) {
   const SearchProblem& problem = search.problem;
   const auto most = static_cast<std::size_t>(problem.criteria.max_effects);
-  const bool structured = problem.structured(parent.hypothesis, problem.fit.integration);
+  const bool structured = leaves_structure(search, parent);
   std::vector<Proposal> proposals = proposals_for(search, parent);
   if (!structured) {
     std::erase_if(proposals,
@@ -61,14 +66,15 @@ SUREFOOT_ONCE void extend(const Search& search, const EvaluatedHypothesis& paren
   }
   const bool first = search.effects(parent) == 0;
   const std::size_t finalists = first ? problem.effort.finalists : problem.effort.further_finalists;
-  bool any_better = false;
+  bool enough = false;
   for (const EvaluatedHypothesis& child :
        next_effects(search, parent, proposals, problem.effort.shortlist, finalists)) {
-    any_better = any_better || log_odds(child, parent, problem.criteria) > 0;
+    const bool better = log_odds(child, parent, problem.criteria) > 0;
+    enough = enough || (better && (!first || !leaves_structure(search, child)));
     keep_best_form(children, child, problem.criteria);
   }
   const bool room = search.effects(parent) + 2 <= most;
-  if (!structured || !room || (any_better && !first) || problem.stopped()) return;
+  if (!structured || !room || enough || problem.stopped()) return;
   for (const EvaluatedHypothesis& child : next_pairs(search, parent, proposals)) {
     keep_best_form(children, child, problem.criteria);
   }
@@ -95,10 +101,23 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> extended_from(Search search, Hypo
   return children;
 }
 
+SUREFOOT_ONCE void begin_elsewhere(const Search& search, std::vector<EvaluatedHypothesis>& children) {
+  const SelectionCriteria& criteria = search.problem.criteria;
+  const auto done = [&] {
+    return !children.empty() && !leaves_structure(search, children[best_of(children, criteria)]);
+  };
+  if (done()) return;
+  for (const EvaluatedHypothesis& child : extended_from(search, search.problem.nominal)) {
+    keep_best_form(children, child, criteria);
+  }
+  if (criteria.max_effects < 2 || children.empty() || done()) return;
+  for (const EvaluatedHypothesis& pair : combined(search, children)) keep_best_form(children, pair, criteria);
+}
+
 SUREFOOT_ONCE bool refine_integration(Search& search, const EvaluatedHypothesis& best) {
   FitProblem& problem = search.problem.fit;
   const auto finer = finer_integration(search.bound, best.hypothesis, problem.weighting.sigma, problem.integration,
-                                       problem.recordings.front());
+                                       problem.recordings, search.parallel);
   if (finer) problem.integration = *finer;
   return finer.has_value();
 }
@@ -109,9 +128,36 @@ SUREFOOT_ONCE EvaluatedHypothesis refitted(const Search& search, const Evaluated
                       serially());
 }
 
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> smaller(const Search& search, const EvaluatedHypothesis& whole) {
+  const SearchProblem& problem = search.problem;
+  std::vector<EvaluatedHypothesis> rests;
+  if (search.effects(whole) < 2) return rests;
+  const bool whole_is_enough = !leaves_structure(search, whole);
+  for (std::size_t e = problem.known; e < whole.hypothesis.effects.size() && !problem.stopped(); ++e) {
+    EvaluatedHypothesis rest = search.without(whole, e);
+    if (whole_is_enough && leaves_structure(search, rest)) {  // the effect may only have led out of a valley
+      const Fit stuck{rest.hypothesis, rest.loss, true};
+      const Fit guided =
+          guided_fit(search.bound, stuck, without_effect(whole.hypothesis, e), problem.fit, search.parallel);
+      if (guided.loss < stuck.loss) rest = evaluate_fit(search.bound, guided, problem, search.parallel);
+    }
+    rests.push_back(std::move(rest));
+  }
+  return rests;
+}
+
+SUREFOOT_ONCE void take_effects_away(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
+  const SearchProblem& problem = search.problem;
+  const auto best = best_structures(pool, problem.effort.beam, problem.effort.hopeless, problem.criteria);
+  for (std::size_t i = 1; i < best.size(); ++i) {
+    for (const EvaluatedHypothesis& rest : smaller(search, best[i])) keep_best_form(pool, rest, problem.criteria);
+  }
+}
+
 SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool) {
   const SelectionCriteria& criteria = search.problem.criteria;
   std::vector<EvaluatedHypothesis> beam = pool;
+  bool in_vain = false;  // a step that does not pay by itself may lead to one that does; two in a row do not
   for (int depth = 0; depth < criteria.max_effects && !search.problem.stopped(); ++depth) {
     search.problem.on_progress("searching effect " + std::to_string(depth + 1),
                                static_cast<double>(depth) / criteria.max_effects);
@@ -119,26 +165,26 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool) 
     const auto most = static_cast<std::size_t>(criteria.max_effects);
     std::erase_if(beam, [&](const EvaluatedHypothesis& one) { return search.effects(one) >= most; });
     std::vector<EvaluatedHypothesis> children = extended(search, beam);
-    if (depth == 0) {
-      for (const EvaluatedHypothesis& child : extended_from(search, search.problem.nominal)) {
-        keep_best_form(children, child, criteria);
-      }
-      const bool leaves_something =
-          criteria.max_effects > 1 && !children.empty() &&
-          search.problem.structured(children[best_of(children, criteria)].hypothesis, search.problem.fit.integration);
-      if (leaves_something) {
-        for (const EvaluatedHypothesis& pair : combined(search, children)) keep_best_form(children, pair, criteria);
-      }
-    }
+    if (depth == 0) begin_elsewhere(search, children);
     for (const EvaluatedHypothesis& child : children) keep_best_form(pool, child, criteria);
     const EvaluatedHypothesis now = pool[best_of(pool, criteria)];
-    if (same_structure(now.hypothesis, best.hypothesis)) break;
+    const bool no_better = same_structure(now.hypothesis, best.hypothesis);
+    if (no_better && (in_vain || !leaves_structure(search, now))) break;
+    in_vain = no_better;
     const SearchEffort& effort = search.problem.effort;
+    std::erase_if(children, [&](const EvaluatedHypothesis& one) {
+      return holds_idle_effect(one, pool) || log_odds(one, now, criteria) < -effort.hopeless;
+    });
     beam = best_structures(children, effort.beam, effort.hopeless, criteria);
+    if (beam.empty()) break;
     reweight(search, now);
     if (refine_integration(search, now)) {  // all that may still be chosen is compared with the same errors
       pool = fitted_again(search, pool);
       for (EvaluatedHypothesis& one : beam) one = refitted(search, one);
+    }
+    if (no_better) continue;
+    for (const EvaluatedHypothesis& rest : smaller(search, now)) {
+      if (keep_best_form(pool, rest, criteria)) beam.push_back(rest);
     }
   }
 }
@@ -167,7 +213,7 @@ SUREFOOT_ONCE void refit_best(const Search& search, std::vector<EvaluatedHypothe
   constexpr double none_is_hopeless = std::numeric_limits<double>::infinity();
   for (const EvaluatedHypothesis& one :
        best_structures(pool, problem.effort.restarted, none_is_hopeless, problem.criteria)) {
-    if (problem.stopped() || !problem.structured(one.hypothesis, problem.fit.integration)) continue;
+    if (problem.stopped() || !leaves_structure(search, one)) continue;
     const Fit fitted{one.hypothesis, one.loss, true};
     Fit again =
         restarted_fit(search.bound, fitted, problem.fit, quick, problem.effort.restarts, restart_seed, search.parallel);
@@ -233,6 +279,7 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
     const Hypothesis best = pool[best_of(pool, criteria)].hypothesis;
     reweight(search, pool[best_of(pool, criteria)]);
     refit_best(search, pool);
+    take_effects_away(search, pool);
     swap_effects(search, pool);
     begin_anew(search, pool);
     if (same_structure(pool[best_of(pool, criteria)].hypothesis, best)) break;

@@ -33,6 +33,9 @@ std::string noise_sentence(NoiseKind noise);
 /// For effects that held-out recordings rejected.
 std::string rejection_sentence();
 
+/// For held-out recordings that nothing was fitted without.
+std::string not_held_out_sentence();
+
 /// How to tell the last of the chosen effects from the last of another choice.
 std::string next_experiment(const Hypothesis& chosen, const Hypothesis& other);
 

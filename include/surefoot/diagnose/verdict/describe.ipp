@@ -99,6 +99,11 @@ SUREFOOT_ONCE std::string rejection_sentence() {
          "dropped";
 }
 
+SUREFOOT_ONCE std::string not_held_out_sentence() {
+  return "the time was over before parameters were fitted without the held-out recordings: errors on these are those "
+         "of recordings that were fitted, and too small";
+}
+
 /// The last effect of a hypothesis that another one does not have; if it has all, the last.
 SUREFOOT_ONCE const Effect& effect_beyond(const Hypothesis& hypothesis, const Hypothesis& other) {
   for (std::size_t e = hypothesis.effects.size(); e > 0; --e) {
@@ -135,15 +140,13 @@ SUREFOOT_ONCE std::string beyond_noise_sentence(const Diagnosis& diagnosis) {
   const std::size_t count = names.size();
   if (count > most) names.resize(most);
   return " " + std::to_string(count) + " of " + std::to_string(diagnosis.per_recording.size()) +
-         " recordings are further off than noise explains: " + in_list(names) +
-         (count > most ? " and others." : ".");
+         " recordings are further off than noise explains: " + in_list(names) + (count > most ? " and others." : ".");
 }
 
 /// By how much the error on held-out recordings falls, in how many of them, and what is left of it.
 SUREFOOT_ONCE std::string gain_sentence(const Diagnosis& diagnosis) {
-  const auto better = std::ranges::count_if(diagnosis.per_recording, [](const RecordingFit& one) {
-    return one.after < one.before;
-  });
+  const auto better =
+      std::ranges::count_if(diagnosis.per_recording, [](const RecordingFit& one) { return one.after < one.before; });
   const std::string noise = against_noise(diagnosis);
   return " With that, the error on held-out recordings falls by " +
          in_digits(100 * (1 - diagnosis.held_out_after / std::max(diagnosis.held_out_before, never_zero))) + " %" +

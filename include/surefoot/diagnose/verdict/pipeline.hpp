@@ -19,6 +19,9 @@ namespace surefoot::diagnosis {
 /// Binds the user's simulator to recordings.
 using BindSimulator = std::function<BoundSimulator(std::vector<Recording>)>;
 
+/// Of the time that is given: what calibration and search may take.
+inline constexpr double search_share = 0.85;
+
 /// How a diagnosis is run: what every stage may ask for.
 struct RunContext {
   const DiagnoseOptions& options;
@@ -28,7 +31,10 @@ struct RunContext {
   std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
 
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); }
-  bool search_has_ended() const { return stop.stop_requested() || seconds() > options.max_seconds; }
+  bool has_ended() const { return stop.stop_requested() || seconds() > options.max_seconds; }
+  /// The rest of the time is for fits without each held-out recording: unless these are made, errors are of recordings
+  /// that were fitted.
+  bool search_has_ended() const { return has_ended() || seconds() > search_share * options.max_seconds; }
   void progress(std::string_view stage, double share, std::string_view best = "") const {
     if (options.on_progress) options.on_progress(stage, share, best);
   }

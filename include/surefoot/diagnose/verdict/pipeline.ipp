@@ -126,7 +126,7 @@ SUREFOOT_ONCE Calibration calibrate_model(EstimationSetup& setup, const RunConte
   }
   Fit calibrated = calibrate(bound, nominal, problem, run.options.starts, run.seed, parallel);
   bound.integration = choose_integration(bound, calibrated.hypothesis, problem.weighting.sigma, bound.integration,
-                                         split.training.front());
+                                         split.training, parallel);
   problem.integration = bound.integration;
   if (noise == NoiseKind::final_pose) {
     problem.weighting.whitening = final_pose_whitening(bound, calibrated.hypothesis, split.training, bound.integration);
@@ -177,6 +177,7 @@ SUREFOOT_ONCE SearchProblem search_problem(const EstimationSetup& setup, const C
   for (const std::size_t r : training) rows += static_cast<double>(setup.bound.recordings[r].rows());
   const auto fewest = static_cast<double>(effort.shortlist), most = static_cast<double>(effort.max_shortlist);
   effort.shortlist = static_cast<std::size_t>(std::clamp(fewest * effort.shortlist_rows / rows, fewest, most));
+  effort.compared_shortlist = effort.compared_shortlist * effort.shortlist / static_cast<std::size_t>(fewest);
   const bool final_poses = setup.noise == NoiseKind::final_pose;
   problem.screened = some_by_error(setup.bound, training, calibration.training_runs,
                                    final_poses ? effort.screening_final_poses : effort.screening);
@@ -266,6 +267,7 @@ SUREFOOT_ONCE void evaluate_selection(const EstimationSetup& setup, const Calibr
   const CheckedChoice choice = check_on_held_out(setup, calibrated, selection, HeldOutCriteria{}, run.parallel);
   const FittedModels models{simulate_model(setup, calibration.nominal, run.parallel), calibrated, choice.chosen};
   if (choice.rejected) diagnosis.remarks.push_back({"", rejection_sentence()});
+  if (run.has_ended()) diagnosis.remarks.push_back({"", not_held_out_sentence()});
 
   const ErrorSquares nominal =
       error_squares(setup.bound, calibration.nominal, training, setup.bound.integration, problem.scale, run.parallel);
@@ -292,7 +294,7 @@ SUREFOOT_ONCE void refit_with_finer_steps(EstimationSetup& setup, Selection& sel
   Hypothesis& chosen = selection.chosen.hypothesis;
   if (chosen.effects.size() == selection.nominal.hypothesis.effects.size()) return;
   const auto finer =
-      finer_integration(bound, chosen, problem.weighting.sigma, bound.integration, split.training.front());
+      finer_integration(bound, chosen, problem.weighting.sigma, bound.integration, split.training, run.parallel);
   if (!finer) return;
   bound.integration = problem.integration = *finer;
   chosen = fit(bound, chosen, problem, run.parallel).hypothesis;
@@ -331,6 +333,7 @@ SUREFOOT_ONCE void diagnose_recordings(const BindSimulator& bind, std::vector<Re
   Selection selection = select_effects(setup.bound, calibration.calibrated, problem, candidates, run.parallel);
   diagnosis.complete = !run.search_has_ended();
   setup.problem = selection.fit;
+  setup.problem.stopped = [run] { return run.has_ended(); };
   setup.bound.integration = setup.problem.integration;
   refit_with_finer_steps(setup, selection, run);
   remove_outliers_from(setup, selection.chosen.hypothesis, run, diagnosis);
