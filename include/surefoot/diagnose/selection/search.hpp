@@ -35,10 +35,10 @@ std::vector<EvaluatedHypothesis> extended_from(Search search, Hypothesis start);
 /// Where first effects leave more than noise: first effects from the nominal parameters on, and pairs of the best.
 void begin_elsewhere(const Search& search, std::vector<EvaluatedHypothesis>& children);
 
-/// Extends the best structures of a pool, as long as that makes the best one better, or did one step before and
-/// something is left. What the best one can do without is taken away at once (floating search; P. Pudil, J. Novovicova,
-/// J. Kittler, Pattern Recognition Letters 15, 1994). Structures with an effect that does nothing, and those far
-/// behind, are not extended.
+/// Extends the best structures of a pool, as long as that makes the best one better; once more where no first effect
+/// does and something is left. What the best one can do without is taken away at once (floating search; P. Pudil,
+/// J. Novovicova, J. Kittler, Pattern Recognition Letters 15, 1994). Structures with an effect that does nothing, and
+/// those far behind, are not extended.
 void grow(Search& search, std::vector<EvaluatedHypothesis>& pool);
 
 /// The best structures, and the model without effects, fitted and evaluated with the present weights and recordings.
@@ -47,8 +47,7 @@ std::vector<EvaluatedHypothesis> fitted_again(const Search& search, const std::v
 /// The same within a pool; the very best ones also from places around.
 void refit_best(const Search& search, std::vector<EvaluatedHypothesis>& pool);
 
-/// A structure without each of its effects in turn, fitted from its parameters on, under guidance too where the whole
-/// leaves only noise and the rest does not; none for a single effect.
+/// A structure without each of its effects in turn, fitted from its parameters on; none for a single effect.
 std::vector<EvaluatedHypothesis> smaller(const Search& search, const EvaluatedHypothesis& whole);
 
 /// Takes each effect of the structures next to the best away: what only led to the others is not needed any more.

@@ -132,16 +132,8 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> smaller(const Search& search, con
   const SearchProblem& problem = search.problem;
   std::vector<EvaluatedHypothesis> rests;
   if (search.effects(whole) < 2) return rests;
-  const bool whole_is_enough = !leaves_structure(search, whole);
   for (std::size_t e = problem.known; e < whole.hypothesis.effects.size() && !problem.stopped(); ++e) {
-    EvaluatedHypothesis rest = search.without(whole, e);
-    if (whole_is_enough && leaves_structure(search, rest)) {  // the effect may only have led out of a valley
-      const Fit stuck{rest.hypothesis, rest.loss, true};
-      const Fit guided =
-          guided_fit(search.bound, stuck, without_effect(whole.hypothesis, e), problem.fit, search.parallel);
-      if (guided.loss < stuck.loss) rest = evaluate_fit(search.bound, guided, problem, search.parallel);
-    }
-    rests.push_back(std::move(rest));
+    rests.push_back(search.without(whole, e));
   }
   return rests;
 }
@@ -157,7 +149,7 @@ SUREFOOT_ONCE void take_effects_away(const Search& search, std::vector<Evaluated
 SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool) {
   const SelectionCriteria& criteria = search.problem.criteria;
   std::vector<EvaluatedHypothesis> beam = pool;
-  bool in_vain = false;  // a step that does not pay by itself may lead to one that does; two in a row do not
+  bool in_vain = false;  // a first step that does not pay may lead to one that does; two in a row do not
   for (int depth = 0; depth < criteria.max_effects && !search.problem.stopped(); ++depth) {
     search.problem.on_progress("searching effect " + std::to_string(depth + 1),
                                static_cast<double>(depth) / criteria.max_effects);
@@ -169,7 +161,7 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool) 
     for (const EvaluatedHypothesis& child : children) keep_best_form(pool, child, criteria);
     const EvaluatedHypothesis now = pool[best_of(pool, criteria)];
     const bool no_better = same_structure(now.hypothesis, best.hypothesis);
-    if (no_better && (in_vain || !leaves_structure(search, now))) break;
+    if (no_better && (in_vain || search.effects(now) > 0 || !leaves_structure(search, now))) break;
     in_vain = no_better;
     const SearchEffort& effort = search.problem.effort;
     std::erase_if(children, [&](const EvaluatedHypothesis& one) {
