@@ -44,7 +44,7 @@ if [[ -d ${SUREFOOT_RECORDINGS:-} ]]; then
 else
   build surefoot-diagnose concealed_plants
   say "what does the model of a servo leave out? (SUREFOOT_RECORDINGS is not set: a plant of ours stands in)"
-  "$build/bin/concealed_plants" --out "$results/plant" --cases 2 --seed 2 --families servo
+  "$build/bin/concealed_plants" --out "$results/plant" --cases 2 --seed 10 --families servo
   model=$results/plant/cases/case_0002/model.toml
   recordings=("$results"/plant/cases/case_0002/rec_*.csv)
 fi
