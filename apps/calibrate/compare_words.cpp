@@ -94,7 +94,9 @@ std::string coefficient_sentence(const WalkComparison& comparison, const WalkCha
 std::string noise_sentence(const surefoot::NoiseChange& noise) {
   const double factor = std::sqrt(noise.change.ratio);  // of what was measured, readings included
   std::string text = example::printed("has %s %s", factor > 1 ? "more" : "less", noise.name.c_str());
-  if (noise.name != "noise") {
+  if (noise.name == "noise") {
+    text += ",";
+  } else {
     const bool turns = noise.name == "noise of turns";
     const double unit = turns ? degree : 1e-3;
     text += example::printed(": %.2g %s in a cycle, it was %.2g; with the readings", noise.after / unit,

@@ -5,45 +5,33 @@
 #include <cmath>
 #include <vector>
 
-#include "surefoot/core/rng.hpp"
-#include "surefoot/core/vec.hpp"
+#include "tests/solve/sampled_values.hpp"
 
 namespace surefoot {
 namespace {
 
-double curved(const Vec<3>& x) { return 1 + x[0] - 3 * x[1] * x[2] - 5 * x.squaredNorm(); }
+using toy::quadratic;
 
-Dataset<3, 1> curved_samples(int count) {
-  Rng rng(1);
-  Dataset<3, 1> data;
-  data.inputs.resize(3, count);
-  data.outputs.resize(1, count);
-  for (int i = 0; i < count; ++i) {
-    const Vec<3> x(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1));
-    data.inputs.col(i) = x.cast<float>();
-    data.outputs(0, i) = curved(x);
-  }
-  return data;
-}
+Dataset<3, 1> quadratic_samples(int count) { return toy::sampled_values(quadratic, count); }
 
 QuadraticTrend fitted(const Dataset<3, 1>& data) { return QuadraticTrend::fit(detail::view_of(data)); }
 
 TEST_CASE("a quadratic function is found from a few samples per term, whatever their number modulo four") {
   const Eigen::Vector3f x(0.3F, -0.4F, 0.8F);
   for (const int count : {40, 41, 42, 43}) {
-    CHECK(fitted(curved_samples(count))(x.data()) == doctest::Approx(curved(x.cast<double>())).epsilon(1e-4));
+    CHECK(fitted(quadratic_samples(count))(x.data()) == doctest::Approx(quadratic(x.cast<double>())).epsilon(1e-4));
   }
-  CHECK(fitted(curved_samples(39)).empty());
+  CHECK(fitted(quadratic_samples(39)).empty());
 }
 
 TEST_CASE("more samples than needed are thinned out over all of them") {
   const Eigen::Vector3f x(0.3F, -0.4F, 0.8F);
-  const auto trend = fitted(curved_samples(2 * static_cast<int>(QuadraticTrend::most_samples)));
-  CHECK(trend(x.data()) == doctest::Approx(curved(x.cast<double>())).epsilon(1e-4));
+  const auto trend = fitted(quadratic_samples(2 * static_cast<int>(QuadraticTrend::most_samples)));
+  CHECK(trend(x.data()) == doctest::Approx(quadratic(x.cast<double>())).epsilon(1e-4));
 }
 
 TEST_CASE("an input that never changes does no harm") {
-  Dataset<3, 1> flat = curved_samples(100);
+  Dataset<3, 1> flat = quadratic_samples(100);
   flat.inputs.row(2).setConstant(2);
   const auto trend = fitted(flat);
   REQUIRE_FALSE(trend.empty());
@@ -51,13 +39,13 @@ TEST_CASE("an input that never changes does no harm") {
 }
 
 TEST_CASE("far away a trend stays within the values it was fitted to") {
-  const auto data = curved_samples(200);
+  const auto data = quadratic_samples(200);
   const Eigen::Vector3f far(100, 0, 0);
   CHECK(fitted(data)(far.data()) == data.outputs.minCoeff());
 }
 
 TEST_CASE("a trend comes back from its parameters") {
-  const auto trend = fitted(curved_samples(100));
+  const auto trend = fitted(quadratic_samples(100));
   CHECK(trend.parameters().size() == QuadraticTrend::count_of_parameters(3));
   CHECK(QuadraticTrend({trend.parameters().begin(), trend.parameters().end()}, 3) == trend);
 }
