@@ -124,7 +124,7 @@ void find_changed(std::vector<JointChange> changes, JointComparison& result) {
 
 const Reading& reading_named(std::string_view what) { return *std::ranges::find(readings, what, &Reading::what); }
 
-/// "has more friction, 0.0125 rad (0.0119 to 0.0131), it was 0.0038"
+/// "has more friction: friction by 0.0125 rad (0.0119 to 0.0131)"
 std::string in_words(const JointChange& change) {
   const Reading& reading = reading_named(change.what);
   const double low = change.difference() - 1.96 * change.standard_error,
