@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -80,7 +81,7 @@ std::array<PoseState, 3> pose_states(const FileLayout& layout) {
 
 /// States in the units of their columns, so that they may start as measured.
 void write_states(std::ostream& out, const FileLayout& layout, const std::array<std::string, 3>& steps,
-                  const std::string& verb, const std::string& more) {
+                  const std::string& verb, const std::string& more, const surefoot::Vec<3>& process_noise) {
   const auto states = pose_states(layout);
   out << "\n[states]\n";
   for (std::size_t i = 0; i < 3; ++i) {
@@ -92,17 +93,38 @@ void write_states(std::ostream& out, const FileLayout& layout, const std::array<
         << ", unit = \"" << (state.column.factor == 1 ? state.unit : "1") << "\" }\n";
   }
   out << more << "\n[outputs]\n";
-  for (const PoseState& state : states) {
-    if (state.measured) {
-      out << quoted(state.column.name) << " = { value = \"" << state.name << "\", unit = \""
-          << (state.column.factor == 1 ? state.unit : "1") << "\" }\n";
-    }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const PoseState& state = states[i];
+    if (!state.measured) continue;
+    out << quoted(state.column.name) << " = { value = \"" << state.name << "\", unit = \""
+        << (state.column.factor == 1 ? state.unit : "1") << "\"";
+    if (process_noise[static_cast<int>(i)] > 0)
+      out << ", process_noise = " << shown(process_noise[static_cast<int>(i)] / state.column.factor);
+    out << " }\n";
   }
 }
 
 std::string heading(const FileLayout& layout) { return times("th", pose_states(layout)[2].column.factor); }
 
-void write_walk(std::ostream& out, const std::vector<std::string>& known, bool previous, const FileLayout& layout) {
+/// Standard deviation by which a cycle, predicted from the pose before, is off in x, y and heading, over these
+/// commands: the noise of the walk, turned as the robot was, and that of the readings before and after.
+surefoot::Vec<3> cycle_noise(const MotionFile& file, std::span<const surefoot::WalkSequence> sequences) {
+  surefoot::Vec<3> squares = surefoot::Vec<3>::Zero();
+  double cycles = 0;
+  for (const surefoot::WalkSequence& sequence : sequences) {
+    for (Eigen::Index i = 0; i < sequence.cycles(); ++i, ++cycles) {
+      const surefoot::Vec<3> own =
+          file.noise.deviation(sequence.commands.col(i), sequence.previous_command(i)).cwiseAbs2();
+      double along = i == 0 ? 1 : std::pow(std::cos(sequence.poses(2, i - 1)), 2);
+      if (!std::isfinite(along)) along = 0.5;  // an unknown heading
+      squares += surefoot::Vec<3>(along * own[0] + (1 - along) * own[1], (1 - along) * own[0] + along * own[1], own[2]);
+    }
+  }
+  return (squares / std::max(cycles, 1.0) + 2 * file.accuracy.variance()).cwiseSqrt();
+}
+
+void write_walk(std::ostream& out, const std::vector<std::string>& known, bool previous, const FileLayout& layout,
+                const surefoot::Vec<3>& process_noise) {
   constexpr std::array<const char*, 3> inputs{"order_forward", "order_lateral", "order_turn"},
       commands{"ox", "oy", "ot"};
   out << "kind   = \"map\"\n";
@@ -122,7 +144,8 @@ void write_walk(std::ostream& out, const std::vector<std::string>& known, bool p
     last += "last_" + std::string(commands[i]) + " = { next = \"" + commands[i] + "\", initial = 0, unit = \"" +
             (i < 2 ? "m" : "rad") + "\" }\n";
   }
-  write_states(out, layout, {"dx*cos(facing) - dy*sin(facing)", "dx*sin(facing) + dy*cos(facing)", "dt"}, "next", last);
+  write_states(out, layout, {"dx*cos(facing) - dy*sin(facing)", "dx*sin(facing) + dy*cos(facing)", "dt"}, "next", last,
+               process_noise);
 }
 
 void write_planar(std::ostream& out, const FileLayout& layout) {
@@ -145,7 +168,7 @@ void write_wheels(std::ostream& out, const std::vector<std::string>& known, cons
   out << "facing = " << quoted(heading(layout)) << "\n";
   write_states(out, layout,
                {"forward*cos(facing) - lateral*sin(facing)", "forward*sin(facing) + lateral*cos(facing)", "turning"},
-               "rate", "");
+               "rate", "", surefoot::Vec<3>::Zero());
   out << "\n[constants]\nbase   = " << shown(options.wheel_base) << "  # [m]\nperiod = " << shown(layout.period)
       << "  # mean time of a row [s]\n";
 }
@@ -153,7 +176,7 @@ void write_wheels(std::ostream& out, const std::vector<std::string>& known, cons
 }  // namespace
 
 std::string diagnose_model(const MotionFile& file, const std::vector<bool>& determined, const FileLayout& layout,
-                           const LoadOptions& options) {
+                           const LoadOptions& options, std::span<const surefoot::WalkSequence> sequences) {
   const bool wheels = !options.columns.wheels.empty();
   std::ostringstream out;
   out << "# As calibrated from " << file.sequences << " sequences (" << name_of(file.kind) << ", " << file.method
@@ -162,7 +185,7 @@ std::string diagnose_model(const MotionFile& file, const std::vector<bool>& dete
   if (wheels) {
     write_wheels(out, known, layout, options);
   } else {
-    write_walk(out, known, file.kind == ModelKind::previous_command, layout);
+    write_walk(out, known, file.kind == ModelKind::previous_command, layout, cycle_noise(file, sequences));
   }
   write_parameters(out, file, determined, wheels);
   if (!wheels) write_planar(out, layout);

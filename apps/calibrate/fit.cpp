@@ -51,8 +51,8 @@ void run(const FitOptions& options) {
     const bool held_out = !test.sequences.empty();
     draw_final_poses(options.out / "final_poses", fitted.file.model, held_out ? test.sequences : loaded.sequences,
                      held_out);
-    example::write_text(options.out / "motion.toml",
-                        diagnose_model(fitted.file, fitted.determined, loaded.layout, options.read.load));
+    example::write_text(options.out / "motion.toml", diagnose_model(fitted.file, fitted.determined, loaded.layout,
+                                                                    options.read.load, loaded.sequences));
     write_motion_file(options.out / "motion.json", fitted.file);  // last: all is there
   });
   std::cout << "\nIn " << options.out.string() << ": motion.json, motion.toml, final_poses.svg and .png\n";

@@ -86,18 +86,28 @@ ModelState read_state(const TomlTable& table, const TomlEntry& entry, bool ode) 
   return state;
 }
 
-ModelOutput read_output(const TomlTable& table, const TomlEntry& entry) {
+/// A standard deviation; NaN where there is none.
+double read_deviation(const TomlTable& own, const char* key) {
+  const toml::value* value = find(own, key);
+  if (value == nullptr) return std::numeric_limits<double>::quiet_NaN();
+  const double deviation = to_number(*value, place(own, *value, key));
+  if (!(deviation > 0)) fail(place(own, *value, key), "a standard deviation above 0 is expected; or leave it out");
+  return deviation;
+}
+
+ModelOutput read_output(const TomlTable& table, const TomlEntry& entry, bool ode) {
   const TomlTable own = sub_table(table, entry, "{ value = ..., unit = ... }");
-  allow_keys(own, {"value", "unit", "noise"});
+  allow_keys(own, {"value", "unit", "noise", "process_noise"});
   ModelOutput output;
   output.name = entry.key;
   const toml::value& value = required(own, "value", "what the sensor reads, an expression");
   output.value = {to_formula(value, place(own, value, "value")), place(own, value, "value")};
   output.unit = required_text(own, "unit", "its unit, say \"rad\", or \"1\"");
-  if (const toml::value* noise = find(own, "noise")) {
-    output.noise = to_number(*noise, place(own, *noise, "noise"));
-    if (!(output.noise > 0))
-      fail(place(own, *noise, "noise"), "a standard deviation above 0 is expected; or leave it out");
+  output.noise = read_deviation(own, "noise");
+  output.process_noise = read_deviation(own, "process_noise");
+  if (ode && output.process_noise > 0) {
+    fail(place(own, *find(own, "process_noise"), "process_noise"),
+         "what chance adds in a row is for kind = \"map\" only; 'noise' is that of the sensor");
   }
   if (entry.key.find('_') == std::string::npos && output.unit != "1") {
     fail(place(own, *own.value), "the column " + in_quotes(entry.key) + " does not end in its unit; call it like '" +

@@ -17,7 +17,7 @@ void check_count(std::size_t count, const TomlTable& table, const std::string& w
 
 ModelInput read_input(const TomlTable& table, const TomlEntry& entry);
 ModelState read_state(const TomlTable& table, const TomlEntry& entry, bool ode);
-ModelOutput read_output(const TomlTable& table, const TomlEntry& entry);
+ModelOutput read_output(const TomlTable& table, const TomlEntry& entry, bool ode);
 ModelConstant read_constant(const TomlTable& table, const TomlEntry& entry);
 surefoot::ParameterInfo read_parameter(const TomlTable& table, const TomlEntry& entry);
 

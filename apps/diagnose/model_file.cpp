@@ -82,7 +82,9 @@ ModelFile read_model(const TomlTable& root) {
   });
   model.states = read_list<ModelState>(root, "states", true, most_channels,
                                        [ode](const TomlTable& t, const TomlEntry& e) { return read_state(t, e, ode); });
-  model.outputs = read_list<ModelOutput>(root, "outputs", true, most_channels, read_output);
+  model.outputs =
+      read_list<ModelOutput>(root, "outputs", true, most_channels,
+                             [ode](const TomlTable& t, const TomlEntry& e) { return read_output(t, e, ode); });
   model.constants = read_list<ModelConstant>(root, "constants", false, 200, read_constant);
   model.parameters = read_list<surefoot::ParameterInfo>(
       root, "parameters", false, most_parameters, [](const TomlTable& table, const TomlEntry& entry) {

@@ -46,6 +46,7 @@ struct ModelOutput {
   std::string name, unit;  // the name is that of the column
   Formula value;
   double noise = std::numeric_limits<double>::quiet_NaN();
+  double process_noise = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct ModelConstant {

@@ -115,6 +115,7 @@ std::string model_text(const ModelFile& model) {
     out << key(output.name) << " = { value = " << toml_string(output.value.text)
         << ", unit = " << toml_string(output.unit);
     if (std::isfinite(output.noise)) out << ", noise = " << toml_number(output.noise);
+    if (std::isfinite(output.process_noise)) out << ", process_noise = " << toml_number(output.process_noise);
     out << " }\n";
   }
   if (!model.constants.empty()) out << "\n[constants]\n";

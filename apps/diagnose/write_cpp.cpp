@@ -49,7 +49,7 @@ void write_info(std::ostream& out, const ModelFile& model, const EquationPlan& p
   out << "};\n    info.outputs = {";
   for (const auto& output : model.outputs) {
     out << "{" << string_literal(output.name) << ", " << string_literal(output.unit) << ", " << cpp_number(output.noise)
-        << "}, ";
+        << ", " << cpp_number(output.process_noise) << "}, ";
   }
   out << "};\n    info.parameters = {";
   for (const auto& parameter : model.parameters) {

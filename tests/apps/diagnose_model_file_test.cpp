@@ -57,6 +57,15 @@ TEST_CASE("a map may have sequences, measurements after the step and planar moti
   CHECK(model.planar->forward == "dx");
 }
 
+TEST_CASE("the process noise of a map is that of a row; an ode has none") {
+  const auto model =
+      parse_model_file(with(walk_model, "value = \"x\"", "value = \"x\", process_noise = 0.02"), "walk.toml");
+  CHECK(model.outputs[0].process_noise == 0.02);
+  CHECK(std::isnan(model.outputs[1].process_noise));
+  check_model_refused(with(walk_model, "value = \"x\"", "value = \"x\", process_noise = 0"), "above 0 is expected");
+  check_model_refused(with(servo_model, "noise = 0.001", "process_noise = 0.001"), "is for kind = \"map\" only");
+}
+
 TEST_CASE("a model that was written reads back the same") {
   for (const std::string& text : {servo_model, walk_model}) {
     const auto model = parse_model_file(text, "a.toml");

@@ -44,34 +44,34 @@ SUREFOOT_INLINE std::uint64_t checksum(std::span<const std::byte> bytes) {
   return hash;
 }
 
-SUREFOOT_INLINE void ByteReader::fail(const std::string& what) const { throw CoreError(source_ + " " + what); }
+SUREFOOT_ONCE void ByteReader::fail(const std::string& what) const { throw CoreError(source_ + " " + what); }
 
-SUREFOOT_INLINE void ByteReader::fail_at_end(std::uint64_t count, std::size_t size) const {
+SUREFOOT_ONCE void ByteReader::fail_at_end(std::uint64_t count, std::size_t size) const {
   fail("ends too early: " + std::to_string(count) + " items of " + std::to_string(size) + " bytes expected at byte " +
        std::to_string(position_) + ", but only " + std::to_string(remaining()) + " bytes follow");
 }
 
-SUREFOOT_INLINE void ByteReader::expect_checksum(std::size_t start) {
+SUREFOOT_ONCE void ByteReader::expect_checksum(std::size_t start) {
   const std::uint64_t expected = checksum(bytes_.subspan(start, position_ - start));
   if (u64() != expected) fail("is damaged: its checksum does not match");
 }
 
-SUREFOOT_INLINE void ByteReader::expect_end() const {
+SUREFOOT_ONCE void ByteReader::expect_end() const {
   if (remaining() != 0) fail("has " + std::to_string(remaining()) + " bytes more than expected");
 }
 
-SUREFOOT_INLINE void write_format(ByteWriter& out, const FileFormat& format) {
+SUREFOOT_ONCE void write_format(ByteWriter& out, const FileFormat& format) {
   out.raw(std::as_bytes(std::span(format.magic)));
   out.u32(format.version);
 }
 
-SUREFOOT_INLINE bool has_format(ByteReader in, const FileFormat& format) {
+SUREFOOT_ONCE bool has_format(ByteReader in, const FileFormat& format) {
   if (in.remaining() < format.magic.size() + 4) return false;
   const auto magic = in.raw(format.magic.size());
   return std::memcmp(magic.data(), format.magic.data(), magic.size()) == 0 && in.u32() == format.version;
 }
 
-SUREFOOT_INLINE void expect_format(ByteReader& in, const FileFormat& format) {
+SUREFOOT_ONCE void expect_format(ByteReader& in, const FileFormat& format) {
   const auto magic = in.raw(format.magic.size());
   if (std::memcmp(magic.data(), format.magic.data(), magic.size()) != 0) {
     in.fail("is not " + std::string(format.kind) + ": it must start with \"" + std::string(format.magic) + "\"");
@@ -88,14 +88,14 @@ enum class PathKind { missing, file, folder, other };
 
 #if defined(__unix__) || defined(__APPLE__)
 
-SUREFOOT_INLINE PathKind path_kind(const std::string& path) {
+SUREFOOT_ONCE PathKind path_kind(const std::string& path) {
   struct ::stat status = {};
   if (::stat(path.c_str(), &status) != 0) return PathKind::missing;
   return S_ISREG(status.st_mode) ? PathKind::file : S_ISDIR(status.st_mode) ? PathKind::folder : PathKind::other;
 }
 
 /// Waits until the bytes of a file are on the disk, not only on their way there.
-SUREFOOT_INLINE std::error_code flush_to_disk(const std::string& path) {
+SUREFOOT_ONCE std::error_code flush_to_disk(const std::string& path) {
   std::error_code error;
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   const bool flushed = file >= 0 && (::fsync(file) == 0 || errno == EINVAL);  // EINVAL: no disk behind it
@@ -104,7 +104,7 @@ SUREFOOT_INLINE std::error_code flush_to_disk(const std::string& path) {
   return error;
 }
 
-SUREFOOT_INLINE std::error_code rename_file(const std::string& from, const std::string& to) {
+SUREFOOT_ONCE std::error_code rename_file(const std::string& from, const std::string& to) {
   std::error_code error;
   if (std::rename(from.c_str(), to.c_str()) != 0) error.assign(errno, std::generic_category());
   return error;
@@ -112,7 +112,7 @@ SUREFOOT_INLINE std::error_code rename_file(const std::string& from, const std::
 
 #else
 
-SUREFOOT_INLINE PathKind path_kind(const std::string& path) {
+SUREFOOT_ONCE PathKind path_kind(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) return PathKind::missing;
@@ -121,9 +121,9 @@ SUREFOOT_INLINE PathKind path_kind(const std::string& path) {
                                                   : PathKind::other;
 }
 
-SUREFOOT_INLINE std::error_code flush_to_disk(const std::string&) { return {}; }
+SUREFOOT_ONCE std::error_code flush_to_disk(const std::string&) { return {}; }
 
-SUREFOOT_INLINE std::error_code rename_file(const std::string& from, const std::string& to) {
+SUREFOOT_ONCE std::error_code rename_file(const std::string& from, const std::string& to) {
   std::error_code error;
   std::filesystem::rename(from, to, error);
   return error;
@@ -133,7 +133,7 @@ SUREFOOT_INLINE std::error_code rename_file(const std::string& from, const std::
 
 }  // namespace detail
 
-SUREFOOT_INLINE void write_file_atomically(const std::string& path, std::span<const std::byte> bytes) {
+SUREFOOT_ONCE void write_file_atomically(const std::string& path, std::span<const std::byte> bytes) {
   const std::string aside = path + ".part";
   const detail::PathKind old = detail::path_kind(path);
   if (old == detail::PathKind::folder || old == detail::PathKind::other) {  // the rename would take its place
@@ -153,15 +153,15 @@ SUREFOOT_INLINE void write_file_atomically(const std::string& path, std::span<co
                   (error ? " (" + error.message() + ")" : ""));
 }
 
-SUREFOOT_INLINE void write_file_atomically(const std::string& path, std::string_view text) {
+SUREFOOT_ONCE void write_file_atomically(const std::string& path, std::string_view text) {
   write_file_atomically(path, std::as_bytes(std::span(text)));
 }
 
-SUREFOOT_INLINE bool file_exists(const std::string& path) {
+SUREFOOT_ONCE bool file_exists(const std::string& path) {
   return detail::path_kind(path) != detail::PathKind::missing;
 }
 
-SUREFOOT_INLINE Bytes read_file(const std::string& path) {
+SUREFOOT_ONCE Bytes read_file(const std::string& path) {
   if (detail::path_kind(path) == detail::PathKind::folder) throw CoreError("file " + path + " is a folder");
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }

@@ -22,13 +22,13 @@ SUREFOOT_ONCE void check(const ValidateOptions& options) {
 
 namespace detail {
 
-SUREFOOT_INLINE std::string text_of(double number) {
+SUREFOOT_ONCE std::string text_of(double number) {
   char text[32];
   std::snprintf(text, sizeof text, "%g", number);
   return text;
 }
 
-SUREFOOT_INLINE std::string list_of(const double* numbers, std::size_t count) {
+SUREFOOT_ONCE std::string list_of(const double* numbers, std::size_t count) {
   std::string list = "[";
   for (std::size_t i = 0; i < count; ++i) {
     char text[32];
@@ -38,7 +38,7 @@ SUREFOOT_INLINE std::string list_of(const double* numbers, std::size_t count) {
   return list + "]";
 }
 
-SUREFOOT_INLINE bool ask_another_thread(bool (*check)(const void*), const void* argument) {
+SUREFOOT_ONCE bool ask_another_thread(bool (*check)(const void*), const void* argument) {
   bool answer = false;
   std::exception_ptr error;
   std::jthread([&] {

@@ -15,8 +15,8 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE Recording part_of(const Recording& whole, Eigen::Index from, Eigen::Index to,
-                                  const Eigen::VectorXd& initial, const Eigen::VectorXd& scale) {
+SUREFOOT_ONCE Recording part_of(const Recording& whole, Eigen::Index from, Eigen::Index to,
+                                const Eigen::VectorXd& initial, const Eigen::VectorXd& scale) {
   Recording part;
   part.name = whole.name + "[" + std::to_string(from) + ":" + std::to_string(to) + "]";
   part.constants = whole.constants;

@@ -25,7 +25,7 @@ inline constexpr FileFormat residual_format{"SUREFRES", 1, "a residual model"};
 
 }  // namespace detail
 
-SUREFOOT_INLINE void save_residual_model(const ResidualModel& model, const std::filesystem::path& path) {
+SUREFOOT_ONCE void save_residual_model(const ResidualModel& model, const std::filesystem::path& path) {
   ByteWriter out;
   write_format(out, detail::residual_format);
   out.u32(static_cast<std::uint32_t>(model.features.size()));
@@ -38,7 +38,7 @@ SUREFOOT_INLINE void save_residual_model(const ResidualModel& model, const std::
   write_file_atomically(path, out.bytes());
 }
 
-SUREFOOT_INLINE ResidualModel load_residual_model(const std::filesystem::path& path) {
+SUREFOOT_ONCE ResidualModel load_residual_model(const std::filesystem::path& path) {
   const Bytes bytes = read_file(path);
   ByteReader in(bytes, "file " + path.string());
   expect_format(in, detail::residual_format);

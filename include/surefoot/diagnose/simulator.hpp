@@ -30,6 +30,8 @@ struct InputInfo {
 struct OutputInfo {
   std::string name, unit;
   double noise = std::numeric_limits<double>::quiet_NaN();  // standard deviation, NaN: to be estimated
+  /// Of a map: standard deviation by which chance makes it miss the next row from the readings of a row; NaN: unknown.
+  double process_noise = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct ParameterInfo {

@@ -11,8 +11,8 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE std::string detail::c_file(const Trees& trees, std::uint32_t leaf_tag, const std::string& leaf_code,
-                                           const ExportCOptions& options) {
+SUREFOOT_ONCE std::string detail::c_file(const Trees& trees, std::uint32_t leaf_tag, const std::string& leaf_code,
+                                         const ExportCOptions& options) {
   if (trees.roots.empty()) throw ForestError("export_c: the forest is empty, train or load it first");
   check(options, trees.outputs);
   return CWriter(trees, leaf_tag, leaf_code, options).code();

@@ -10,7 +10,7 @@
 
 namespace surefoot {
 
-SUREFOOT_INLINE CmaEsConstants cma_es_constants(Eigen::Index dimension, Eigen::Index population) {
+SUREFOOT_ONCE CmaEsConstants cma_es_constants(Eigen::Index dimension, Eigen::Index population) {
   const auto n = static_cast<double>(dimension);
   CmaEsConstants c;
   c.parents = population / 2;

@@ -137,7 +137,7 @@ class FieldReader {
 };
 
 // Whether all sizes and numbers fit together, so that the search can go on without a look back.
-SUREFOOT_INLINE bool is_sound(const CmaEsSearch& search) {
+SUREFOOT_ONCE bool is_sound(const CmaEsSearch& search) {
   const CmaEsState& state = search.state;
   const Eigen::Index n = state.dimension(), users = search.start.size();
   const auto square = [n](const Eigen::MatrixXd& m) { return m.rows() == n && m.cols() == n; };
@@ -166,7 +166,7 @@ SUREFOOT_INLINE bool is_sound(const CmaEsSearch& search) {
 
 namespace surefoot {
 
-SUREFOOT_INLINE Bytes save(const CmaEsSearch& search) {
+SUREFOOT_ONCE Bytes save(const CmaEsSearch& search) {
   ByteWriter out;
   out.raw(std::as_bytes(std::span(detail::cma_es_magic)));
   out.u32(detail::cma_es_version);
@@ -176,7 +176,7 @@ SUREFOOT_INLINE Bytes save(const CmaEsSearch& search) {
   return std::move(out).bytes();
 }
 
-SUREFOOT_INLINE CmaEsSearch load_cma_es_search(std::span<const std::byte> bytes, const std::string& source) {
+SUREFOOT_ONCE CmaEsSearch load_cma_es_search(std::span<const std::byte> bytes, const std::string& source) {
   ByteReader in(bytes, source);
   if (!std::ranges::equal(in.raw(detail::cma_es_magic.size()), std::as_bytes(std::span(detail::cma_es_magic)))) {
     in.fail("is not a search by CMA-ES: it must start with \"" + std::string(detail::cma_es_magic) + "\"");

@@ -57,6 +57,15 @@ TEST_CASE("steps that are noisy are noise of the process, poses that are noise o
         doctest::Approx(-0.5).epsilon(0.2));
 }
 
+TEST_CASE("a stated process noise says what kind it is") {
+  BoundSimulator bound = bind_simulator(WalkingRobot{}, exact_walks(20));
+  const Hypothesis hypothesis = with_gains(bound, {1.2, 0.9, 1.1});
+  bound.info.outputs[0].process_noise = bound.info.outputs[1].process_noise = 0.01;
+  CHECK(noise_kind(bound, hypothesis, first(0, 20)) == NoiseKind::measurement);  // of the third nothing is stated
+  bound.info.outputs[2].process_noise = 0.03;
+  CHECK(noise_kind(bound, hypothesis, first(0, 20)) == NoiseKind::process);
+}
+
 TEST_CASE("steps that differ in turn are not taken for noise of the measurement") {
   for (const int period : {2, 3}) {
     CAPTURE(period);

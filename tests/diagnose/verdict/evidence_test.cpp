@@ -64,6 +64,17 @@ TEST_CASE("a recording is beyond the noise if its error is large, and surely so"
   CHECK_FALSE(marked(0.1, 1e4));
 }
 
+TEST_CASE(
+    "rows are compared with the stated process noise, the worst output counts, and nothing where one is not stated") {
+  std::vector<OutputInfo> outputs{{.name = "x_m", .unit = "m"}, {.name = "y_m", .unit = "m"}};
+  const Eigen::Vector2d residuals(0.02, 0.03);
+  CHECK(std::isnan(process_ratio(outputs, residuals)));
+  outputs[0].process_noise = 0.02;
+  CHECK(std::isnan(process_ratio(outputs, residuals)));
+  outputs[1].process_noise = 0.02;
+  CHECK(process_ratio(outputs, residuals) == doctest::Approx(2.25));
+}
+
 TEST_CASE("where the noise is unknown no recording is beyond it") {
   CHECK_FALSE(marked(100, 1e4, std::numeric_limits<double>::quiet_NaN()));
 }

@@ -12,14 +12,14 @@
 namespace surefoot::diagnosis {
 
 /// Rows of a recording, on average.
-SUREFOOT_INLINE double mean_rows(const BoundSimulator& bound, const std::vector<std::size_t>& recordings) {
+SUREFOOT_ONCE double mean_rows(const BoundSimulator& bound, const std::vector<std::size_t>& recordings) {
   double rows = 0;
   for (const std::size_t r : recordings) rows += static_cast<double>(bound.recordings[r].rows());
   return rows / static_cast<double>(std::max<std::size_t>(1, recordings.size()));
 }
 
-SUREFOOT_INLINE Fit guided_fit(const BoundSimulator& bound, Fit best, const Hypothesis& start,
-                               const FitProblem& problem, const Parallel& parallel) {
+SUREFOOT_ONCE Fit guided_fit(const BoundSimulator& bound, Fit best, const Hypothesis& start,
+                             const FitProblem& problem, const Parallel& parallel) {
   constexpr int iterations = 8;  // of each fit on the way: only a place to begin the next one from
   const bool measured = std::ranges::any_of(bound.structure.output_of, [](int output) { return output >= 0; });
   if (!measured || problem.integration.restart > 0) return best;

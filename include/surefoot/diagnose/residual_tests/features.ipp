@@ -15,7 +15,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE std::vector<std::string> feature_names(const BoundSimulator& bound) {
+SUREFOOT_ONCE std::vector<std::string> feature_names(const BoundSimulator& bound) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < bound.info.states.size(); ++i) {
     names.push_back(bound.info.states[i].name);
@@ -42,8 +42,8 @@ SUREFOOT_INLINE std::vector<std::string> feature_names(const BoundSimulator& bou
   return names;
 }
 
-SUREFOOT_INLINE FeatureTable make_features(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                           const std::vector<SimulatedRun>& trajectories, Eigen::Index stride) {
+SUREFOOT_ONCE FeatureTable make_features(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                         const std::vector<SimulatedRun>& trajectories, Eigen::Index stride) {
   FeatureTable table;
   table.names = feature_names(bound);
   std::vector<std::vector<double>> rows;
@@ -98,7 +98,7 @@ SUREFOOT_INLINE FeatureTable make_features(const BoundSimulator& bound, const st
   return table;
 }
 
-SUREFOOT_INLINE FeatureTable only_states(const BoundSimulator& bound, const FeatureTable& all) {
+SUREFOOT_ONCE FeatureTable only_states(const BoundSimulator& bound, const FeatureTable& all) {
   FeatureTable table{.names = {}, .values = {}, .recording = all.recording, .row = all.row};
   std::vector<Eigen::Index> kept;
   for (const StateInfo& state : bound.info.states) {

@@ -20,9 +20,9 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE Eigen::MatrixXd residual_table(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                               const std::vector<SimulatedRun>& trajectories,
-                                               const Eigen::VectorXd& sigma, const FeatureTable& table, double limit) {
+SUREFOOT_ONCE Eigen::MatrixXd residual_table(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                             const std::vector<SimulatedRun>& trajectories,
+                                             const Eigen::VectorXd& sigma, const FeatureTable& table, double limit) {
   Eigen::MatrixXd residuals = Eigen::MatrixXd::Zero(sigma.size(), table.values.cols());
   for (Eigen::Index j = 0; j < residuals.cols(); ++j) {
     const std::size_t i = table.recording[static_cast<std::size_t>(j)];
@@ -47,18 +47,18 @@ struct ParallelExecutor {
   }
 };
 
-SUREFOOT_INLINE ResidualForest train_forest(const Dataset<Eigen::Dynamic, Eigen::Dynamic>& samples, int min_leaf,
-                                            const Parallel& parallel, std::uint64_t seed) {
+SUREFOOT_ONCE ResidualForest train_forest(const Dataset<Eigen::Dynamic, Eigen::Dynamic>& samples, int min_leaf,
+                                          const Parallel& parallel, std::uint64_t seed) {
   ExtraTreesOptions options;
   options.trees = 40;
   options.min_leaf = min_leaf;
   return train_extra_trees(samples, options, ParallelExecutor{&parallel}, seed);
 }
 
-SUREFOOT_INLINE ResidualModel train_residual_model(const BoundSimulator& bound,
-                                                   const std::vector<std::size_t>& recordings,
-                                                   const std::vector<SimulatedRun>& runs, const Parallel& parallel,
-                                                   std::uint64_t seed) {
+SUREFOOT_ONCE ResidualModel train_residual_model(const BoundSimulator& bound,
+                                                 const std::vector<std::size_t>& recordings,
+                                                 const std::vector<SimulatedRun>& runs, const Parallel& parallel,
+                                                 std::uint64_t seed) {
   Eigen::Index rows = 0;
   for (const std::size_t r : recordings) rows += bound.recordings[r].rows();
   const FeatureTable table = make_features(bound, recordings, runs, std::max<Eigen::Index>(1, rows / 8000));
@@ -89,8 +89,8 @@ SUREFOOT_INLINE ResidualModel train_residual_model(const BoundSimulator& bound,
   return model;
 }
 
-SUREFOOT_INLINE SimulatedRun corrected(const BoundSimulator& bound, std::size_t recording, const SimulatedRun& run,
-                                       const ResidualModel& model) {
+SUREFOOT_ONCE SimulatedRun corrected(const BoundSimulator& bound, std::size_t recording, const SimulatedRun& run,
+                                     const ResidualModel& model) {
   if (model.forest.empty()) return run;
   if (model.outputs.size() != static_cast<std::size_t>(run.outputs.rows())) {
     throw DiagnoseError("the residual model has " + std::to_string(model.outputs.size()) +
@@ -122,12 +122,12 @@ SUREFOOT_INLINE SimulatedRun corrected(const BoundSimulator& bound, std::size_t 
   return result;
 }
 
-SUREFOOT_INLINE Comparison cross_validate_residual(const BoundSimulator& bound,
-                                                   const std::vector<std::size_t>& recordings,
-                                                   const std::vector<SimulatedRun>& runs,
-                                                   const std::vector<std::vector<std::size_t>>& folds,
-                                                   const Weighting& weighting, const Parallel& parallel,
-                                                   std::uint64_t seed) {
+SUREFOOT_ONCE Comparison cross_validate_residual(const BoundSimulator& bound,
+                                                 const std::vector<std::size_t>& recordings,
+                                                 const std::vector<SimulatedRun>& runs,
+                                                 const std::vector<std::vector<std::size_t>>& folds,
+                                                 const Weighting& weighting, const Parallel& parallel,
+                                                 std::uint64_t seed) {
   BlockLosses before, after;
   for (const std::vector<std::size_t>& fold : folds) {
     std::vector<std::size_t> held_out, others;  // places in the list of recordings

@@ -21,7 +21,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE std::vector<NoiseSeries> noise_parts(const std::vector<NoiseSeries>& series, std::size_t wanted) {
+SUREFOOT_ONCE std::vector<NoiseSeries> noise_parts(const std::vector<NoiseSeries>& series, std::size_t wanted) {
   std::vector<NoiseSeries> parts;
   for (const NoiseSeries& one : series) {
     const Eigen::Index size = one.value.size();
@@ -35,8 +35,8 @@ SUREFOOT_INLINE std::vector<NoiseSeries> noise_parts(const std::vector<NoiseSeri
   return parts;
 }
 
-SUREFOOT_INLINE std::pair<std::vector<double>, double> heldout_likelihood(const std::vector<NoiseSeries>& parts,
-                                                                          const NoiseFit& all) {
+SUREFOOT_ONCE std::pair<std::vector<double>, double> heldout_likelihood(const std::vector<NoiseSeries>& parts,
+                                                                        const NoiseFit& all) {
   constexpr std::size_t folds = 4;
   std::vector<double> blocks;
   double samples = 0;
@@ -59,8 +59,8 @@ SUREFOOT_INLINE std::pair<std::vector<double>, double> heldout_likelihood(const 
   return {blocks, samples};
 }
 
-SUREFOOT_INLINE NoiseEvidence noise_evidence(const std::vector<NoiseSeries>& parts, const NoiseFit& with,
-                                             const NoiseFit& without) {
+SUREFOOT_ONCE NoiseEvidence noise_evidence(const std::vector<NoiseSeries>& parts, const NoiseFit& with,
+                                           const NoiseFit& without) {
   const auto [after, samples] = heldout_likelihood(parts, with);
   const auto [before, same] = heldout_likelihood(parts, without);
   std::vector<double> gains;
@@ -73,7 +73,7 @@ SUREFOOT_INLINE NoiseEvidence noise_evidence(const std::vector<NoiseSeries>& par
   return {sum / samples, student_tail(t_value(gains), static_cast<double>(gains.size()) - 1)};
 }
 
-SUREFOOT_INLINE NoiseFit best_memory(const std::vector<NoiseSeries>& series, const NoiseFit& white) {
+SUREFOOT_ONCE NoiseFit best_memory(const std::vector<NoiseSeries>& series, const NoiseFit& white) {
   double samples = 0;
   for (const NoiseSeries& one : series) samples += static_cast<double>(one.value.size());
   const auto criterion = [&](const NoiseFit& fit) {
@@ -87,7 +87,7 @@ SUREFOOT_INLINE NoiseFit best_memory(const std::vector<NoiseSeries>& series, con
   return best;
 }
 
-SUREFOOT_INLINE double typical_speed(const std::vector<NoiseSeries>& series) {
+SUREFOOT_ONCE double typical_speed(const std::vector<NoiseSeries>& series) {
   double sum = 0, count = 0;
   for (const NoiseSeries& one : series) {
     sum += surefoot::detail::sum_of_squares(one.speed);
@@ -96,9 +96,9 @@ SUREFOOT_INLINE double typical_speed(const std::vector<NoiseSeries>& series) {
   return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
-SUREFOOT_INLINE std::vector<NoiseFinding> find_noise(const std::vector<NoiseSeries>& series, const OutputInfo& output,
-                                                     SimulatorKind kind, std::size_t tests,
-                                                     const NoiseCriteria& criteria) {
+SUREFOOT_ONCE std::vector<NoiseFinding> find_noise(const std::vector<NoiseSeries>& series, const OutputInfo& output,
+                                                   SimulatorKind kind, std::size_t tests,
+                                                   const NoiseCriteria& criteria) {
   const std::vector<NoiseSeries> parts = noise_parts(series, 8);
   if (parts.size() < 4) return {};
   const std::string time_unit = kind == SimulatorKind::ode ? "s" : "rows";
@@ -153,8 +153,8 @@ SUREFOOT_INLINE std::vector<NoiseFinding> find_noise(const std::vector<NoiseSeri
   return findings;
 }
 
-SUREFOOT_INLINE NoiseSeries noise_series(const BoundSimulator& bound, std::size_t r, const SimulatedRun& run,
-                                         Eigen::Index output, double size, bool stepwise) {
+SUREFOOT_ONCE NoiseSeries noise_series(const BoundSimulator& bound, std::size_t r, const SimulatedRun& run,
+                                       Eigen::Index output, double size, bool stepwise) {
   const Recording& recording = bound.recordings[r];
   const std::vector<Cell> cells = cells_of(recording);
   const Eigen::VectorXd off = raw_residuals(bound, r, run, cells);
@@ -186,8 +186,8 @@ SUREFOOT_INLINE NoiseSeries noise_series(const BoundSimulator& bound, std::size_
   return series;
 }
 
-SUREFOOT_INLINE double equal_readings(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                      Eigen::Index output) {
+SUREFOOT_ONCE double equal_readings(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                    Eigen::Index output) {
   double equal = 0, count = 0;
   for (const std::size_t r : recordings) {
     const Eigen::VectorXd y = surefoot::detail::row_of(bound.recordings[r].outputs, output);
@@ -200,9 +200,9 @@ SUREFOOT_INLINE double equal_readings(const BoundSimulator& bound, const std::ve
   return count > 0 ? equal / count : 1;
 }
 
-SUREFOOT_INLINE std::vector<NoiseFinding> find_noise(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                                     const std::vector<std::size_t>& recordings, NoiseKind noise,
-                                                     const Parallel& parallel) {
+SUREFOOT_ONCE std::vector<NoiseFinding> find_noise(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                   const std::vector<std::size_t>& recordings, NoiseKind noise,
+                                                   const Parallel& parallel) {
   if (noise == NoiseKind::final_pose) return {};
   constexpr Eigen::Index most = 6000;  // samples of an output; more tell nothing new
   std::vector<std::size_t> some;

@@ -17,9 +17,9 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE std::vector<Eigen::MatrixXd> left_unpredicted(const std::vector<FeatureTable>& tables,
-                                                              const std::vector<Eigen::MatrixXd>& residuals,
-                                                              const Parallel& parallel, std::uint64_t seed) {
+SUREFOOT_ONCE std::vector<Eigen::MatrixXd> left_unpredicted(const std::vector<FeatureTable>& tables,
+                                                            const std::vector<Eigen::MatrixXd>& residuals,
+                                                            const Parallel& parallel, std::uint64_t seed) {
   std::vector<Eigen::MatrixXd> left = residuals;
   parallel(tables.size(), [&](std::size_t f) {
     Eigen::Index count = 0, at = 0;
@@ -47,8 +47,8 @@ SUREFOOT_INLINE std::vector<Eigen::MatrixXd> left_unpredicted(const std::vector<
   return left;
 }
 
-SUREFOOT_INLINE Comparison most_predicted(const std::vector<Eigen::MatrixXd>& residuals,
-                                          const std::vector<Eigen::MatrixXd>& left, double limit) {
+SUREFOOT_ONCE Comparison most_predicted(const std::vector<Eigen::MatrixXd>& residuals,
+                                        const std::vector<Eigen::MatrixXd>& left, double limit) {
   const Eigen::Index outputs = residuals.empty() ? 0 : residuals.front().rows();
   std::vector<BlockLosses> before(static_cast<std::size_t>(outputs)), after = before;
   for (std::size_t f = 0; f < residuals.size(); ++f) {
@@ -66,10 +66,10 @@ SUREFOOT_INLINE Comparison most_predicted(const std::vector<Eigen::MatrixXd>& re
   return best;
 }
 
-SUREFOOT_INLINE Comparison residual_predictability(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                                   const FitProblem& problem,
-                                                   const std::vector<std::vector<std::size_t>>& folds,
-                                                   const Parallel& parallel, std::uint64_t seed) {
+SUREFOOT_ONCE Comparison residual_predictability(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                 const FitProblem& problem,
+                                                 const std::vector<std::vector<std::size_t>>& folds,
+                                                 const Parallel& parallel, std::uint64_t seed) {
   constexpr double samples = 6000;
   const double limit = problem.weighting.robust;
   double rows = 1;

@@ -3,9 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/recording_error.hpp"
+#include "surefoot/diagnose/estimation/residuals.hpp"
 #include "surefoot/diagnose/residual_tests/predictability.hpp"
 #include "surefoot/diagnose/residual_tests/walking/sequence_residual.hpp"
 #include "surefoot/diagnose/residual_tests/walking/slip_by_place.hpp"
@@ -13,6 +18,28 @@
 #include "surefoot/diagnose/verdict/evidence.hpp"
 
 namespace surefoot::diagnosis {
+
+SUREFOOT_ONCE double process_ratio(const std::vector<OutputInfo>& outputs, const Eigen::VectorXd& residuals) {
+  double largest = 0;
+  for (std::size_t k = 0; k < outputs.size(); ++k) {
+    const double by_chance = outputs[k].process_noise;
+    if (!(by_chance > 0)) return std::numeric_limits<double>::quiet_NaN();
+    const double ratio = residuals[static_cast<Eigen::Index>(k)] / by_chance;
+    largest = std::max(largest, ratio * ratio);
+  }
+  return largest;
+}
+
+SUREFOOT_ONCE void compare_with_process_noise(const EstimationSetup& setup,
+                                              const std::vector<SimulatedRun>& training_runs,
+                                              VerdictEvidence& evidence) {
+  if (setup.noise != NoiseKind::process) return;
+  const auto& outputs = setup.bound.info.outputs;
+  evidence.process_ratio = process_ratio(outputs, residual_sizes(setup.bound, setup.split.training, training_runs));
+  double cells = 0;
+  for (const double count : cell_counts(setup.bound, setup.split.training)) cells += count;
+  evidence.process_rows = cells / static_cast<double>(outputs.size());
+}
 
 SUREFOOT_ONCE VerdictEvidence gather_evidence(const EstimationSetup& setup, const FittedModels& models,
                                               const Diagnosis& diagnosis, const Comparison& calibration,
@@ -33,6 +60,7 @@ SUREFOOT_ONCE VerdictEvidence gather_evidence(const EstimationSetup& setup, cons
     evidence.sequence_p_value = sequence_structure(bound, chosen.hypothesis, setup.problem, folds, parallel).p_value;
     return evidence;
   }
+  compare_with_process_noise(setup, chosen.runs.training, evidence);
   evidence.structure_p_value = chosen.mismatch.p_value;
   evidence.structure_share = chosen.mismatch.share;
   const double before = calibrated.mismatch.energy;
