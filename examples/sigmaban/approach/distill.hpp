@@ -25,6 +25,7 @@ struct DistillOptions {
   int horizon = 50;           // [transitions] of each run
   double exploration = 0.02;  // chance per step of a run to hold a random action for 1 to 3 steps
   int min_leaf = 30;          // fewest states in a leaf
+  int draws = 4;              // thresholds tried per input: a single tree has no others to average bad splits with
 };
 
 /// What the larger policy does where it goes: features in, actions out.
@@ -65,6 +66,7 @@ surefoot::ForestPolicy<P> imitate(const P& problem,
   tree.trees = 1;
   tree.max_leaves = leaves;
   tree.min_leaf = options.min_leaf;
+  tree.draws = options.draws;
   tree.threshold_rule = surefoot::ThresholdRule::balanced;
   return {problem, surefoot::train_extra_trees<surefoot::LinearLeaf>(demonstrations, tree, executor, seed)};
 }
