@@ -105,9 +105,9 @@ TEST_CASE("a late actuator inside a control loop is proposed where it is") {
 }
 
 TEST_CASE("beside another effect, one without a strength counts as it was tried") {
-  const Bench b = bench({{"input_delay", "duty", {}, {}, {0.06}}});
+  const Bench b = bench({{"rate_limit", "duty", {}, {}, {2}}});
   auto candidates = attachments(b.bound, all_effects(), distinct_inputs(b.bound, b.base, {0, 1}, b.runs));
-  std::erase_if(candidates, [](const AttachedEffect& one) { return one.label() != "input_delay at duty"; });
+  std::erase_if(candidates, [](const AttachedEffect& one) { return one.label() != "rate_limit at duty"; });
   const auto proposals = propose(b.bound, b.base, b.problem, candidates, serially());
   REQUIRE(proposals.size() == 1);
   for (const Proposal& one : proposals) {
