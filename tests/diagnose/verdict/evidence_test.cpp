@@ -64,15 +64,29 @@ TEST_CASE("a recording is beyond the noise if its error is large, and surely so"
   CHECK_FALSE(marked(0.1, 1e4));
 }
 
-TEST_CASE(
-    "rows are compared with the stated process noise, the worst output counts, and nothing where one is not stated") {
-  std::vector<OutputInfo> outputs{{.name = "x_m", .unit = "m"}, {.name = "y_m", .unit = "m"}};
-  const Eigen::Vector2d residuals(0.02, 0.03);
-  CHECK(std::isnan(process_ratio(outputs, residuals)));
-  outputs[0].process_noise = 0.02;
-  CHECK(std::isnan(process_ratio(outputs, residuals)));
-  outputs[1].process_noise = 0.02;
-  CHECK(process_ratio(outputs, residuals) == doctest::Approx(2.25));
+TEST_CASE("a mean square at the least is lower where rows are few, and where recordings differ") {
+  const auto of_equal = [](double rows, double deviations) {
+    return least_mean_square({4, 4, 4, 4}, {rows, rows, rows, rows}, deviations);
+  };
+  CHECK(of_equal(100, 0) == 4);
+  CHECK(of_equal(100, 3) == doctest::Approx(4 * (1 - 3 * std::sqrt(4 / 400.0))));
+  CHECK(of_equal(400, 3) > of_equal(100, 3));
+  CHECK(least_mean_square({1, 1, 1, 13}, {100, 100, 100, 100}, 1) < 0.5);  // one recording may be all of it
+  CHECK(least_mean_square({4}, {1e6}, 1) == doctest::Approx(4).epsilon(0.01));
+}
+
+TEST_CASE("the process noise says nothing of measurement noise, and nothing where it is not stated") {
+  EstimationSetup setup = toys::tank_setup(toys::noisy_tanks({}, 0.01));
+  const FittedModel model = fitted_model(setup, nominal_hypothesis(setup.bound), serially());
+  for (OutputInfo& output : setup.bound.info.outputs) output.process_noise = 0.01;
+  CHECK(std::isnan(process_ratio(setup, model.runs.training, {})));
+  setup.noise = NoiseKind::process;
+  const double ratio = process_ratio(setup, model.runs.training, {});
+  CHECK(ratio < 1.1);
+  for (OutputInfo& output : setup.bound.info.outputs) output.process_noise = 0.005;
+  CHECK(process_ratio(setup, model.runs.training, {}) == doctest::Approx(4 * ratio));
+  setup.bound.info.outputs[0].process_noise = std::numeric_limits<double>::quiet_NaN();
+  CHECK(std::isnan(process_ratio(setup, model.runs.training, {})));
 }
 
 TEST_CASE("where the noise is unknown no recording is beyond it") {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -80,8 +81,12 @@ WalkLoopOptions loop_options(const WalkRun& options, const RobotJoints& robot, c
   return loop;
 }
 
-template <class Protocol, class Problem, class Policy, BallSource Ball>
-WalkOutcome walk(const Problem& problem, const Policy& policy, Ball& ball, const WalkRun& options,
+/// A policy of any kind: one type, so that a walk is compiled once for all.
+template <class Problem>
+using Decide = std::function<typename Problem::Action(const typename Problem::State&)>;
+
+template <class Protocol, class Problem, BallSource Ball>
+WalkOutcome walk(const Problem& problem, const Decide<Problem>& policy, Ball& ball, const WalkRun& options,
                  const RobotJoints& robot, WalkLog& log, StopSignals& signals) {
   const bool realtime = dynamixel::ask_for_realtime();
   const WalkLoopOptions loop = loop_options(options, robot, problem.constants.max_acceleration);
@@ -112,19 +117,16 @@ WalkOutcome walk(const Problem& problem, const Policy& policy, Ball& ball, const
 template <class Problem>
 WalkOutcome run_problem(const Problem& problem, const WalkRun& options) {
   const RobotJoints robot = options.joints_file.empty() ? default_joints() : read_joints(options.joints_file);
-  const AnyPolicyOf<Problem> policy = load_policy_option(problem, options.policy, options.motion);
+  const Decide<Problem> policy = std::visit(
+      [](auto loaded) -> Decide<Problem> { return loaded; }, load_policy_option(problem, options.policy, options.motion));
   StopSignals signals;
   std::vector<std::string> names;
   for (const dynamixel::Joint& joint : robot.joints) names.push_back(joint.name);
   WalkLog log(options.log, names);
   WalkOutcome outcome;
   const auto go = [&](auto& ball) {
-    outcome = std::visit(
-        [&](const auto& p) {
-          return options.protocol == 1 ? walk<dynamixel::Protocol1>(problem, p, ball, options, robot, log, signals)
-                                       : walk<dynamixel::Protocol2>(problem, p, ball, options, robot, log, signals);
-        },
-        policy);
+    outcome = options.protocol == 1 ? walk<dynamixel::Protocol1>(problem, policy, ball, options, robot, log, signals)
+                                    : walk<dynamixel::Protocol2>(problem, policy, ball, options, robot, log, signals);
   };
   if (options.ball_from.empty()) {
     SimulatedBall<Problem> ball(problem, simulated_start(problem, options), surefoot::Rng(options.seed, 2));

@@ -10,7 +10,7 @@ namespace surefoot::effects {
 inline Effect input_asymmetry() {
   return {
       .name = "input_asymmetry",
-      .sentence = "{at} acts more to the positive side, by {asymmetry} of its value, and less to the negative",
+      .sentence = "an asymmetry of {asymmetry} at {at}, by which its positive values act more and its negative ones less",
       .place = Place::input,
       .parameters = parameters_of(
           {{.name = "asymmetry", .measure = {}, .low = -0.95, .high = 0.95, .starts = {0.003, 0.1}, .strength = true}}),

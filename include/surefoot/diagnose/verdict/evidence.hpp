@@ -1,7 +1,6 @@
 // Evidence for a verdict, measured on fitted models.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
@@ -13,13 +12,14 @@ namespace surefoot::diagnosis {
 /// Marks the held-out recordings of a diagnosis, whose errors are known, that are further off than noise explains.
 void mark_beyond_noise(Diagnosis& diagnosis, const VerdictCriteria& verdict);
 
-/// VerdictEvidence::process_ratio from the root mean squares of rows' errors by output, where each row is predicted
-/// from the readings of the row before.
-double process_ratio(const std::vector<OutputInfo>& outputs, const Eigen::VectorXd& residuals);
+/// The mean square of errors, so many standard deviations below what was found: `squares` has the mean square of each
+/// recording, and `rows` how many errors that is of. Recordings differ by more than their rows' number lets expect,
+/// since errors of a recording go together.
+double least_mean_square(const std::vector<double>& squares, const std::vector<double>& rows, double deviations);
 
-/// Sets process_ratio and process_rows from runs of the training recordings; nothing for other kinds of noise.
-void compare_with_process_noise(const EstimationSetup& setup, const std::vector<SimulatedRun>& training_runs,
-                                VerdictEvidence& evidence);
+/// VerdictEvidence::process_ratio from runs of the training recordings, each row predicted from the readings before.
+double process_ratio(const EstimationSetup& setup, const std::vector<SimulatedRun>& training_runs,
+                     const VerdictCriteria& criteria);
 
 /// `diagnosis` has its errors already; `calibration` compares the nominal with the calibrated model. Tests that take
 /// long are made only while nothing else says that something is left unexplained.

@@ -9,36 +9,55 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
-#include "surefoot/diagnose/estimation/recording_error.hpp"
-#include "surefoot/diagnose/estimation/residuals.hpp"
 #include "surefoot/diagnose/residual_tests/predictability.hpp"
 #include "surefoot/diagnose/residual_tests/walking/sequence_residual.hpp"
 #include "surefoot/diagnose/residual_tests/walking/slip_by_place.hpp"
 #include "surefoot/diagnose/residual_tests/whiteness.hpp"
 #include "surefoot/diagnose/verdict/evidence.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_ONCE double process_ratio(const std::vector<OutputInfo>& outputs, const Eigen::VectorXd& residuals) {
-  double largest = 0;
-  for (std::size_t k = 0; k < outputs.size(); ++k) {
-    const double by_chance = outputs[k].process_noise;
-    if (!(by_chance > 0)) return std::numeric_limits<double>::quiet_NaN();
-    const double ratio = residuals[static_cast<Eigen::Index>(k)] / by_chance;
-    largest = std::max(largest, ratio * ratio);
+SUREFOOT_ONCE double least_mean_square(const std::vector<double>& squares, const std::vector<double>& rows,
+                                       double deviations) {
+  double sum = 0, all = 0;
+  for (std::size_t r = 0; r < squares.size(); ++r) {
+    sum += rows[r] * squares[r];
+    all += rows[r];
   }
-  return largest;
+  const double mean = sum / std::max(all, 1.0);
+  double between = 0;  // variance of the mean, as recordings differ
+  for (std::size_t r = 0; r < squares.size(); ++r) {
+    const double share = rows[r] / std::max(all, 1.0) * (squares[r] - mean);
+    between += share * share;
+  }
+  const double by_rows = 2 * mean * mean / std::max(all, 1.0);  // as rows differ, if they are independent
+  const double both = 2 * std::max(between, by_rows);           // the noise was learned from as many
+  return mean - deviations * std::sqrt(both);
 }
 
-SUREFOOT_ONCE void compare_with_process_noise(const EstimationSetup& setup,
-                                              const std::vector<SimulatedRun>& training_runs,
-                                              VerdictEvidence& evidence) {
-  if (setup.noise != NoiseKind::process) return;
-  const auto& outputs = setup.bound.info.outputs;
-  evidence.process_ratio = process_ratio(outputs, residual_sizes(setup.bound, setup.split.training, training_runs));
-  double cells = 0;
-  for (const double count : cell_counts(setup.bound, setup.split.training)) cells += count;
-  evidence.process_rows = cells / static_cast<double>(outputs.size());
+SUREFOOT_ONCE double process_ratio(const EstimationSetup& setup, const std::vector<SimulatedRun>& training_runs,
+                                   const VerdictCriteria& criteria) {
+  if (setup.noise != NoiseKind::process) return std::numeric_limits<double>::quiet_NaN();
+  const BoundSimulator& bound = setup.bound;
+  const auto& training = setup.split.training;
+  double largest = 0;
+  for (std::size_t k = 0; k < bound.info.outputs.size(); ++k) {
+    const double by_chance = bound.info.outputs[k].process_noise;
+    if (!(by_chance > 0)) return std::numeric_limits<double>::quiet_NaN();
+    std::vector<double> squares, rows;
+    for (std::size_t i = 0; i < training.size(); ++i) {
+      const auto off = series_of(bound, training[i], training_runs[i], static_cast<Eigen::Index>(k));
+      double count = 0;  // of what was measured after the start
+      for (Eigen::Index row = 1; row < off.size(); ++row) {
+        count += std::isfinite(bound.recordings[training[i]].outputs(static_cast<Eigen::Index>(k), row)) ? 1 : 0;
+      }
+      squares.push_back(surefoot::detail::sum_of_squares(off) / std::max(count, 1.0));
+      rows.push_back(count);
+    }
+    largest = std::max(largest, least_mean_square(squares, rows, criteria.process_deviations) / (by_chance * by_chance));
+  }
+  return largest;
 }
 
 SUREFOOT_ONCE VerdictEvidence gather_evidence(const EstimationSetup& setup, const FittedModels& models,
@@ -60,7 +79,7 @@ SUREFOOT_ONCE VerdictEvidence gather_evidence(const EstimationSetup& setup, cons
     evidence.sequence_p_value = sequence_structure(bound, chosen.hypothesis, setup.problem, folds, parallel).p_value;
     return evidence;
   }
-  compare_with_process_noise(setup, chosen.runs.training, evidence);
+  evidence.process_ratio = process_ratio(setup, chosen.runs.training, verdict);
   evidence.structure_p_value = chosen.mismatch.p_value;
   evidence.structure_share = chosen.mismatch.share;
   const double before = calibrated.mismatch.energy;

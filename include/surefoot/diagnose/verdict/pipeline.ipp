@@ -172,10 +172,10 @@ SUREFOOT_ONCE SearchProblem search_problem(const EstimationSetup& setup, const C
   problem.nominal = calibration.nominal;
   problem.known = run.options.known.size();
   problem.criteria.max_effects = run.options.max_effects;
-  VerdictEvidence evidence;
-  compare_with_process_noise(setup, calibration.training_runs, evidence);
-  const bool as_it_was = within_process_noise(evidence.process_ratio, evidence.process_rows, VerdictCriteria{});
-  if (as_it_was) problem.criteria.max_effects = 0;
+  const VerdictCriteria verdict;
+  if (within_process_noise(process_ratio(setup, calibration.training_runs, verdict), verdict)) {
+    problem.criteria.max_effects = 0;  // the machine is as it was
+  }
   SearchEffort& effort = problem.effort;
   double rows = 1;  // small problems can afford a longer list
   for (const std::size_t r : training) rows += static_cast<double>(setup.bound.recordings[r].rows());

@@ -1,8 +1,6 @@
 // The verdict: a decision on plain numbers.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "surefoot/diagnose/diagnosis.hpp"
@@ -29,7 +27,7 @@ struct VerdictCriteria {
   double predictable_gain = 0.03;           // as much as an effect must gain, see SelectionCriteria
 
   double process_excess = 0.12;   // of the mean square of the stated process noise; as tolerated_share
-  double process_deviations = 3;  // of the ratio of two mean squares of so many rows, now and as it was
+  double process_deviations = 3;  // by which a mean square must be beyond that, so that chance rarely does it
 
   // Calibration changes the model:
   double calibration_gain = 0.02;  // below, the nominal parameters do as well
@@ -55,10 +53,9 @@ struct VerdictEvidence {
   double noise_ratio = std::numeric_limits<double>::quiet_NaN();  // as in Diagnosis
   int recordings_beyond_noise = 0;
 
-  /// Mean square of the errors of single rows over that of the stated process noise, of the output where it is
-  /// largest; NaN where none is stated.
+  /// Mean square of the errors of single rows, at the least, over that of the stated process noise, of the output where
+  /// this is largest; NaN where none is stated or noise does not accumulate.
   double process_ratio = std::numeric_limits<double>::quiet_NaN();
-  double process_rows = 0;  // of which an output was measured
 
   double sequence_p_value = 1;
   PredictionEvidence prediction;  // of errors of single steps, from the motion
@@ -68,11 +65,9 @@ struct VerdictEvidence {
   double calibration_t = 0;
 };
 
-/// Whether rows are off by no more than the stated process noise, as VerdictEvidence has them; a ratio of NaN: no. The
-/// mean square of n errors has the variance 2 / n, and the noise is known from as many.
-inline bool within_process_noise(double ratio, double rows, const VerdictCriteria& criteria) {
-  const double deviation = std::sqrt((2 + 2) / std::max(1.0, rows));
-  return ratio <= 1 + std::max(criteria.process_excess, criteria.process_deviations * deviation);
+/// Whether rows are off by no more than the stated process noise: VerdictEvidence::process_ratio; NaN: no.
+inline bool within_process_noise(double process_ratio, const VerdictCriteria& criteria) {
+  return process_ratio <= 1 + criteria.process_excess;
 }
 
 /// Whether the chosen model leaves more than noise.

@@ -10,10 +10,7 @@ SUREFOOT_ONCE bool is_unexplained(const VerdictEvidence& evidence, const Verdict
   if (evidence.noise == NoiseKind::final_pose) return evidence.sequence_p_value < criteria.sequence_significance;
 
   // Rows that are off by no more than was known of this machine: what can be predicted of that is no change.
-  if (evidence.noise == NoiseKind::process &&
-      within_process_noise(evidence.process_ratio, evidence.process_rows, criteria)) {
-    return false;
-  }
+  if (within_process_noise(evidence.process_ratio, criteria)) return false;
 
   const bool beside_effects = evidence.effects_found && evidence.noise != NoiseKind::process;
   const double tolerated = beside_effects ? criteria.tolerated_share_with_effects : criteria.tolerated_share;
