@@ -120,10 +120,33 @@ TEST_CASE("further effects are evaluated one by one or in pairs, as many as are 
     CHECK(log_odds(one, none, bench.problem.criteria) > 0);
   }
   CHECK(next_effects(search, none, proposals, 1, 2).size() == 1);
-  const auto pairs = next_pairs(search, none, proposals);
+  const auto pairs = next_pairs(search, none, proposals, 0);
   REQUIRE_FALSE(pairs.empty());
   CHECK(pairs.size() <= bench.problem.effort.pair_finalists);
   CHECK(names_in(pairs[best_of(pairs, bench.problem.criteria)]) == "constant_rate, sensor_drift");
+}
+
+TEST_CASE("what a further effect must explain grows with how far its parent is behind the best structure") {
+  const TankBench bench({rate_in_tank, drift_in_tank});
+  const Search search = bench.search();
+  const EvaluatedHypothesis both = bench.with({"constant_rate", "sensor_drift"}), none = bench.with({});
+  const double beside_best = needed_gain(search, both, both, 1), beside_none = needed_gain(search, none, both, 1);
+  CHECK(beside_best >= 0);
+  CHECK(beside_best < 0.1);
+  CHECK(beside_none > 0.5);
+  CHECK(beside_none < 1);
+  CHECK(needed_gain(search, both, both, 4) > beside_best);
+}
+
+TEST_CASE("proposals that cannot pay get no fit, alone or in pairs") {
+  const TankBench bench({rate_in_tank, drift_in_tank});
+  const Search search = bench.search();
+  std::vector<Proposal> gains(3);
+  for (std::size_t i = 0; i < gains.size(); ++i) gains[i].gain = std::vector<double>{0.5, 0.05, 0.01}[i];
+  drop_what_cannot_pay(gains, 0.2, SearchEffort{});
+  CHECK(gains.size() == 2);
+  const EvaluatedHypothesis none = bench.with({});
+  CHECK(next_pairs(search, none, proposals_for(search, none), 10).empty());
 }
 
 TEST_CASE("the best structures come in their order, and hopeless ones are left out") {

@@ -50,12 +50,12 @@ TEST_CASE("effects attach where they make sense, and nowhere else") {
   const auto distinct = distinct_inputs(b.bound, b.base, {0, 1}, b.runs);
   CHECK(distinct == std::vector<bool>{true, true, true});
   const auto places = labels(attachments(b.bound, all_effects(), distinct));
-  for (const char* there : {"coulomb_friction at omega", "backlash at omega", "input_delay at goal",
-                            "input_delay at duty", "dead_zone at duty", "sensor_bias at theta_rad", "parameter_drift at armature"}) {
+  for (const char* there :
+       {"coulomb_friction at omega", "backlash at omega", "input_delay at goal", "input_delay at duty",
+        "dead_zone at duty", "sensor_bias at theta_rad", "parameter_drift at armature"}) {
     CHECK(has(places, there));
   }
-  for (const char* absent :
-       {"coulomb_friction at theta", "leak at theta", "leak at omega", "body_drift at planar"}) {
+  for (const char* absent : {"coulomb_friction at theta", "leak at theta", "leak at omega", "body_drift at planar"}) {
     CHECK_FALSE(has(places, absent));
   }
 }
@@ -102,6 +102,18 @@ TEST_CASE("a late actuator inside a control loop is proposed where it is") {
   const auto candidates = attachments(b.bound, all_effects(), distinct_inputs(b.bound, b.base, {0, 1}, b.runs));
   const auto proposals = propose(b.bound, b.base, b.problem, candidates, serially());
   CHECK(proposals.front().effect.label() == "input_delay at duty");
+}
+
+TEST_CASE("beside another effect, one without a strength counts as it was tried") {
+  const Bench b = bench({{"rate_limit", "duty", {}, {}, {2}}});
+  auto candidates = attachments(b.bound, all_effects(), distinct_inputs(b.bound, b.base, {0, 1}, b.runs));
+  std::erase_if(candidates, [](const AttachedEffect& one) { return one.label() != "rate_limit at duty"; });
+  const auto proposals = propose(b.bound, b.base, b.problem, candidates, serially());
+  REQUIRE(proposals.size() == 1);
+  for (const Proposal& one : proposals) {
+    CHECK(one.least_share[0] == 1);
+    CHECK(one.most_share[0] == 1);
+  }
 }
 
 TEST_CASE("where nothing is missing no proposal explains much") {

@@ -1,5 +1,5 @@
-// Children of a structure in the search: the same with one effect more, or two. Each fit starts from that of its parent;
-// many begin, the best are finished and evaluated.
+// Children of a structure in the search: the same with one effect more, or two. Each fit starts from that of its
+// parent; many begin, the best are finished and evaluated.
 #pragma once
 
 #include <cstddef>
@@ -40,6 +40,18 @@ std::vector<EvaluatedHypothesis> evaluate_children(const Search& search, const E
 /// Effects that a parent has not yet, the most promising first.
 std::vector<Proposal> proposals_for(const Search& search, const EvaluatedHypothesis& parent);
 
+/// Share of the squared residuals that `effects` more must explain to make a parent as probable as `best`, or nearly
+/// so.
+double needed_gain(const Search& search, const EvaluatedHypothesis& parent, const EvaluatedHypothesis& best,
+                   std::size_t effects);
+
+/// Leaves out proposals, or pairs of them, that would not explain `needed` even if they explained much more than their
+/// signatures say.
+template <class T>
+void drop_what_cannot_pay(std::vector<T>& proposals, double needed, const SearchEffort& effort) {
+  std::erase_if(proposals, [&](const T& one) { return one.gain * effort.underestimated < needed; });
+}
+
 /// The parent with one effect more: the best `finalists` of the first proposals, evaluated.
 std::vector<EvaluatedHypothesis> next_effects(const Search& search, const EvaluatedHypothesis& parent,
                                               std::vector<Proposal> proposals, std::size_t shortlist,
@@ -47,7 +59,7 @@ std::vector<EvaluatedHypothesis> next_effects(const Search& search, const Evalua
 
 /// The parent with two effects more.
 std::vector<EvaluatedHypothesis> next_pairs(const Search& search, const EvaluatedHypothesis& parent,
-                                            const std::vector<Proposal>& proposals);
+                                            const std::vector<Proposal>& proposals, double needed);
 
 /// The most plausible ones, best first, and none that is `hopeless` behind the best [nat].
 std::vector<EvaluatedHypothesis> best_structures(std::vector<EvaluatedHypothesis> pool, std::size_t count,

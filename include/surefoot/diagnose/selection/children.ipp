@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -48,7 +49,9 @@ SUREFOOT_ONCE Fit fit_child(const BoundSimulator& bound, const Hypothesis& paren
     if (settle) {
       FitProblem around = quick;
       around.free = Free::all_but_effects;
-      child = fit(bound, child, around, serially()).hypothesis;
+      const Fit settled = fit(bound, child, around, serially());
+      if (best.ok && !(settled.loss < parent_loss)) return;  // worse than none with all else settled: another valley
+      child = settled.hypothesis;
     }
     const Fit one = fit(bound, child, quick, serially());
     if (one.ok && one.loss < best.loss) best = one;
@@ -76,9 +79,8 @@ SUREFOOT_ONCE std::vector<Proposal> proposals_for(const Search& search, const Ev
   screened.recordings = problem.screened;
   std::vector<AttachedEffect> open;
   for (const AttachedEffect& candidate : candidates) {
-    const bool used = std::ranges::any_of(parent.hypothesis.effects, [&](const AttachedEffect& effect) {
-      return same_but_for_form(effect, candidate);
-    });
+    const bool used = std::ranges::any_of(
+        parent.hypothesis.effects, [&](const AttachedEffect& effect) { return same_but_for_form(effect, candidate); });
     if (!used) open.push_back(candidate);
   }
   std::vector<Proposal> proposals = propose(bound, parent.hypothesis, screened, open, parallel);
@@ -86,8 +88,7 @@ SUREFOOT_ONCE std::vector<Proposal> proposals_for(const Search& search, const Ev
   return proposals;
 }
 
-SUREFOOT_ONCE std::vector<EvaluatedHypothesis> finished(const Search& search, std::vector<Fit> fits,
-                                                        std::size_t keep) {
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> finished(const Search& search, std::vector<Fit> fits, std::size_t keep) {
   constexpr std::uint64_t scatter_seed = 1;
   const auto& [bound, problem, candidates, parallel] = search;
   std::erase_if(fits, [](const Fit& one) { return !one.ok; });
@@ -134,20 +135,36 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> next_effects(const Search& search
   return evaluate_children(search, parent, singles, finalists);
 }
 
+SUREFOOT_ONCE double needed_gain(const Search& search, const EvaluatedHypothesis& parent,
+                                 const EvaluatedHypothesis& best, std::size_t effects) {
+  const SelectionCriteria& criteria = search.problem.criteria;
+  const double each = std::log(static_cast<double>(std::max<std::size_t>(2, search.problem.candidates)));
+  const double cost = static_cast<double>(effects) * (each + criteria.form_cost);
+  const double behind = std::max(0.0, log_odds(best, parent, criteria)) - std::log(criteria.tie_odds);
+  double independent = 1;  // errors of the best one
+  for (Eigen::Index k = 0; k < best.errors.counts.cols(); ++k) {
+    for (Eigen::Index r = 0; r < best.errors.counts.rows(); ++r) {
+      independent += best.errors.counts(r, k) / best.errors.memory[k];
+    }
+  }
+  return 1 - std::exp(-2 * std::max(0.0, cost + behind) / independent);
+}
+
 /// The parent with two effects more.
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> next_pairs(const Search& search, const EvaluatedHypothesis& parent,
-                                                          const std::vector<Proposal>& proposals) {
+                                                          const std::vector<Proposal>& proposals, double needed) {
   const SearchEffort& effort = search.problem.effort;
+  std::vector<ProposedPair> proposed = propose_pairs(proposals, effort.pairs);
+  drop_what_cannot_pay(proposed, needed, effort);
   std::vector<std::vector<Proposal>> pairs;
-  for (ProposedPair& pair : propose_pairs(proposals, effort.pairs)) {
+  for (ProposedPair& pair : proposed) {
     pairs.push_back({std::move(pair.first), std::move(pair.second)});
   }
   return evaluate_children(search, parent, pairs, effort.pair_finalists);
 }
 
-SUREFOOT_ONCE std::vector<EvaluatedHypothesis> best_structures(std::vector<EvaluatedHypothesis> pool,
-                                                               std::size_t count, double hopeless,
-                                                               const SelectionCriteria& criteria) {
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> best_structures(std::vector<EvaluatedHypothesis> pool, std::size_t count,
+                                                               double hopeless, const SelectionCriteria& criteria) {
   std::vector<EvaluatedHypothesis> best;
   while (best.size() < count && !pool.empty()) {
     const std::size_t next = best_of(pool, criteria);

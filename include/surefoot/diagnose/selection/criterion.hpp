@@ -54,15 +54,17 @@ struct SelectionCriteria {
 
 /// How much is tried: time against thoroughness. No result is believed or refused by these.
 struct SearchEffort {
-  std::size_t shortlist = 14;         // proposals that get a fit
-  std::size_t max_shortlist = 50;     // of small problems
-  double shortlist_rows = 6000;       // of the recordings, up to which the list is longer in proportion
-  std::size_t rows = 4000;            // of the recordings that the search looks at; what it finds is fitted to all
-  std::size_t finalists = 6;          // fits of a first effect that are finished and evaluated
-  std::size_t further_finalists = 5;  // the same beside effects that were found
-  std::size_t beam = 3;               // structures that are each extended by a further effect
-  double hopeless = 15;               // [nat] behind the best one: not extended, not fitted again
-  std::size_t screening = 5;          // recordings that proposals are made from
+  std::size_t shortlist = 14;          // proposals that get a fit
+  std::size_t max_shortlist = 50;      // of small problems
+  double shortlist_rows = 6000;        // of the recordings, up to which the list is longer in proportion
+  std::size_t further_shortlist = 14;  // of these beside effects that were found: there, signatures say more
+  double underestimated = 5;           // multiple of what its signature says that an effect may explain when fitted
+  std::size_t rows = 4000;             // of the recordings that the search looks at; what it finds is fitted to all
+  std::size_t finalists = 6;           // fits of a first effect that are finished and evaluated
+  std::size_t further_finalists = 5;   // the same beside effects that were found
+  std::size_t beam = 3;                // structures that are each extended by a further effect
+  double hopeless = 15;                // [nat] behind the best one: not extended, not fitted again
+  std::size_t screening = 5;           // recordings that proposals are made from
   std::size_t screening_final_poses = 1000;  // the same where each has a pose only
   int first_iterations = 4;                  // of a fit, before the weakest are given up
   double weak_start = 0.3;                   // of the strength that the linear guess says, if that was too bold:

@@ -56,9 +56,9 @@ SUREFOOT_ONCE std::vector<Eigen::Index> strengths_of(const Effect& effect) {
   return strengths;
 }
 
-SUREFOOT_ONCE Eigen::MatrixXd signatures(const BoundSimulator& bound, const Hypothesis& base,
-                                         const FitProblem& problem, const Eigen::VectorXd& residuals,
-                                         const AttachedEffect& candidate, const Eigen::VectorXd& start) {
+SUREFOOT_ONCE Eigen::MatrixXd signatures(const BoundSimulator& bound, const Hypothesis& base, const FitProblem& problem,
+                                         const Eigen::VectorXd& residuals, const AttachedEffect& candidate,
+                                         const Eigen::VectorXd& start) {
   const std::vector<Eigen::Index> strengths = strengths_of(*candidate.effect);
   const auto count = static_cast<Eigen::Index>(std::max<std::size_t>(1, strengths.size()));
   Eigen::MatrixXd result(residuals.size(), count);
@@ -133,6 +133,7 @@ SUREFOOT_ONCE Proposal predict_gain(const BoundSimulator& bound, const OpenResid
   Eigen::VectorXd rest = product(distinct, share);
   for (Eigen::Index i = 0; i < rest.size(); ++i) rest[i] += open.open[i];
   proposal.gain = 1 - sum_of_squares(rest) / open.energy;
+  if (strengths.empty()) proposal.least_share.setOnes();  // beside others it begins as it was tried
   const double unit = 1 / std::sqrt(open.energy);
   for (Eigen::Index i = 0; i < distinct.size(); ++i) distinct.data()[i] *= unit;
   for (double& value : against) value *= -unit * unit;

@@ -53,8 +53,8 @@ SUREFOOT_ONCE bool leaves_structure(const Search& search, const EvaluatedHypothe
   return search.problem.structured(one.hypothesis, search.problem.fit.integration);
 }
 
-/// The children of one parent into the pool of children.
-SUREFOOT_ONCE void extend(const Search& search, const EvaluatedHypothesis& parent,
+/// The children of one parent into the pool of children; no fits for what cannot come near the best structure so far.
+SUREFOOT_ONCE void extend(const Search& search, const EvaluatedHypothesis& parent, const EvaluatedHypothesis& best,
                           std::vector<EvaluatedHypothesis>& children) {
   const SearchProblem& problem = search.problem;
   const auto most = static_cast<std::size_t>(problem.criteria.max_effects);
@@ -65,26 +65,32 @@ SUREFOOT_ONCE void extend(const Search& search, const EvaluatedHypothesis& paren
                   [&](const Proposal& one) { return one.gain < problem.criteria.unstructured_proposal_gain; });
   }
   const bool first = search.effects(parent) == 0;
-  const std::size_t finalists = first ? problem.effort.finalists : problem.effort.further_finalists;
+  const SearchEffort& effort = problem.effort;
+  // the calibrated parameters may be far off, so that signatures of first effects say little
+  std::vector<Proposal> singles = proposals;
+  if (!first) drop_what_cannot_pay(singles, needed_gain(search, parent, best, 1), effort);
+  const std::size_t shortlist = first ? effort.shortlist : std::min(effort.shortlist, effort.further_shortlist);
+  const std::size_t finalists = first ? effort.finalists : effort.further_finalists;
   bool enough = false;
-  for (const EvaluatedHypothesis& child :
-       next_effects(search, parent, proposals, problem.effort.shortlist, finalists)) {
+  for (const EvaluatedHypothesis& child : next_effects(search, parent, std::move(singles), shortlist, finalists)) {
     const bool better = log_odds(child, parent, problem.criteria) > 0;
     enough = enough || (better && (!first || !leaves_structure(search, child)));
     keep_best_form(children, child, problem.criteria);
   }
   const bool room = search.effects(parent) + 2 <= most;
   if (!structured || !room || enough || problem.stopped()) return;
-  for (const EvaluatedHypothesis& child : next_pairs(search, parent, proposals)) {
+  const double needed = first ? 0 : needed_gain(search, parent, best, 2);
+  for (const EvaluatedHypothesis& child : next_pairs(search, parent, proposals, needed)) {
     keep_best_form(children, child, problem.criteria);
   }
 }
 
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> extended(const Search& search,
-                                                        const std::vector<EvaluatedHypothesis>& beam) {
+                                                        const std::vector<EvaluatedHypothesis>& beam,
+                                                        const EvaluatedHypothesis& best) {
   std::vector<EvaluatedHypothesis> children;
   for (const EvaluatedHypothesis& parent : beam) {
-    if (!search.problem.stopped()) extend(search, parent, children);
+    if (!search.problem.stopped()) extend(search, parent, best, children);
   }
   return children;
 }
@@ -97,7 +103,7 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> extended_from(Search search, Hypo
   const EvaluatedHypothesis bare = evaluate_fit(search.bound, Fit{start, 0, true}, search.problem, search.parallel);
   reweight(search, bare);
   search.problem.scatter = false;
-  extend(search, bare, children);
+  extend(search, bare, bare, children);
   return children;
 }
 
@@ -156,7 +162,7 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool) 
     const EvaluatedHypothesis best = pool[best_of(pool, criteria)];
     const auto most = static_cast<std::size_t>(criteria.max_effects);
     std::erase_if(beam, [&](const EvaluatedHypothesis& one) { return search.effects(one) >= most; });
-    std::vector<EvaluatedHypothesis> children = extended(search, beam);
+    std::vector<EvaluatedHypothesis> children = extended(search, beam, best);
     if (depth == 0) begin_elsewhere(search, children);
     for (const EvaluatedHypothesis& child : children) keep_best_form(pool, child, criteria);
     const EvaluatedHypothesis now = pool[best_of(pool, criteria)];
@@ -226,10 +232,12 @@ SUREFOOT_ONCE void swap_effects(const Search& search, std::vector<EvaluatedHypot
     keep_best_form(pool, rest, problem.criteria);
     if (search.effects(best) == 1) continue;  // its rivals were evaluated when it was chosen
     std::vector<Proposal> proposals = proposals_for(search, rest);
+    drop_what_cannot_pay(proposals, needed_gain(search, rest, best, 1), problem.effort);
     const std::string& name = best.hypothesis.effects[e].effect->name;  // the right name may be at a wrong place
     std::ranges::stable_partition(proposals, [&](const Proposal& one) { return one.effect.effect->name == name; });
     for (const EvaluatedHypothesis& other :
-         next_effects(search, rest, std::move(proposals), problem.effort.compared_shortlist,
+         next_effects(search, rest, std::move(proposals),
+                      std::min(problem.effort.compared_shortlist, problem.effort.further_shortlist),
                       problem.effort.compared_finalists)) {
       keep_best_form(pool, other, problem.criteria);
     }
