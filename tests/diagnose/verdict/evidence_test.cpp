@@ -64,15 +64,15 @@ TEST_CASE("a recording is beyond the noise if its error is large, and surely so"
   CHECK_FALSE(marked(0.1, 1e4));
 }
 
-TEST_CASE("a mean square at the least is lower where rows are few, and where recordings differ") {
-  const auto of_equal = [](double rows, double deviations) {
-    return least_mean_square({4, 4, 4, 4}, {rows, rows, rows, rows}, deviations);
+TEST_CASE("the lower bound of a mean square is lower where errors are few, and where recordings differ") {
+  const auto of_equal = [](double count, double deviations) {
+    return lower_mean_square({4 * count, 4 * count, 4 * count, 4 * count}, {count, count, count, count}, deviations);
   };
   CHECK(of_equal(100, 0) == 4);
   CHECK(of_equal(100, 3) == doctest::Approx(4 * (1 - 3 * std::sqrt(4 / 400.0))));
   CHECK(of_equal(400, 3) > of_equal(100, 3));
-  CHECK(least_mean_square({1, 1, 1, 13}, {100, 100, 100, 100}, 1) < 0.5);  // one recording may be all of it
-  CHECK(least_mean_square({4}, {1e6}, 1) == doctest::Approx(4).epsilon(0.01));
+  CHECK(lower_mean_square({100, 100, 100, 1300}, {100, 100, 100, 100}, 1) < 0.5);  // one recording may be all of it
+  CHECK(lower_mean_square({4e6}, {1e6}, 1) == doctest::Approx(4).epsilon(0.01));
 }
 
 TEST_CASE("the process noise says nothing of measurement noise, and nothing where it is not stated") {

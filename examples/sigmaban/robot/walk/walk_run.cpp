@@ -83,10 +83,10 @@ WalkLoopOptions loop_options(const WalkRun& options, const RobotJoints& robot, c
 
 /// A policy of any kind: one type, so that a walk is compiled once for all.
 template <class Problem>
-using Decide = std::function<typename Problem::Action(const typename Problem::State&)>;
+using AnyPolicyFunction = std::function<typename Problem::Action(const typename Problem::State&)>;
 
 template <class Protocol, class Problem, BallSource Ball>
-WalkOutcome walk(const Problem& problem, const Decide<Problem>& policy, Ball& ball, const WalkRun& options,
+WalkOutcome walk(const Problem& problem, const AnyPolicyFunction<Problem>& policy, Ball& ball, const WalkRun& options,
                  const RobotJoints& robot, WalkLog& log, StopSignals& signals) {
   const bool realtime = dynamixel::ask_for_realtime();
   const WalkLoopOptions loop = loop_options(options, robot, problem.constants.max_acceleration);
@@ -117,8 +117,8 @@ WalkOutcome walk(const Problem& problem, const Decide<Problem>& policy, Ball& ba
 template <class Problem>
 WalkOutcome run_problem(const Problem& problem, const WalkRun& options) {
   const RobotJoints robot = options.joints_file.empty() ? default_joints() : read_joints(options.joints_file);
-  const Decide<Problem> policy = std::visit(
-      [](auto loaded) -> Decide<Problem> { return loaded; }, load_policy_option(problem, options.policy, options.motion));
+  const AnyPolicyFunction<Problem> policy = std::visit([](auto loaded) -> AnyPolicyFunction<Problem> { return loaded; },
+                                                       load_policy_option(problem, options.policy, options.motion));
   StopSignals signals;
   std::vector<std::string> names;
   for (const dynamixel::Joint& joint : robot.joints) names.push_back(joint.name);

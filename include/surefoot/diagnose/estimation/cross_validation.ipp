@@ -13,7 +13,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_ONCE void append_losses(BlockLosses& losses, const Eigen::VectorXd& residuals, double robust) {
+SUREFOOT_INLINE void append_losses(BlockLosses& losses, const Eigen::VectorXd& residuals, double robust) {
   constexpr double diverged = 1e6;  // loss of a cell whose simulation ran away: much, but not everything
   const Eigen::Index cells = residuals.size(), blocks = blocks_of(cells);
   for (Eigen::Index b = 0; b < blocks; ++b) {
@@ -28,8 +28,8 @@ SUREFOOT_ONCE void append_losses(BlockLosses& losses, const Eigen::VectorXd& res
   losses.ends.push_back(losses.blocks.size());
 }
 
-SUREFOOT_ONCE BlockLosses block_losses(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                       const std::vector<SimulatedRun>& runs, const Weighting& weighting) {
+SUREFOOT_INLINE BlockLosses block_losses(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                         const std::vector<SimulatedRun>& runs, const Weighting& weighting) {
   BlockLosses result;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     const std::size_t r = recordings[i];
@@ -39,7 +39,7 @@ SUREFOOT_ONCE BlockLosses block_losses(const BoundSimulator& bound, const std::v
   return result;
 }
 
-SUREFOOT_ONCE double t_value(const std::vector<double>& differences) {
+SUREFOOT_INLINE double t_value(const std::vector<double>& differences) {
   constexpr double largest = 1e3;  // of differences that are all alike
   const auto n = static_cast<double>(differences.size());
   if (n < 2) return 0;
@@ -53,8 +53,8 @@ SUREFOOT_ONCE double t_value(const std::vector<double>& differences) {
                                      : 0);
 }
 
-SUREFOOT_ONCE void test_losses(const std::vector<double>& before, const std::vector<double>& after,
-                               Comparison& best) {
+SUREFOOT_INLINE void test_losses(const std::vector<double>& before, const std::vector<double>& after,
+                                 Comparison& best) {
   std::vector<double> absolute, relative;
   for (std::size_t i = 0; i < before.size(); ++i) {
     const double d = before[i] - after[i], sum = before[i] + after[i];
@@ -70,7 +70,7 @@ SUREFOOT_ONCE void test_losses(const std::vector<double>& before, const std::vec
   }
 }
 
-SUREFOOT_ONCE Comparison compare_losses(const BlockLosses& before, const BlockLosses& after) {
+SUREFOOT_INLINE Comparison compare_losses(const BlockLosses& before, const BlockLosses& after) {
   Comparison result;
   const double a = before.total(), b = after.total();
   if (before.blocks.empty() || !(a > 0)) return result;
@@ -96,10 +96,10 @@ SUREFOOT_ONCE Comparison compare_losses(const BlockLosses& before, const BlockLo
   return result;
 }
 
-SUREFOOT_ONCE std::vector<Hypothesis> fits_to_other_folds(const BoundSimulator& bound, const Hypothesis& start,
-                                                          const FitProblem& problem,
-                                                          const std::vector<std::vector<std::size_t>>& folds,
-                                                          const Parallel& parallel) {
+SUREFOOT_INLINE std::vector<Hypothesis> fits_to_other_folds(const BoundSimulator& bound, const Hypothesis& start,
+                                                            const FitProblem& problem,
+                                                            const std::vector<std::vector<std::size_t>>& folds,
+                                                            const Parallel& parallel) {
   std::vector<Hypothesis> result;
   for (const std::vector<std::size_t>& fold : folds) {
     FitProblem others = problem;

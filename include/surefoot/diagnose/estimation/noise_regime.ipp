@@ -19,8 +19,8 @@
 namespace surefoot::diagnosis {
 
 /// Errors of an output from the second row on, about their mean; 0 where nothing was measured.
-SUREFOOT_ONCE Eigen::VectorXd errors_of_steps(const BoundSimulator& bound, std::size_t r,
-                                              const SimulatedRun& trajectory, Eigen::Index output) {
+SUREFOOT_INLINE Eigen::VectorXd errors_of_steps(const BoundSimulator& bound, std::size_t r,
+                                                const SimulatedRun& trajectory, Eigen::Index output) {
   const Eigen::MatrixXd& measured = bound.recordings[r].outputs;
   const bool wrapped = bound.wrapped[static_cast<std::size_t>(output)];
   Eigen::VectorXd off(measured.cols() - 1);
@@ -34,8 +34,8 @@ SUREFOOT_ONCE Eigen::VectorXd errors_of_steps(const BoundSimulator& bound, std::
   return off;
 }
 
-SUREFOOT_ONCE Eigen::MatrixXd step_correlations(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                                const std::vector<std::size_t>& recordings) {
+SUREFOOT_INLINE Eigen::MatrixXd step_correlations(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                  const std::vector<std::size_t>& recordings) {
   Integration stepwise = bound.integration;
   stepwise.restart = 1;
   const auto outputs = static_cast<Eigen::Index>(bound.info.outputs.size());
@@ -58,7 +58,7 @@ SUREFOOT_ONCE Eigen::MatrixXd step_correlations(const BoundSimulator& bound, con
   return products;
 }
 
-SUREFOOT_ONCE bool only_final_pose(const BoundSimulator& bound) {
+SUREFOOT_INLINE bool only_final_pose(const BoundSimulator& bound) {
   if (!bound.info.planar) return false;
   for (const Recording& recording : bound.recordings) {
     for (Eigen::Index row = 1; row + 1 < recording.rows(); ++row) {
@@ -70,8 +70,8 @@ SUREFOOT_ONCE bool only_final_pose(const BoundSimulator& bound) {
   return true;
 }
 
-SUREFOOT_ONCE NoiseKind noise_kind(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                   const std::vector<std::size_t>& recordings) {
+SUREFOOT_INLINE NoiseKind noise_kind(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                     const std::vector<std::size_t>& recordings) {
   if (bound.info.kind != SimulatorKind::map) return NoiseKind::measurement;
   if (only_final_pose(bound)) return NoiseKind::final_pose;
   if (!bound.structure.all_states_measured) return NoiseKind::measurement;
@@ -90,7 +90,7 @@ SUREFOOT_ONCE NoiseKind noise_kind(const BoundSimulator& bound, const Hypothesis
 }
 
 /// Adds v v^T to `sum`.
-SUREFOOT_ONCE void add_outer_product(Eigen::MatrixXd& sum, const Eigen::VectorXd& v) {
+SUREFOOT_INLINE void add_outer_product(Eigen::MatrixXd& sum, const Eigen::VectorXd& v) {
   for (Eigen::Index j = 0; j < v.size(); ++j) {
     for (Eigen::Index i = 0; i < v.size(); ++i) sum(i, j) += v[i] * v[j];
   }
@@ -102,8 +102,8 @@ struct FinalResiduals {
   Eigen::MatrixXd by_position, by_heading, tape_position, tape_heading;  // covariances for unit variances
 };
 
-SUREFOOT_ONCE FinalResiduals final_residuals(const BoundSimulator& bound, std::size_t r,
-                                             const SimulatedRun& trajectory) {
+SUREFOOT_INLINE FinalResiduals final_residuals(const BoundSimulator& bound, std::size_t r,
+                                               const SimulatedRun& trajectory) {
   const PlanarInfo& planar = *bound.info.planar;
   const std::vector<Cell> cells = cells_of(bound.recordings[r]);
   const auto count = static_cast<Eigen::Index>(cells.size());
@@ -136,7 +136,7 @@ SUREFOOT_ONCE FinalResiduals final_residuals(const BoundSimulator& bound, std::s
 }
 
 /// For the logarithms of the four variances.
-SUREFOOT_ONCE Eigen::MatrixXd covariance_of(const FinalResiduals& s, const Eigen::VectorXd& logarithms) {
+SUREFOOT_INLINE Eigen::MatrixXd covariance_of(const FinalResiduals& s, const Eigen::VectorXd& logarithms) {
   const Eigen::VectorXd v = exponentials(logarithms);
   Eigen::MatrixXd sum(s.by_position.rows(), s.by_position.cols());
   for (Eigen::Index j = 0; j < sum.cols(); ++j) {
@@ -149,7 +149,7 @@ SUREFOOT_ONCE Eigen::MatrixXd covariance_of(const FinalResiduals& s, const Eigen
 }
 
 /// log |c| + off^T c^-1 off, for a covariance c.
-SUREFOOT_ONCE double deviance(const Eigen::MatrixXd& c, const Eigen::VectorXd& off) {
+SUREFOOT_INLINE double deviance(const Eigen::MatrixXd& c, const Eigen::VectorXd& off) {
   const auto factor = surefoot::detail::factorise_with_pivots(c);
   Eigen::VectorXd solved = off, diagonal(off.size());
   surefoot::detail::solve_factorised(factor, solved);
@@ -159,8 +159,8 @@ SUREFOOT_ONCE double deviance(const Eigen::MatrixXd& c, const Eigen::VectorXd& o
 }
 
 /// Logarithms of the four variances with the highest likelihood, by a coordinate search.
-SUREFOOT_ONCE Eigen::VectorXd most_likely_variances(const std::vector<FinalResiduals>& sequences,
-                                                    const std::vector<std::size_t>& recordings) {
+SUREFOOT_INLINE Eigen::VectorXd most_likely_variances(const std::vector<FinalResiduals>& sequences,
+                                                      const std::vector<std::size_t>& recordings) {
   const auto cost = [&](const Eigen::VectorXd& logarithms) {
     double sum = 0;
     for (const std::size_t r : recordings) {
@@ -192,10 +192,10 @@ SUREFOOT_ONCE Eigen::VectorXd most_likely_variances(const std::vector<FinalResid
   return best;
 }
 
-SUREFOOT_ONCE std::vector<Eigen::MatrixXd> final_pose_whitening(const BoundSimulator& bound,
-                                                                const Hypothesis& hypothesis,
-                                                                const std::vector<std::size_t>& recordings,
-                                                                const Integration& integration) {
+SUREFOOT_INLINE std::vector<Eigen::MatrixXd> final_pose_whitening(const BoundSimulator& bound,
+                                                                  const Hypothesis& hypothesis,
+                                                                  const std::vector<std::size_t>& recordings,
+                                                                  const Integration& integration) {
   std::vector<FinalResiduals> sequences;
   for (std::size_t r = 0; r < bound.recordings.size(); ++r) {
     sequences.push_back(final_residuals(bound, r, simulate(bound, hypothesis, r, integration)));

@@ -20,10 +20,10 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_ONCE Eigen::VectorXd mismatch_energy(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                              const std::vector<SimulatedRun>& trajectories,
-                                              const Eigen::VectorXd& sigma, const FeatureTable& table,
-                                              Eigen::Index horizon) {
+SUREFOOT_INLINE Eigen::VectorXd mismatch_energy(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                                const std::vector<SimulatedRun>& trajectories,
+                                                const Eigen::VectorXd& sigma, const FeatureTable& table,
+                                                Eigen::Index horizon) {
   Eigen::VectorXd energy = Eigen::VectorXd::Zero(table.values.cols());
   for (Eigen::Index j = 0; j < energy.size(); ++j) {
     const std::size_t i = table.recording[static_cast<std::size_t>(j)];
@@ -41,7 +41,7 @@ SUREFOOT_ONCE Eigen::VectorXd mismatch_energy(const BoundSimulator& bound, const
   return energy;
 }
 
-SUREFOOT_ONCE std::vector<std::vector<double>> deciles(const FeatureTable& table) {
+SUREFOOT_INLINE std::vector<std::vector<double>> deciles(const FeatureTable& table) {
   std::vector<std::vector<double>> result;
   for (Eigen::Index f = 0; f < table.values.rows(); ++f) {
     std::vector<double> sorted;
@@ -57,8 +57,8 @@ SUREFOOT_ONCE std::vector<std::vector<double>> deciles(const FeatureTable& table
   return result;
 }
 
-SUREFOOT_ONCE Condition best_condition(const FeatureTable& table, const std::vector<std::vector<double>>& cuts,
-                                       const Eigen::VectorXd& energy, const std::vector<bool>& inside) {
+SUREFOOT_INLINE Condition best_condition(const FeatureTable& table, const std::vector<std::vector<double>>& cuts,
+                                         const Eigen::VectorXd& energy, const std::vector<bool>& inside) {
   Condition best;
   double all = 0, count = 0;
   for (Eigen::Index j = 0; j < energy.size(); ++j) {
@@ -90,15 +90,15 @@ SUREFOOT_ONCE Condition best_condition(const FeatureTable& table, const std::vec
   return best;
 }
 
-SUREFOOT_ONCE std::string in_words(const FeatureTable& table, const Condition& condition) {
+SUREFOOT_INLINE std::string in_words(const FeatureTable& table, const Condition& condition) {
   char text[160];
   std::snprintf(text, sizeof text, "%s %s %.3g", table.names[static_cast<std::size_t>(condition.feature)].c_str(),
                 condition.below ? "<" : ">=", condition.threshold);
   return text;
 }
 
-SUREFOOT_ONCE std::vector<MismatchRegion> find_region(const FeatureTable& table, const Eigen::VectorXd& energy,
-                                                      int conditions, int permutations, std::uint64_t seed) {
+SUREFOOT_INLINE std::vector<MismatchRegion> find_region(const FeatureTable& table, const Eigen::VectorXd& energy,
+                                                        int conditions, int permutations, std::uint64_t seed) {
   const auto samples = static_cast<std::size_t>(energy.size());
   if (samples < 50 || !(energy.sum() > 0)) return {};
   const auto cuts = deciles(table);
@@ -156,10 +156,10 @@ SUREFOOT_ONCE std::vector<MismatchRegion> find_region(const FeatureTable& table,
   return {region};
 }
 
-SUREFOOT_ONCE std::vector<MismatchInterval> find_intervals(const BoundSimulator& bound,
-                                                           const std::vector<std::size_t>& recordings,
-                                                           const FeatureTable& table, const Eigen::VectorXd& energy,
-                                                           std::size_t count) {
+SUREFOOT_INLINE std::vector<MismatchInterval> find_intervals(const BoundSimulator& bound,
+                                                             const std::vector<std::size_t>& recordings,
+                                                             const FeatureTable& table, const Eigen::VectorXd& energy,
+                                                             std::size_t count) {
   std::vector<MismatchInterval> all;
   const double total = energy.sum();
   if (!(total > 0)) return all;

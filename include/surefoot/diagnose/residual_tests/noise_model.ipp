@@ -78,7 +78,7 @@ SUREFOOT_INLINE double climb(const NoiseCoordinates& coordinates, const std::vec
   return most;
 }
 
-SUREFOOT_ONCE Eigen::MatrixXd inverse_of_small(Eigen::MatrixXd a) {
+SUREFOOT_INLINE Eigen::MatrixXd inverse_of_small(Eigen::MatrixXd a) {
   const Eigen::Index n = a.rows();
   Eigen::MatrixXd result = Eigen::MatrixXd::Identity(n, n);
   for (Eigen::Index k = 0; k < n; ++k) {  // a = P L U, in place; the same exchanges of rows in the result
@@ -109,7 +109,7 @@ SUREFOOT_ONCE Eigen::MatrixXd inverse_of_small(Eigen::MatrixXd a) {
   return result;
 }
 
-SUREFOOT_ONCE NoiseFit fit_noise(const std::vector<NoiseSeries>& series, ResidualNoiseShape shape) {
+SUREFOOT_INLINE NoiseFit fit_noise(const std::vector<NoiseSeries>& series, ResidualNoiseShape shape) {
   const NoiseCoordinates coordinates(shape, series);
   NoiseFit best{.shape = shape};
   if (!(coordinates.count() > 0)) return best;
@@ -162,7 +162,7 @@ SUREFOOT_ONCE NoiseFit fit_noise(const std::vector<NoiseSeries>& series, Residua
   return best;
 }
 
-SUREFOOT_ONCE ResidualNoise refit_noise(const std::vector<NoiseSeries>& series, const NoiseFit& near) {
+SUREFOOT_INLINE ResidualNoise refit_noise(const std::vector<NoiseSeries>& series, const NoiseFit& near) {
   const NoiseCoordinates coordinates(near.shape, series);
   if (!(coordinates.count() > 0)) return near.model;
   Eigen::VectorXd z = coordinates.at(near.model);

@@ -57,7 +57,7 @@ std::vector<EvaluatedHypothesis> next_effects(const Search& search, const Evalua
                                               std::vector<Proposal> proposals, std::size_t shortlist,
                                               std::size_t finalists);
 
-/// The parent with two effects more.
+/// The parent with two effects more; pairs must be able to explain the share `needed`.
 std::vector<EvaluatedHypothesis> next_pairs(const Search& search, const EvaluatedHypothesis& parent,
                                             const std::vector<Proposal>& proposals, double needed);
 

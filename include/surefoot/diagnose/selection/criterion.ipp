@@ -17,13 +17,13 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_ONCE std::size_t EvaluatedHypothesis::parameter_count() const {
+SUREFOOT_INLINE std::size_t EvaluatedHypothesis::parameter_count() const {
   std::size_t count = 0;
   for (const Eigen::VectorXd& values : hypothesis.values) count += static_cast<std::size_t>(values.size());
   return count;
 }
 
-SUREFOOT_ONCE double least_variance(const SearchProblem& problem) {
+SUREFOOT_INLINE double least_variance(const SearchProblem& problem) {
   double sum = 0;
   for (Eigen::Index k = 0; k < problem.scale.sigma.size(); ++k) {
     const double ratio = problem.criteria.least_error * problem.scale.sigma[k] / problem.fit.weighting.sigma[k];
@@ -32,8 +32,8 @@ SUREFOOT_ONCE double least_variance(const SearchProblem& problem) {
   return sum;
 }
 
-SUREFOOT_ONCE EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, const Fit& fitted,
-                                               const SearchProblem& problem, const Parallel& parallel) {
+SUREFOOT_INLINE EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, const Fit& fitted,
+                                                 const SearchProblem& problem, const Parallel& parallel) {
   EvaluatedHypothesis result{
       fitted.hypothesis, fitted.loss,
       error_squares(bound, fitted.hypothesis, problem.fit.recordings, problem.fit.integration, problem.scale, parallel),
@@ -43,8 +43,8 @@ SUREFOOT_ONCE EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, cons
   return result;
 }
 
-SUREFOOT_ONCE double log_prior(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t known,
-                               std::size_t candidates, const SelectionCriteria& criteria) {
+SUREFOOT_INLINE double log_prior(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t known,
+                                 std::size_t candidates, const SelectionCriteria& criteria) {
   constexpr double middle = 0.5;  // of a range
   double sum = 0;
   for (std::size_t e = known; e < hypothesis.effects.size(); ++e) {
@@ -65,7 +65,7 @@ SUREFOOT_ONCE double log_prior(const BoundSimulator& bound, const Hypothesis& hy
 }
 
 /// Mean squares over all recordings, by output.
-SUREFOOT_ONCE Eigen::VectorXd pooled(const ErrorSquares& errors) {
+SUREFOOT_INLINE Eigen::VectorXd pooled(const ErrorSquares& errors) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(errors.counts.cols());
   for (Eigen::Index k = 0; k < result.size(); ++k) {
     double sum = 0, count = 0;
@@ -78,8 +78,8 @@ SUREFOOT_ONCE Eigen::VectorXd pooled(const ErrorSquares& errors) {
   return result;
 }
 
-SUREFOOT_ONCE Eigen::VectorXd negligible_differences(const ErrorSquares& without_effects,
-                                                     const SelectionCriteria& criteria) {
+SUREFOOT_INLINE Eigen::VectorXd negligible_differences(const ErrorSquares& without_effects,
+                                                       const SelectionCriteria& criteria) {
   Eigen::VectorXd least = pooled(without_effects);
   for (double& value : least) {
     value *= criteria.form_error * criteria.form_error;
@@ -88,18 +88,18 @@ SUREFOOT_ONCE Eigen::VectorXd negligible_differences(const ErrorSquares& without
 }
 
 /// `value` nearer to zero by `margin`.
-SUREFOOT_ONCE double shrunk(double value, double margin) {
+SUREFOOT_INLINE double shrunk(double value, double margin) {
   return value > margin ? value - margin : value < -margin ? value + margin : 0;
 }
 
 /// Log density of n errors with a mean square, in units of the square of their scale, that scale being known to some
 /// degrees of freedom: Student's t; but for a constant.
-SUREFOOT_ONCE double log_density(double n, double mean_square, double degrees) {
+SUREFOOT_INLINE double log_density(double n, double mean_square, double degrees) {
   return -0.5 * (n + degrees) * std::log1p(n * mean_square / degrees);
 }
 
-SUREFOOT_ONCE std::vector<double> log_densities(const ErrorSquares& errors, const ErrorSquares& reference,
-                                                const SelectionCriteria& criteria) {
+SUREFOOT_INLINE std::vector<double> log_densities(const ErrorSquares& errors, const ErrorSquares& reference,
+                                                  const SelectionCriteria& criteria) {
   const Eigen::VectorXd scale = pooled(reference);
   std::vector<double> result(static_cast<std::size_t>(errors.counts.rows()), 0.0);
   for (Eigen::Index r = 0; r < errors.counts.rows(); ++r) {
@@ -118,8 +118,8 @@ SUREFOOT_ONCE std::vector<double> log_densities(const ErrorSquares& errors, cons
   return result;
 }
 
-SUREFOOT_ONCE std::size_t best_of(const std::vector<EvaluatedHypothesis>& evaluated,
-                                  const SelectionCriteria& criteria) {
+SUREFOOT_INLINE std::size_t best_of(const std::vector<EvaluatedHypothesis>& evaluated,
+                                    const SelectionCriteria& criteria) {
   std::size_t best = 0;
   for (std::size_t i = 1; i < evaluated.size(); ++i) {
     if (log_odds(evaluated[i], evaluated[best], criteria) > 0) best = i;
@@ -127,8 +127,8 @@ SUREFOOT_ONCE std::size_t best_of(const std::vector<EvaluatedHypothesis>& evalua
   return best;
 }
 
-SUREFOOT_ONCE double log_odds(const EvaluatedHypothesis& a, const EvaluatedHypothesis& b,
-                              const SelectionCriteria& criteria) {
+SUREFOOT_INLINE double log_odds(const EvaluatedHypothesis& a, const EvaluatedHypothesis& b,
+                                const SelectionCriteria& criteria) {
   const bool a_is_closer = a.errors.rms() < b.errors.rms();
   const ErrorSquares& reference = a_is_closer ? a.errors : b.errors;
   const auto of_a = log_densities(a.errors, reference, criteria), of_b = log_densities(b.errors, reference, criteria);
@@ -137,8 +137,8 @@ SUREFOOT_ONCE double log_odds(const EvaluatedHypothesis& a, const EvaluatedHypot
   return sum;
 }
 
-SUREFOOT_ONCE std::vector<double> probabilities(const std::vector<EvaluatedHypothesis>& evaluated,
-                                                const SelectionCriteria& criteria) {
+SUREFOOT_INLINE std::vector<double> probabilities(const std::vector<EvaluatedHypothesis>& evaluated,
+                                                  const SelectionCriteria& criteria) {
   std::vector<double> result(evaluated.size(), 0.0);
   if (evaluated.empty()) return result;
   const ErrorSquares& reference =
@@ -166,7 +166,7 @@ SUREFOOT_ONCE std::vector<double> probabilities(const std::vector<EvaluatedHypot
 }
 
 /// The effects of a hypothesis, each with its place, whatever their form.
-SUREFOOT_ONCE std::multiset<std::string> structure_of(const Hypothesis& hypothesis) {
+SUREFOOT_INLINE std::multiset<std::string> structure_of(const Hypothesis& hypothesis) {
   std::multiset<std::string> labels;
   for (const AttachedEffect& effect : hypothesis.effects) {
     labels.insert(effect.label() + "/" + std::to_string(static_cast<int>(effect.effect->place)));
@@ -174,11 +174,11 @@ SUREFOOT_ONCE std::multiset<std::string> structure_of(const Hypothesis& hypothes
   return labels;
 }
 
-SUREFOOT_ONCE bool same_structure(const Hypothesis& a, const Hypothesis& b) {
+SUREFOOT_INLINE bool same_structure(const Hypothesis& a, const Hypothesis& b) {
   return structure_of(a) == structure_of(b);
 }
 
-SUREFOOT_ONCE bool holds_idle_effect(const EvaluatedHypothesis& one, const std::vector<EvaluatedHypothesis>& pool) {
+SUREFOOT_INLINE bool holds_idle_effect(const EvaluatedHypothesis& one, const std::vector<EvaluatedHypothesis>& pool) {
   const std::multiset<std::string> effects = structure_of(one.hypothesis);
   const double error = one.errors.rms();
   for (const EvaluatedHypothesis& other : pool) {

@@ -20,7 +20,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_ONCE double root_mean_square(const Eigen::VectorXd& values) {
+SUREFOOT_INLINE double root_mean_square(const Eigen::VectorXd& values) {
   double sum = 0;
   Eigen::Index count = 0;
   for (const double value : values) {
@@ -31,7 +31,7 @@ SUREFOOT_ONCE double root_mean_square(const Eigen::VectorXd& values) {
   return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0;
 }
 
-SUREFOOT_ONCE double standard_deviation(const Eigen::VectorXd& values) {
+SUREFOOT_INLINE double standard_deviation(const Eigen::VectorXd& values) {
   double sum = 0, squares = 0;
   Eigen::Index count = 0;
   for (const double value : values) {
@@ -45,14 +45,14 @@ SUREFOOT_ONCE double standard_deviation(const Eigen::VectorXd& values) {
   return std::sqrt(std::max(0.0, squares / static_cast<double>(count) - mean * mean));
 }
 
-SUREFOOT_ONCE Eigen::VectorXd nominal_parameters(const SimulatorInfo& info) {
+SUREFOOT_INLINE Eigen::VectorXd nominal_parameters(const SimulatorInfo& info) {
   Eigen::VectorXd p(static_cast<Eigen::Index>(info.parameters.size()));
   for (std::size_t i = 0; i < info.parameters.size(); ++i) p[static_cast<Eigen::Index>(i)] = info.parameters[i].value;
   return p;
 }
 
-SUREFOOT_ONCE BoundSimulator without_functions(SimulatorInfo info, SimulatorStructure structure,
-                                               std::vector<Recording> recordings) {
+SUREFOOT_INLINE BoundSimulator without_functions(SimulatorInfo info, SimulatorStructure structure,
+                                                 std::vector<Recording> recordings) {
   constexpr double half_turn = 3.1416;  // [rad] rounded up: readings beyond it are of an angle that counts turns
   BoundSimulator bound;
   bound.info = std::move(info);

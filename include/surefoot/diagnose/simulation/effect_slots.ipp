@@ -14,15 +14,15 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_ONCE double size_at(const Sizes& sizes, const Effect& effect, std::size_t at) {
+SUREFOOT_INLINE double size_at(const Sizes& sizes, const Effect& effect, std::size_t at) {
   const std::size_t inputs = sizes.input.size();
   if (effect.place == Place::velocity || effect.place == Place::state) return sizes.state[at];
   if (effect.place != Place::input) return 1;
   return at < inputs ? sizes.input[at] : sizes.signal[at - inputs];
 }
 
-SUREFOOT_ONCE EffectSlots assign_slots(const Augmentation& augmentation, const SimulatorInfo& info,
-                                       const SimulatorStructure& structure, const Sizes& sizes) {
+SUREFOOT_INLINE EffectSlots assign_slots(const Augmentation& augmentation, const SimulatorInfo& info,
+                                         const SimulatorStructure& structure, const Sizes& sizes) {
   EffectSlots slots;
   const auto inputs = static_cast<int>(info.inputs.size());
   for (std::size_t i = 0; i < augmentation.effects.size(); ++i) {

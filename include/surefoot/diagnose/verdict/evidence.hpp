@@ -12,10 +12,10 @@ namespace surefoot::diagnosis {
 /// Marks the held-out recordings of a diagnosis, whose errors are known, that are further off than noise explains.
 void mark_beyond_noise(Diagnosis& diagnosis, const VerdictCriteria& verdict);
 
-/// The mean square of errors, so many standard deviations below what was found: `squares` has the mean square of each
-/// recording, and `rows` how many errors that is of. Recordings differ by more than their rows' number lets expect,
-/// since errors of a recording go together.
-double least_mean_square(const std::vector<double>& squares, const std::vector<double>& rows, double deviations);
+/// A lower bound of the mean square of errors, so many standard deviations below what was found, from the sum of
+/// squares and the number of errors of each recording. Recordings differ by more than these numbers let expect, since
+/// errors of a recording go together.
+double lower_mean_square(const std::vector<double>& squares, const std::vector<double>& counts, double deviations);
 
 /// VerdictEvidence::process_ratio from runs of the training recordings, each row predicted from the readings before.
 double process_ratio(const EstimationSetup& setup, const std::vector<SimulatedRun>& training_runs,

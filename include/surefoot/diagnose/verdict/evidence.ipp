@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/residuals.hpp"
 #include "surefoot/diagnose/residual_tests/predictability.hpp"
 #include "surefoot/diagnose/residual_tests/walking/sequence_residual.hpp"
 #include "surefoot/diagnose/residual_tests/walking/slip_by_place.hpp"
@@ -18,22 +19,23 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_ONCE double least_mean_square(const std::vector<double>& squares, const std::vector<double>& rows,
+SUREFOOT_ONCE double lower_mean_square(const std::vector<double>& squares, const std::vector<double>& counts,
                                        double deviations) {
   double sum = 0, all = 0;
   for (std::size_t r = 0; r < squares.size(); ++r) {
-    sum += rows[r] * squares[r];
-    all += rows[r];
+    sum += squares[r];
+    all += counts[r];
   }
-  const double mean = sum / std::max(all, 1.0);
+  all = std::max(all, 1.0);
+  const double mean = sum / all;
   double between = 0;  // variance of the mean, as recordings differ
   for (std::size_t r = 0; r < squares.size(); ++r) {
-    const double share = rows[r] / std::max(all, 1.0) * (squares[r] - mean);
-    between += share * share;
+    const double off = (squares[r] - counts[r] * mean) / all;
+    between += off * off;
   }
-  const double by_rows = 2 * mean * mean / std::max(all, 1.0);  // as rows differ, if they are independent
-  const double both = 2 * std::max(between, by_rows);           // the noise was learned from as many
-  return mean - deviations * std::sqrt(both);
+  const double by_errors = 2 * mean * mean / all;             // if all errors are independent
+  const double variance = 2 * std::max(between, by_errors);  // the noise was learned from as many
+  return mean - deviations * std::sqrt(variance);
 }
 
 SUREFOOT_ONCE double process_ratio(const EstimationSetup& setup, const std::vector<SimulatedRun>& training_runs,
@@ -45,17 +47,14 @@ SUREFOOT_ONCE double process_ratio(const EstimationSetup& setup, const std::vect
   for (std::size_t k = 0; k < bound.info.outputs.size(); ++k) {
     const double by_chance = bound.info.outputs[k].process_noise;
     if (!(by_chance > 0)) return std::numeric_limits<double>::quiet_NaN();
-    std::vector<double> squares, rows;
+    const auto output = static_cast<Eigen::Index>(k);
+    std::vector<double> squares(training.size()), counts(training.size());
     for (std::size_t i = 0; i < training.size(); ++i) {
-      const auto off = series_of(bound, training[i], training_runs[i], static_cast<Eigen::Index>(k));
-      double count = 0;  // of what was measured after the start
-      for (Eigen::Index row = 1; row < off.size(); ++row) {
-        count += std::isfinite(bound.recordings[training[i]].outputs(static_cast<Eigen::Index>(k), row)) ? 1 : 0;
-      }
-      squares.push_back(surefoot::detail::sum_of_squares(off) / std::max(count, 1.0));
-      rows.push_back(count);
+      squares[i] = surefoot::detail::sum_of_squares(series_of(bound, training[i], training_runs[i], output));
+      for (const Cell& cell : cells_of(bound.recordings[training[i]])) counts[i] += cell.output == output ? 1 : 0;
     }
-    largest = std::max(largest, least_mean_square(squares, rows, criteria.process_deviations) / (by_chance * by_chance));
+    const double square = lower_mean_square(squares, counts, criteria.process_deviations);
+    largest = std::max(largest, square / (by_chance * by_chance));
   }
   return largest;
 }

@@ -27,7 +27,7 @@ struct VerdictCriteria {
   double predictable_gain = 0.03;           // as much as an effect must gain, see SelectionCriteria
 
   double process_excess = 0.12;   // of the mean square of the stated process noise; as tolerated_share
-  double process_deviations = 3;  // by which a mean square must be beyond that, so that chance rarely does it
+  double process_deviations = 3;  // of the lower bound of a mean square, so that chance rarely is beyond that
 
   // Calibration changes the model:
   double calibration_gain = 0.02;  // below, the nominal parameters do as well
@@ -53,8 +53,8 @@ struct VerdictEvidence {
   double noise_ratio = std::numeric_limits<double>::quiet_NaN();  // as in Diagnosis
   int recordings_beyond_noise = 0;
 
-  /// Mean square of the errors of single rows, at the least, over that of the stated process noise, of the output where
-  /// this is largest; NaN where none is stated or noise does not accumulate.
+  /// Lower bound of the mean square of single rows' errors, over that of the stated process noise; of the output where
+  /// it is largest. NaN where none is stated or noise does not accumulate.
   double process_ratio = std::numeric_limits<double>::quiet_NaN();
 
   double sequence_p_value = 1;

@@ -22,8 +22,8 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_ONCE Eigen::VectorXd features_of_step(const BoundSimulator& bound, std::size_t r, const SimulatedRun& run,
-                                               Eigen::Index step, StepFeature feature, const StepScales& scales) {
+SUREFOOT_INLINE Eigen::VectorXd features_of_step(const BoundSimulator& bound, std::size_t r, const SimulatedRun& run,
+                                                 Eigen::Index step, StepFeature feature, const StepScales& scales) {
   const PlanarInfo& planar = *bound.info.planar;
   const Recording& recording = bound.recordings[r];
   const auto one = [](double value) -> Eigen::VectorXd { return Eigen::VectorXd::Constant(1, value); };
@@ -62,8 +62,8 @@ SUREFOOT_ONCE Eigen::VectorXd features_of_step(const BoundSimulator& bound, std:
   return one(10 * static_cast<double>(step % 3));
 }
 
-SUREFOOT_ONCE Eigen::MatrixXd lever_of_step(const BoundSimulator& bound, const SimulatedRun& run,
-                                            const std::vector<Cell>& cells, Eigen::Index step) {
+SUREFOOT_INLINE Eigen::MatrixXd lever_of_step(const BoundSimulator& bound, const SimulatedRun& run,
+                                              const std::vector<Cell>& cells, Eigen::Index step) {
   const PlanarInfo& planar = *bound.info.planar;
   const Eigen::Index last = run.states.cols() - 1;
   const double heading = run.states(planar.heading, step), c = std::cos(heading), s = std::sin(heading);
@@ -87,7 +87,7 @@ SUREFOOT_ONCE Eigen::MatrixXd lever_of_step(const BoundSimulator& bound, const S
   return lever;
 }
 
-SUREFOOT_ONCE Eigen::Vector3d moved_in_step(const PlanarInfo& planar, const SimulatedRun& run, Eigen::Index step) {
+SUREFOOT_INLINE Eigen::Vector3d moved_in_step(const PlanarInfo& planar, const SimulatedRun& run, Eigen::Index step) {
   const auto pose = [&](Eigen::Index row) {
     return Pose2{run.states(planar.x, row), run.states(planar.y, row), run.states(planar.heading, row)};
   };
@@ -95,8 +95,8 @@ SUREFOOT_ONCE Eigen::Vector3d moved_in_step(const PlanarInfo& planar, const Simu
 }
 
 /// Adds one * diag(variance) * sum^T to `block`.
-SUREFOOT_ONCE void add_shared_change(Eigen::MatrixXd& block, const Eigen::MatrixXd& one,
-                                     const Eigen::Vector3d& variance, const Eigen::MatrixXd& sum) {
+SUREFOOT_INLINE void add_shared_change(Eigen::MatrixXd& block, const Eigen::MatrixXd& one,
+                                       const Eigen::Vector3d& variance, const Eigen::MatrixXd& sum) {
   for (Eigen::Index j = 0; j < block.cols(); ++j) {
     for (Eigen::Index i = 0; i < block.rows(); ++i) {
       double shared = one(i, 0) * variance[0] * sum(j, 0);
@@ -106,8 +106,8 @@ SUREFOOT_ONCE void add_shared_change(Eigen::MatrixXd& block, const Eigen::Matrix
   }
 }
 
-SUREFOOT_ONCE Eigen::MatrixXd sequence_covariance(const std::vector<std::vector<WalkedStep>>& sequences,
-                                                  const Eigen::Vector3d& step_size) {
+SUREFOOT_INLINE Eigen::MatrixXd sequence_covariance(const std::vector<std::vector<WalkedStep>>& sequences,
+                                                    const Eigen::Vector3d& step_size) {
   std::vector<Eigen::Index> begin{0};
   for (const auto& steps : sequences) begin.push_back(begin.back() + (steps.empty() ? 0 : steps[0].lever.rows()));
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(begin.back(), begin.back());
@@ -137,7 +137,7 @@ SUREFOOT_ONCE Eigen::MatrixXd sequence_covariance(const std::vector<std::vector<
   return covariance;
 }
 
-SUREFOOT_ONCE double process_evidence(const Eigen::VectorXd& values, const Eigen::VectorXd& turned) {
+SUREFOOT_INLINE double process_evidence(const Eigen::VectorXd& values, const Eigen::VectorXd& turned) {
   const auto n = static_cast<double>(turned.size());
   Eigen::VectorXd squares(turned.size()), variance(turned.size()), ratio(turned.size());
   for (Eigen::Index i = 0; i < squares.size(); ++i) squares[i] = turned[i] * turned[i];
@@ -157,7 +157,7 @@ SUREFOOT_ONCE double process_evidence(const Eigen::VectorXd& values, const Eigen
 }
 
 /// factor a x; summed by as many columns at a time as Eigen takes: all if they are few, else 16, or 4 if they are long.
-SUREFOOT_ONCE Eigen::VectorXd scaled_product(double factor, const Eigen::MatrixXd& a, const Eigen::VectorXd& x) {
+SUREFOOT_INLINE Eigen::VectorXd scaled_product(double factor, const Eigen::MatrixXd& a, const Eigen::VectorXd& x) {
   constexpr Eigen::Index few = 128, long_rows = 4000;  // columns; rows of a column of 32 kB
   const Eigen::Index block = a.cols() < few ? std::max<Eigen::Index>(1, a.cols()) : a.rows() < long_rows ? 16 : 4;
   Eigen::VectorXd result = Eigen::VectorXd::Zero(a.rows());
@@ -171,9 +171,9 @@ SUREFOOT_ONCE Eigen::VectorXd scaled_product(double factor, const Eigen::MatrixX
   return result;
 }
 
-SUREFOOT_ONCE Eigen::VectorXd predict_held_out(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& residuals,
-                                               const std::vector<Eigen::Index>& known,
-                                               const std::vector<Eigen::Index>& held_out) {
+SUREFOOT_INLINE Eigen::VectorXd predict_held_out(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& residuals,
+                                                 const std::vector<Eigen::Index>& known,
+                                                 const std::vector<Eigen::Index>& held_out) {
   const auto count = static_cast<Eigen::Index>(known.size());
   Eigen::MatrixXd among(count, count);
   Eigen::VectorXd y(count);
@@ -210,8 +210,8 @@ SUREFOOT_ONCE Eigen::VectorXd predict_held_out(const Eigen::MatrixXd& covariance
   return predicted;
 }
 
-SUREFOOT_ONCE std::vector<double> permuted_evidence(const Eigen::MatrixXd& covariance,
-                                                    const Eigen::VectorXd& residuals, std::size_t sequences) {
+SUREFOOT_INLINE std::vector<double> permuted_evidence(const Eigen::MatrixXd& covariance,
+                                                      const Eigen::VectorXd& residuals, std::size_t sequences) {
   const auto count = static_cast<Eigen::Index>(sequences), length = residuals.size() / count;
   if (length * count != residuals.size()) return {};
   const surefoot::detail::SymmetricEigen eigen = surefoot::detail::eigen_of_symmetric(covariance);
@@ -233,9 +233,9 @@ SUREFOOT_ONCE std::vector<double> permuted_evidence(const Eigen::MatrixXd& covar
   return result;
 }
 
-SUREFOOT_ONCE StepScales step_scales(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                     const std::vector<std::size_t>& recordings,
-                                     const std::vector<SimulatedRun>& runs) {
+SUREFOOT_INLINE StepScales step_scales(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                       const std::vector<std::size_t>& recordings,
+                                       const std::vector<SimulatedRun>& runs) {
   const Sizes sizes = measure_sizes(bound, hypothesis, recordings, runs);
   const PlanarInfo& planar = *bound.info.planar;
   StepScales scales;
@@ -258,7 +258,7 @@ SUREFOOT_ONCE StepScales step_scales(const BoundSimulator& bound, const Hypothes
 }
 
 /// a b; one sum after the other, which for three columns is as Eigen takes them.
-SUREFOOT_ONCE Eigen::MatrixXd product_by_columns(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+SUREFOOT_INLINE Eigen::MatrixXd product_by_columns(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(a.rows(), b.cols());
   for (Eigen::Index j = 0; j < b.cols(); ++j) {
     for (Eigen::Index k = 0; k < a.cols(); ++k) {
@@ -268,7 +268,7 @@ SUREFOOT_ONCE Eigen::MatrixXd product_by_columns(const Eigen::MatrixXd& a, const
   return result;
 }
 
-SUREFOOT_ONCE bool SequenceTest::read_off(const KernelChoice& kernel, SequenceData& data) const {
+SUREFOOT_INLINE bool SequenceTest::read_off(const KernelChoice& kernel, SequenceData& data) const {
   const PlanarInfo& planar = *bound.info.planar;
   const auto& whitening = problem.weighting.whitening;
   std::vector<Eigen::VectorXd> off(order.size());
@@ -316,7 +316,7 @@ SUREFOOT_ONCE bool SequenceTest::read_off(const KernelChoice& kernel, SequenceDa
   return true;
 }
 
-SUREFOOT_ONCE Comparison SequenceTest::cross_validated(const SequenceData& data) const {
+SUREFOOT_INLINE Comparison SequenceTest::cross_validated(const SequenceData& data) const {
   const double limit = problem.weighting.robust;
   BlockLosses before, after;
   const auto folds = fold_of.empty() ? 0 : fold_of.back() + 1;
@@ -344,8 +344,8 @@ SUREFOOT_ONCE Comparison SequenceTest::cross_validated(const SequenceData& data)
   return compare_losses(before, after);
 }
 
-SUREFOOT_ONCE Comparison most_evident(std::vector<Comparison> found,
-                                      const std::vector<std::vector<double>>& evidence) {
+SUREFOOT_INLINE Comparison most_evident(std::vector<Comparison> found,
+                                        const std::vector<std::vector<double>>& evidence) {
   const auto against = [&](std::size_t job, int draw) {
     const std::vector<double>& all = evidence[job];
     double mean = 0, squared = 0;
@@ -370,10 +370,10 @@ SUREFOOT_ONCE Comparison most_evident(std::vector<Comparison> found,
   return found[best];
 }
 
-SUREFOOT_ONCE Comparison sequence_structure(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                            const FitProblem& problem,
-                                            const std::vector<std::vector<std::size_t>>& folds,
-                                            const Parallel& parallel) {
+SUREFOOT_INLINE Comparison sequence_structure(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                              const FitProblem& problem,
+                                              const std::vector<std::vector<std::size_t>>& folds,
+                                              const Parallel& parallel) {
   SequenceTest test{.bound = bound, .problem = problem};
   for (std::size_t f = 0; f < folds.size(); ++f) {
     test.order.insert(test.order.end(), folds[f].begin(), folds[f].end());

@@ -21,9 +21,9 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_ONCE std::optional<MeasuredSteps> measured_steps(const BoundSimulator& bound,
-                                                          const std::vector<std::size_t>& recordings,
-                                                          const std::vector<SimulatedRun>& runs) {
+SUREFOOT_INLINE std::optional<MeasuredSteps> measured_steps(const BoundSimulator& bound,
+                                                            const std::vector<std::size_t>& recordings,
+                                                            const std::vector<SimulatedRun>& runs) {
   if (!bound.info.planar) return std::nullopt;
   const auto output_of = [&](int state) { return bound.structure.output_of[static_cast<std::size_t>(state)]; };
   const int x = output_of(bound.info.planar->x), y = output_of(bound.info.planar->y),
@@ -59,7 +59,7 @@ SUREFOOT_ONCE std::optional<MeasuredSteps> measured_steps(const BoundSimulator& 
   return steps;
 }
 
-SUREFOOT_ONCE double sign_flip_p_value(const std::vector<double>& terms) {
+SUREFOOT_INLINE double sign_flip_p_value(const std::vector<double>& terms) {
   constexpr int draws = 4000;
   const double sum = std::accumulate(terms.begin(), terms.end(), 0.0);
   Rng rng(1);
@@ -72,8 +72,8 @@ SUREFOOT_ONCE double sign_flip_p_value(const std::vector<double>& terms) {
   return static_cast<double>(as_large) / (draws + 1);
 }
 
-SUREFOOT_ONCE Eigen::MatrixXd left_by_slip(const std::vector<MeasuredSteps>& by_fold, std::size_t fold,
-                                           std::uint64_t seed) {
+SUREFOOT_INLINE Eigen::MatrixXd left_by_slip(const std::vector<MeasuredSteps>& by_fold, std::size_t fold,
+                                             std::uint64_t seed) {
   Eigen::Index total = 0, at = 0;
   for (std::size_t g = 0; g < by_fold.size(); ++g) total += g == fold ? 0 : by_fold[g].place.cols();
   Dataset<Eigen::Dynamic, Eigen::Dynamic> known;
@@ -103,14 +103,14 @@ SUREFOOT_ONCE Eigen::MatrixXd left_by_slip(const std::vector<MeasuredSteps>& by_
   return left;
 }
 
-SUREFOOT_ONCE double squares_of_row(const Eigen::MatrixXd& a, Eigen::Index row) {
+SUREFOOT_INLINE double squares_of_row(const Eigen::MatrixXd& a, Eigen::Index row) {
   double sum = 0;
   for (Eigen::Index j = 0; j < a.cols(); ++j) sum += a(row, j) * a(row, j);
   return sum;
 }
 
 /// The same for each of three rows, the first two by four columns at a time: as Eigen sums over the rows of a matrix.
-SUREFOOT_ONCE void add_squares_of_rows(const Eigen::MatrixXd& a, Eigen::Vector3d& sums) {
+SUREFOOT_INLINE void add_squares_of_rows(const Eigen::MatrixXd& a, Eigen::Vector3d& sums) {
   for (Eigen::Index k = 0; k < 2 && a.cols() > 0; ++k) {
     const auto square = [&](Eigen::Index j) { return a(k, j) * a(k, j); };
     double sum = square(0);
@@ -122,8 +122,8 @@ SUREFOOT_ONCE void add_squares_of_rows(const Eigen::MatrixXd& a, Eigen::Vector3d
   sums[2] += squares_of_row(a, 2);
 }
 
-SUREFOOT_ONCE Comparison best_direction(const std::vector<MeasuredSteps>& by_fold,
-                                        const std::vector<Eigen::MatrixXd>& left) {
+SUREFOOT_INLINE Comparison best_direction(const std::vector<MeasuredSteps>& by_fold,
+                                          const std::vector<Eigen::MatrixXd>& left) {
   Comparison best;
   const Eigen::Index stretch = memory_of(NoiseKind::process);
   for (Eigen::Index k = 0; k < 3; ++k) {
@@ -150,9 +150,9 @@ SUREFOOT_ONCE Comparison best_direction(const std::vector<MeasuredSteps>& by_fol
   return best;
 }
 
-SUREFOOT_ONCE Comparison slip_by_place(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                       const FitProblem& problem, const std::vector<std::vector<std::size_t>>& folds,
-                                       const Parallel& parallel, std::uint64_t seed) {
+SUREFOOT_INLINE Comparison slip_by_place(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                         const FitProblem& problem, const std::vector<std::vector<std::size_t>>& folds,
+                                         const Parallel& parallel, std::uint64_t seed) {
   std::vector<MeasuredSteps> by_fold;
   Eigen::Vector3d step_square(0, 0, 0), error_square = step_square;
   double count = 0;
