@@ -30,6 +30,8 @@ struct Operation {
     not_equal,
     both,
     either,
+    smaller,  // of a and b, or NaN
+    larger,
     choice,  // b where a is true, else c
     unary,
     binary

@@ -30,15 +30,8 @@ surefoot::SimulatorInfo info_of(const ModelFile& model, const EquationPlan& plan
 
 std::vector<Formulas> one_by_one(std::span<const PlanStep> steps, std::span<double> slots) {
   std::vector<Formulas> result;
-  for (const PlanStep& step : steps) result.emplace_back(step.operations, slots);
+  for (const PlanStep& step : steps) result.emplace_back(step.operations, std::span(&step.slot, 1), slots);
   return result;
-}
-
-Formulas together(const PlanPart& part, std::span<double> slots) {
-  Operations all;
-  for (const PlanStep& let : part.lets) all.insert(all.end(), let.operations.begin(), let.operations.end());
-  all.insert(all.end(), part.operations.begin(), part.operations.end());
-  return {all, slots};
 }
 
 }  // namespace
@@ -58,13 +51,22 @@ Equations& Equations::operator=(const Equations& other) {
   return *this = std::move(copy);
 }
 
+Equations::Part Equations::part_of(const PlanPart& plan) {
+  Operations all;
+  for (const PlanStep& let : plan.lets) all.insert(all.end(), let.operations.begin(), let.operations.end());
+  all.insert(all.end(), plan.operations.begin(), plan.operations.end());
+  Part part{Formulas(all, plan.results, slots_), {}};
+  for (const int slot : plan.results) part.results.push_back(&slots_[static_cast<std::size_t>(slot)]);
+  return part;
+}
+
 void Equations::build() {
   prepare_ = Formulas(plan_->prepare, slots_);
-  whole_change_ = together(plan_->change, slots_);
+  change_ = part_of(plan_->change);
+  outputs_ = part_of(plan_->outputs);
+  efforts_ = part_of(plan_->efforts);
   lets_ = one_by_one(plan_->change.lets, slots_);
-  change_ = Formulas(plan_->change.operations, slots_);
-  outputs_ = together(plan_->outputs, slots_);
-  efforts_ = together(plan_->efforts, slots_);
+  after_lets_ = Formulas(plan_->change.operations, plan_->change.results, slots_);
 }
 
 void Equations::take_constants(const surefoot::Recording& recording) {
@@ -83,24 +85,6 @@ void Equations::prepare(const Eigen::VectorXd& p) {
   std::copy(p.data(), p.data() + std::min<Eigen::Index>(p.size(), plan_->parameters),
             slots_.data() + plan_->states + plan_->inputs);
   prepare_.evaluate();
-}
-
-Channels Equations::change(const Channels& x, const Channels& u) {
-  put(x, u);
-  whole_change_.evaluate();
-  return results(plan_->change);
-}
-
-Channels Equations::outputs(const Channels& x, const Channels& u) {
-  put(x, u);
-  outputs_.evaluate();
-  return results(plan_->outputs);
-}
-
-Channels Equations::efforts(const Channels& x, const Channels& u) {
-  put(x, u);
-  efforts_.evaluate();
-  return results(plan_->efforts);
 }
 
 }  // namespace diagnose_program

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -13,14 +13,30 @@
 #include "equation_plan.hpp"
 #include "formulas.hpp"
 #include "model_file.hpp"
+#include "surefoot/core/vec.hpp"
+#include "surefoot/diagnose/simulation/small_vectors.hpp"
 #include "surefoot/diagnose/simulator.hpp"
 
 namespace diagnose_program {
 
-/// Up to 16 numbers without memory from the heap.
-using Channels = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(most_channels), 1>;
+/// Up to 16 numbers without memory from the heap. Copied one by one: what has just been written number by number would be
+/// waited for if it were read in larger pieces.
+class Channels : public Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(most_channels), 1> {
+ public:
+  using Base = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(most_channels), 1>;
+  using Base::Base;
+  using Base::operator=;
+  Channels() = default;
+  Channels(const Channels& other) : Base(other.size()) { surefoot::diagnosis::assign(*this, other); }
+  Channels& operator=(const Channels& other) {
+    resize(other.size());
+    surefoot::diagnosis::assign(*this, other);
+    return *this;
+  }
+  ~Channels() = default;
+};
 
-/// All quantities of a model, with the parsers that compute them. A copy has memory and parsers of its own, so that
+/// All quantities of a model, with the formulas that compute them. A copy has memory and formulas of its own, so that
 /// each thread can have one.
 class Equations {
  public:
@@ -36,8 +52,8 @@ class Equations {
   void take_constants(const surefoot::Recording& recording);
   void prepare(const Eigen::VectorXd& p);
 
-  template <class Tap>
-  Channels change(const Channels& x, const Channels& u, Tap&& tap) {
+  template <class State, class Tap>
+  State change(const State& x, const Channels& u, Tap&& tap) {
     if constexpr (std::is_same_v<std::remove_cvref_t<Tap>, surefoot::NoTap>) return change(x, u);
     put(x, u);
     for (std::size_t i = 0; i < lets_.size(); ++i) {
@@ -47,47 +63,78 @@ class Equations {
       double& value = slots_[static_cast<std::size_t>(plan_->change.lets[i].slot)];
       value = tap(signal, value);
     }
-    change_.evaluate();
-    return results(plan_->change);
+    after_lets_.evaluate();
+    return results<State>(change_);
   }
 
-  Channels change(const Channels& x, const Channels& u);
-  Channels outputs(const Channels& x, const Channels& u);
-  Channels efforts(const Channels& x, const Channels& u);
+  template <class State>
+  State change(const State& x, const Channels& u) {
+    return computed<State>(change_, x, u);
+  }
+  template <class State>
+  State efforts(const State& x, const Channels& u) {
+    return computed<State>(efforts_, x, u);
+  }
+  template <class State>
+  Channels outputs(const State& x, const Channels& u) {
+    return computed<Channels>(outputs_, x, u);
+  }
 
  private:
+  /// All formulas of a part of the plan, and where its results are found.
+  struct Part {
+    Formulas formulas;
+    std::vector<const double*> results;
+  };
+
   void build();
-  void put(const Channels& x, const Channels& u) {
-    std::copy(x.data(), x.data() + x.size(), slots_.data());
-    std::copy(u.data(), u.data() + u.size(), slots_.data() + plan_->states);
-  }
-  Channels results(const PlanPart& part) const {
-    Channels values(static_cast<Eigen::Index>(part.results.size()));
-    for (std::size_t i = 0; i < part.results.size(); ++i) {
-      values[static_cast<Eigen::Index>(i)] = slots_[static_cast<std::size_t>(part.results[i])];
+  Part part_of(const PlanPart& plan);
+
+  template <class State>
+  void put(const State& x, const Channels& u) {
+    double* to = slots_.data();
+    for (const double value : x) {
+      *to++ = value;
+      std::atomic_signal_fence(std::memory_order_seq_cst);
     }
+    for (const double value : u) *to++ = value;
+  }
+  template <class Values>
+  static Values results(const Part& part) {
+    auto values = surefoot::diagnosis::unset<Values>(static_cast<Eigen::Index>(part.results.size()));
+    surefoot::diagnosis::set_each(values, [&](Eigen::Index i) { return *part.results[static_cast<std::size_t>(i)]; });
     return values;
+  }
+  template <class Values, class State>
+  Values computed(const Part& part, const State& x, const Channels& u) {
+    put(x, u);
+    part.formulas.evaluate();
+    return results<Values>(part);
   }
 
   std::shared_ptr<const surefoot::SimulatorInfo> info_;
   std::shared_ptr<const EquationPlan> plan_;
   std::vector<double> slots_;
-  Formulas prepare_, whole_change_, change_, outputs_, efforts_;
-  std::vector<Formulas> lets_;  // those that rates need, one by one, so that a tap can come between
+  Formulas prepare_;
+  Part change_, outputs_, efforts_;
+  std::vector<Formulas> lets_;  // those that rates need, one by one, so that a tap can come between,
+  Formulas after_lets_;         // and the formulas after them
 };
 
-/// Surefoot's Simulator over these equations. Not to be shared between threads; copies are.
-class OdeModel {
+/// Surefoot's Simulator over these equations: vectors of a fixed size make simulations faster. Not to be shared between
+/// threads; copies are.
+template <class StateVector>
+class OdeModelOf {
  public:
-  using State = Channels;
+  using State = StateVector;
   using Input = Channels;
   using Output = Channels;
 
-  explicit OdeModel(const ModelFile& model) : equations_(model) {}
+  explicit OdeModelOf(const ModelFile& model) : equations_(model) {}
 
   surefoot::SimulatorInfo info() const { return equations_.info(); }
-  OdeModel for_recording(const surefoot::Recording& recording) const {
-    OdeModel copy = *this;
+  OdeModelOf for_recording(const surefoot::Recording& recording) const {
+    OdeModelOf copy = *this;
     copy.equations_.take_constants(recording);
     return copy;
   }
@@ -110,6 +157,30 @@ class OdeModel {
  private:
   mutable Equations equations_;  // computing fills its slots
 };
+
+/// With any number of states.
+using OdeModel = OdeModelOf<Channels>;
+
+/// Calls use(simulator), with vectors of a fixed size where there are few states.
+template <class Use>
+auto with_ode_model(const ModelFile& model, Use&& use) {
+  switch (model.states.size()) {
+    case 1:
+      return use(OdeModelOf<surefoot::Vec<1>>(model));
+    case 2:
+      return use(OdeModelOf<surefoot::Vec<2>>(model));
+    case 3:
+      return use(OdeModelOf<surefoot::Vec<3>>(model));
+    case 4:
+      return use(OdeModelOf<surefoot::Vec<4>>(model));
+    case 5:
+      return use(OdeModelOf<surefoot::Vec<5>>(model));
+    case 6:
+      return use(OdeModelOf<surefoot::Vec<6>>(model));
+    default:
+      return use(OdeModel(model));
+  }
+}
 
 class MapModel {
  public:

@@ -9,10 +9,7 @@ namespace diagnose_program {
 namespace {
 
 using Unary = double (*)(double);
-using Binary = double (*)(double, double);
 
-double smaller(double a, double b) { return a < b || a != a ? a : b; }
-double larger(double a, double b) { return a > b || a != a ? a : b; }
 double sign(double a) { return a > 0 ? 1 : a < 0 ? -1 : a; }
 
 constexpr std::array<std::pair<std::string_view, Operation::Code>, 13> operator_codes{{
@@ -50,12 +47,6 @@ const std::array<std::pair<std::string_view, Unary>, 16> unary_functions{{
     {"sign", sign},
 }};
 
-const std::array<std::pair<std::string_view, Binary>, 3> binary_functions{{
-    {"atan2", std::atan2},
-    {"min", smaller},
-    {"max", larger},
-}};
-
 template <class Table>
 auto found(const Table& table, std::string_view name) {
   return std::find_if(table.begin(), table.end(), [name](const auto& entry) { return entry.first == name; })->second;
@@ -70,9 +61,11 @@ Operation call_of(std::string_view function, std::size_t arguments) {
   if (arguments == 1) {
     call.code = Operation::Code::unary;
     call.unary = found(unary_functions, function);
-  } else {
+  } else if (function == "atan2") {
     call.code = Operation::Code::binary;
-    call.binary = found(binary_functions, function);
+    call.binary = std::atan2;
+  } else {
+    call.code = function == "min" ? Operation::Code::smaller : Operation::Code::larger;
   }
   return call;
 }

@@ -21,8 +21,8 @@ int diagnose_model_file(const diagnose_program::CommandLine& line) {
   if (diagnose_robot::is_robot_model(line.model)) return diagnose_robot::run_robot(line);
   const ModelFile model = read_model_file(line.model);
   const Layout layout = layout_of(model);
-  return layout.ode ? diagnose_model(OdeModel(model), layout, line, model)
-                    : diagnose_model(MapModel(model), layout, line, model);
+  const auto work = [&](const auto& simulator) { return diagnose_model(simulator, layout, line, model); };
+  return layout.ode ? with_ode_model(model, work) : work(MapModel(model));
 }
 
 }  // namespace
