@@ -55,8 +55,11 @@ Equations::Part Equations::part_of(const PlanPart& plan) {
   Operations all;
   for (const PlanStep& let : plan.lets) all.insert(all.end(), let.operations.begin(), let.operations.end());
   all.insert(all.end(), plan.operations.begin(), plan.operations.end());
-  Part part{Formulas(all, plan.results, slots_), {}};
-  for (const int slot : plan.results) part.results.push_back(&slots_[static_cast<std::size_t>(slot)]);
+  Part part{Formulas(all, plan.results, slots_), {}, all.empty()};
+  for (const int slot : plan.results) {
+    part.results.push_back(&slots_[static_cast<std::size_t>(slot)]);
+    part.steady = part.steady && slot >= plan_->states + plan_->inputs;
+  }
   return part;
 }
 

@@ -19,22 +19,8 @@
 
 namespace diagnose_program {
 
-/// Up to 16 numbers without memory from the heap. Copied one by one: what has just been written number by number would be
-/// waited for if it were read in larger pieces.
-class Channels : public Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(most_channels), 1> {
- public:
-  using Base = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(most_channels), 1>;
-  using Base::Base;
-  using Base::operator=;
-  Channels() = default;
-  Channels(const Channels& other) : Base(other.size()) { surefoot::diagnosis::assign(*this, other); }
-  Channels& operator=(const Channels& other) {
-    resize(other.size());
-    surefoot::diagnosis::assign(*this, other);
-    return *this;
-  }
-  ~Channels() = default;
-};
+/// Up to 16 numbers without memory from the heap.
+using Channels = surefoot::diagnosis::SmallVector<static_cast<int>(most_channels)>;
 
 /// All quantities of a model, with the formulas that compute them. A copy has memory and formulas of its own, so that
 /// each thread can have one.
@@ -85,6 +71,7 @@ class Equations {
   struct Part {
     Formulas formulas;
     std::vector<const double*> results;
+    bool steady = false;  // the same for all states and inputs
   };
 
   void build();
@@ -107,8 +94,10 @@ class Equations {
   }
   template <class Values, class State>
   Values computed(const Part& part, const State& x, const Channels& u) {
-    put(x, u);
-    part.formulas.evaluate();
+    if (!part.steady) {
+      put(x, u);
+      part.formulas.evaluate();
+    }
     return results<Values>(part);
   }
 

@@ -12,6 +12,16 @@
 
 namespace surefoot::effects {
 
+/// 1 - exp(-steps), which all stages of a run, mostly, ask for with the same value.
+inline double gone_after(double steps) {
+  thread_local double last = 0, gone = 0;
+  if (steps != last) {
+    last = steps;
+    gone = -std::expm1(-steps);
+  }
+  return gone;
+}
+
 inline Effect first_order_lag() {
   return {.name = "first_order_lag",
           .sentence = "{at} acts with a lag of {time}",
@@ -39,13 +49,13 @@ inline Effect first_order_lag() {
               },
           .advance =
               +[](const EffectContext& m, Values p, HiddenStates hidden) {
-                if (m.step > 0) hidden[0] += -std::expm1(-m.step / p[0]) * (hidden[1] / m.step - hidden[0]);
+                if (m.step > 0) hidden[0] += gone_after(m.step / p[0]) * (hidden[1] / m.step - hidden[0]);
                 hidden[1] = 0;
               },
           .signal =
               +[](const EffectContext& m, Values p, Values hidden) {
                 const double steps = m.step / p[0];
-                const double still = steps > 1e-9 ? -std::expm1(-steps) / steps : 1.0;
+                const double still = steps > 1e-9 ? gone_after(steps) / steps : 1.0;
                 return m.value + (hidden[0] - m.value) * still;
               }};
 }

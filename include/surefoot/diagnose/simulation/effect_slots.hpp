@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "surefoot/diagnose/effects/effect.hpp"
+#include "surefoot/diagnose/simulation/small_vectors.hpp"
 #include "surefoot/diagnose/simulation/structure.hpp"
 #include "surefoot/diagnose/simulator.hpp"
 
@@ -21,7 +22,7 @@ struct Augmentation {
 inline constexpr int most_hidden = 24;
 
 /// Hidden states of all effects of a run, or their rates.
-using Hidden = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_hidden, 1>;
+using Hidden = SmallVector<most_hidden>;
 
 /// An effect where it acts.
 struct EffectSlot {
