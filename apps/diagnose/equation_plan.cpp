@@ -29,6 +29,7 @@ class Planner {
       const int slot = slot_of_[constant.name] = add(constant.meta.empty() ? constant.value : unknown, true);
       if (!constant.meta.empty()) plan_.meta.emplace_back(constant.meta, slot);
     }
+    plan_.zero = number_slot(0);
     for (const auto& let : model_.lets) add_let(let);
 
     std::vector<Formula> changes, outputs, efforts;

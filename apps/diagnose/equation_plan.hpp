@@ -60,6 +60,7 @@ struct PlanPart {
 struct EquationPlan {
   int states = 0, inputs = 0, parameters = 0;     // slots in this order from 0 on, one each
   std::vector<double> slots;                      // values that never change are in place
+  int zero = 0;                                   // slot of the number 0
   std::vector<std::pair<std::string, int>> meta;  // keys of the recording's first lines, and their slots
   Operations prepare;                             // once per set of parameters
   PlanPart change, outputs, efforts;              // rates or next values; sensors; what makes forces of rates

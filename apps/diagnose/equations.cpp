@@ -34,6 +34,27 @@ std::vector<Formulas> one_by_one(std::span<const PlanStep> steps, std::span<doub
   return result;
 }
 
+Operations together(const PlanPart& plan) {
+  Operations all;
+  for (const PlanStep& let : plan.lets) all.insert(all.end(), let.operations.begin(), let.operations.end());
+  all.insert(all.end(), plan.operations.begin(), plan.operations.end());
+  return all;
+}
+
+// Those of the operations, which come in order, that a result depends on.
+Operations needed_for(int result, const Operations& operations) {
+  std::vector<int> needed{result};
+  Operations kept;
+  for (std::size_t i = operations.size(); i-- > 0;) {
+    const Operation& one = operations[i];
+    if (std::ranges::find(needed, one.to) == needed.end()) continue;
+    needed.insert(needed.end(), {one.a, one.b, one.c});
+    kept.push_back(one);
+  }
+  std::ranges::reverse(kept);
+  return kept;
+}
+
 }  // namespace
 
 Equations::Equations(const ModelFile& model) {
@@ -51,23 +72,42 @@ Equations& Equations::operator=(const Equations& other) {
   return *this = std::move(copy);
 }
 
-Equations::Part Equations::part_of(const PlanPart& plan) {
-  Operations all;
-  for (const PlanStep& let : plan.lets) all.insert(all.end(), let.operations.begin(), let.operations.end());
-  all.insert(all.end(), plan.operations.begin(), plan.operations.end());
-  Part part{Formulas(all, plan.results, slots_), {}, all.empty()};
-  for (const int slot : plan.results) {
+Equations::Part Equations::part_of(const Operations& operations, std::vector<int> results) {
+  Part part{Formulas(operations, results, slots_), {}, operations.empty()};
+  for (const int slot : results) {
     part.results.push_back(&slots_[static_cast<std::size_t>(slot)]);
     part.steady = part.steady && slot >= plan_->states + plan_->inputs;
   }
   return part;
 }
 
+void Equations::hold(const std::vector<bool>& signals) {
+  held_ = signals;
+  rates_without_.clear();
+  const PlanPart& plan = plan_->change;
+  std::vector<int> held;  // slots
+  for (std::size_t i = 0; i < plan.lets.size(); ++i) {
+    const int signal = plan.signals[i];
+    if (signal >= 0 && signals[static_cast<std::size_t>(signal)]) held.push_back(plan.lets[i].slot);
+  }
+  const auto replace = [&](int& slot) {
+    if (std::ranges::find(held, slot) != held.end()) slot = plan_->zero;
+  };
+  Operations operations = together(plan);
+  for (Operation& one : operations) {
+    for (int* slot : {&one.a, &one.b, &one.c}) replace(*slot);
+  }
+  for (int result : plan.results) {
+    replace(result);
+    rates_without_.push_back(part_of(needed_for(result, operations), {result}));
+  }
+}
+
 void Equations::build() {
   prepare_ = Formulas(plan_->prepare, slots_);
-  change_ = part_of(plan_->change);
-  outputs_ = part_of(plan_->outputs);
-  efforts_ = part_of(plan_->efforts);
+  change_ = part_of(together(plan_->change), plan_->change.results);
+  outputs_ = part_of(together(plan_->outputs), plan_->outputs.results);
+  efforts_ = part_of(together(plan_->efforts), plan_->efforts.results);
   lets_ = one_by_one(plan_->change.lets, slots_);
   after_lets_ = Formulas(plan_->change.operations, plan_->change.results, slots_);
 }

@@ -66,6 +66,14 @@ class Equations {
     return computed<Channels>(outputs_, x, u);
   }
 
+  /// The rate of one state alone, with those signals at zero that are `held`.
+  template <class State>
+  double rate_without(const std::vector<bool>& held, int state, const State& x, const Channels& u) {
+    if (rates_without_.empty() || held != held_) hold(held);
+    const Part& rate = rates_without_[static_cast<std::size_t>(state)];
+    return computed<surefoot::Vec<1>>(rate, x, u)[0];
+  }
+
  private:
   /// All formulas of a part of the plan, and where its results are found.
   struct Part {
@@ -75,7 +83,8 @@ class Equations {
   };
 
   void build();
-  Part part_of(const PlanPart& plan);
+  void hold(const std::vector<bool>& signals);
+  Part part_of(const Operations& operations, std::vector<int> results);
 
   template <class State>
   void put(const State& x, const Channels& u) {
@@ -106,8 +115,10 @@ class Equations {
   std::vector<double> slots_;
   Formulas prepare_;
   Part change_, outputs_, efforts_;
-  std::vector<Formulas> lets_;  // those that rates need, one by one, so that a tap can come between,
-  Formulas after_lets_;         // and the formulas after them
+  std::vector<Formulas> lets_;       // those that rates need, one by one, so that a tap can come between,
+  Formulas after_lets_;              // and the formulas after them
+  std::vector<Part> rates_without_;  // by state, without the signals that are held
+  std::vector<bool> held_;
 };
 
 /// Surefoot's Simulator over these equations: vectors of a fixed size make simulations faster. Not to be shared between
@@ -135,6 +146,9 @@ class OdeModelOf {
   template <class Tap>
   State derivative(const State& x, const Input& u, const Eigen::VectorXd& /*prepared*/, Tap&& tap) const {
     return equations_.change(x, u, tap);
+  }
+  double rate_without(const std::vector<bool>& signals, int state, const State& x, const Input& u) const {
+    return equations_.rate_without(signals, state, x, u);
   }
   State effort(const State& x, const Input& u, const Eigen::VectorXd& /*prepared*/) const {
     return equations_.efforts(x, u);

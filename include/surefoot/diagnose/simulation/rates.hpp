@@ -19,10 +19,14 @@ double undriven_rate(const AugmentedSimulator<S>& m, const EffectSlot& slot, con
                      const typename S::Input& u) {
   auto undriven = copied(u);
   if (!m.driven_signals) undriven.setZero();
-  const auto no_drive = [&m](int i, double value) {
-    return m.structure.driven_signal[static_cast<std::size_t>(i)] ? 0.0 : value;
-  };
-  return evaluate(m.simulator, x, undriven, m.p, no_drive)[slot.at];
+  if constexpr (requires { m.simulator.rate_without(m.structure.driven_signal, slot.at, x, undriven); }) {
+    return m.simulator.rate_without(m.structure.driven_signal, slot.at, x, undriven);
+  } else {
+    const auto no_drive = [&m](int i, double value) {
+      return m.structure.driven_signal[static_cast<std::size_t>(i)] ? 0.0 : value;
+    };
+    return evaluate(m.simulator, x, undriven, m.p, no_drive)[slot.at];
+  }
 }
 
 /// By how much the force on a state falls as the state grows, by a difference over a tenth of its size.
