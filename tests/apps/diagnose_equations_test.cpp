@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "apps/diagnose/equations.hpp"
@@ -93,6 +94,38 @@ TEST_CASE("copies of a model do not disturb each other") {
   CHECK(moved.derivative(x, u, p) == before);
 }
 
+TEST_CASE("states of a fixed size give the bits that those of any size do") {
+  const auto file = parse_model_file(servo_model, "servo.toml");
+  const OdeModel any = OdeModel(file).for_recording(servo_bench());
+  const Eigen::VectorXd p = Eigen::Vector3d(1.6, 3.6, 0.012);
+  const Channels u = vector({0.35});
+  diagnose_program::with_ode_model(file, [&](const auto& simulator) {
+    using State = typename std::decay_t<decltype(simulator)>::State;
+    CHECK(State::RowsAtCompileTime == 2);
+    const auto fixed = simulator.for_recording(servo_bench());
+    State x;
+    x << 0.3, -0.7;
+    const Channels same = vector({0.3, -0.7});
+    CHECK(fixed.derivative(x, u, p) == any.derivative(same, u, p));
+    CHECK(fixed.effort(x, u, p) == any.effort(same, u, p));
+    CHECK(fixed.observe(x, u, p) == any.observe(same, u, p));
+  });
+}
+
+TEST_CASE("a rate without some signals is what it is with them at zero") {
+  const OdeModel model = OdeModel(parse_model_file(servo_model, "servo.toml")).for_recording(servo_bench());
+  const Eigen::VectorXd p = Eigen::Vector3d(1.6, 3.6, 0.012);
+  const Channels x = vector({0.3, -0.7}), u = vector({0.35});
+  for (const std::vector<bool>& held : {std::vector{false, false}, {true, false}, {false, true}, {true, true}}) {
+    const Channels rate = model.derivative(
+        x, u, p, [&](int i, double signal) { return held[static_cast<std::size_t>(i)] ? 0.0 : signal; });
+    CHECK(model.rate_without(held, 0, x, u) == rate[0]);
+    CHECK(model.rate_without(held, 1, x, u) == rate[1]);
+  }
+  const OdeModel copy = model;
+  CHECK(copy.rate_without({true, true}, 1, x, u) == model.rate_without({true, true}, 1, x, u));
+}
+
 TEST_CASE("a recording without a constant of the model is refused") {
   const OdeModel model(parse_model_file(servo_model, "servo.toml"));
   surefoot::Recording recording = servo_bench();
@@ -133,6 +166,30 @@ TEST_CASE("expressions mean what they mean on paper") {
   CHECK(value("sinh(c)^2 - cosh(c)^2 + tanh(0)") == doctest::Approx(-1));
   CHECK(value("asin(c) + acos(c)") == doctest::Approx(std::numbers::pi / 2));
   CHECK(value("1e-3*1E3 + .5") == 1.5);
+}
+
+TEST_CASE("two operations at once give the bits of one after the other") {
+  const auto of = [](char symbol, double left, double right) {
+    return symbol == '+' ? left + right : symbol == '-' ? left - right : symbol == '*' ? left * right : left / right;
+  };
+  const double a = 0.1, b = 0.7, c = -1.3, d = 2.9;
+  const std::string symbols = "+-*/";
+  for (const char first : symbols) {
+    for (const char second : symbols) {
+      for (const char third : symbols) {
+        const std::string inside = std::string("(theta") + first + "omega)", last(1, third);
+        std::string model =
+            diagnose_test::with(servo_model, "\"omega\"", "\"(" + inside + second + "goal)" + last + "kt\"");
+        model = diagnose_test::with(model, "\"theta\"", "\"kt" + last + "(goal" + second + inside + ")\"");
+        OdeModel equations = OdeModel(parse_model_file(model, "a.toml")).for_recording(servo_bench());
+        const Eigen::VectorXd p = Eigen::Vector3d(d, 3.6, 0.012);
+        equations.prepare(p);
+        const double inner = of(first, a, b);
+        CHECK(equations.derivative(vector({a, b}), vector({c}), p)[0] == of(third, of(second, inner, c), d));
+        CHECK(equations.observe(vector({a, b}), vector({c}), p)[0] == of(third, d, of(second, c, inner)));
+      }
+    }
+  }
 }
 
 TEST_CASE("what cannot be computed is not finite, and nothing is thrown") {
