@@ -10,17 +10,14 @@
 #include <type_traits>
 #include <vector>
 
+#include "channels.hpp"
 #include "equation_plan.hpp"
 #include "formulas.hpp"
 #include "model_file.hpp"
 #include "surefoot/core/vec.hpp"
-#include "surefoot/diagnose/simulation/small_vectors.hpp"
 #include "surefoot/diagnose/simulator.hpp"
 
 namespace diagnose_program {
-
-/// Up to 16 numbers without memory from the heap.
-using Channels = surefoot::diagnosis::SmallVector<static_cast<int>(most_channels)>;
 
 /// All quantities of a model, with the formulas that compute them. A copy has memory and formulas of its own, so that
 /// each thread can have one.
@@ -97,8 +94,9 @@ class Equations {
   }
   template <class Values>
   static Values results(const Part& part) {
-    auto values = surefoot::diagnosis::unset<Values>(static_cast<Eigen::Index>(part.results.size()));
-    surefoot::diagnosis::set_each(values, [&](Eigen::Index i) { return *part.results[static_cast<std::size_t>(i)]; });
+    Values values;
+    values.resize(static_cast<Eigen::Index>(part.results.size()));
+    set_one_by_one(values, [&](Eigen::Index i) { return *part.results[static_cast<std::size_t>(i)]; });
     return values;
   }
   template <class Values, class State>

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "surefoot/diagnose/effects/effect.hpp"
-#include "surefoot/diagnose/simulation/small_vectors.hpp"
 #include "surefoot/diagnose/simulation/structure.hpp"
 #include "surefoot/diagnose/simulator.hpp"
 
@@ -22,7 +21,7 @@ struct Augmentation {
 inline constexpr int most_hidden = 24;
 
 /// Hidden states of all effects of a run, or their rates.
-using Hidden = SmallVector<most_hidden>;
+using Hidden = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_hidden, 1>;
 
 /// An effect where it acts.
 struct EffectSlot {

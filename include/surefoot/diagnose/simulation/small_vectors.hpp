@@ -35,24 +35,6 @@ inline void assign(V& to, const V& from) {
   set_each(to, [&](Eigen::Index i) { return from[i]; });
 }
 
-/// A vector of a size known at run time, at most Most, without memory from the heap. Copied number by number: what has
-/// just been written so would be waited for if it were read in larger pieces.
-template <int Most>
-class SmallVector : public Eigen::Matrix<double, Eigen::Dynamic, 1, 0, Most, 1> {
- public:
-  using Base = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, Most, 1>;
-  using Base::Base;
-  using Base::operator=;
-  SmallVector() = default;
-  SmallVector(const SmallVector& other) : Base(other.size()) { assign(*this, other); }
-  SmallVector& operator=(const SmallVector& other) {
-    this->resize(other.size());
-    assign(*this, other);
-    return *this;
-  }
-  ~SmallVector() = default;
-};
-
 template <class V>
 inline V copied(const V& from) {
   V result = unset<V>(from.size());
