@@ -117,18 +117,6 @@ TEST_CASE("a pool grows as long as a further effect makes the best structure bet
   CHECK(names_in(clean[best_of(clean, nothing.problem.criteria)]).empty());
 }
 
-TEST_CASE("a structure that is extended is fitted with the weights of its children first") {
-  const TankBench bench({rate_in_tank});
-  Search search = bench.search();
-  search.problem.fit.weighting.sigma[0] = 1;  // a hundred times the noise: all of these fits look perfect
-  std::vector<EvaluatedHypothesis> pool{bench.with({})};
-  grow(search, pool);
-  const EvaluatedHypothesis& best = pool[best_of(pool, bench.problem.criteria)];
-  CHECK(names_in(best) == "constant_rate");
-  CHECK(best.loss > 0.5);  // of what noise leaves in the weights that follow from it
-  CHECK(best.loss < 2);
-}
-
 TEST_CASE("a first effect whose fit ended in a valley is tried from places around before others mend it") {
   const TankBench bench({rate_in_tank});
   Search search = bench.search();

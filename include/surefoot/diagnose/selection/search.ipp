@@ -185,10 +185,17 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool) 
     beam = best_structures(children, effort.beam, effort.hopeless, criteria);
     if (beam.empty()) break;
     reweight(search, now);
-    if (refine_integration(search, now)) pool = fitted_again(search, pool);  // compared with the same errors
-    for (EvaluatedHypothesis& one : beam) {  // children are compared with parents that were fitted with their weights
-      one = refitted(search, one);
-      keep_best_form(pool, one, criteria);
+    const bool finer = refine_integration(search, now);
+    if (finer) pool = fitted_again(search, pool);  // compared with the same errors
+    for (EvaluatedHypothesis& one : beam) {        // and with the weights of their children
+      const auto again = std::ranges::find_if(
+          pool, [&](const auto& other) { return same_structure(other.hypothesis, one.hypothesis); });
+      if (finer && again != pool.end()) {
+        one = *again;
+      } else {
+        one = refitted(search, one);
+        keep_best_form(pool, one, criteria);
+      }
     }
     if (no_better) continue;
     for (const EvaluatedHypothesis& rest : smaller(search, pool[best_of(pool, criteria)])) {
