@@ -1,8 +1,7 @@
 // The subcommands of the program. Each adds itself with its options; it runs when the command line names it.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
+#include "../common/command.hpp"
 #include "../common/usage_error.hpp"
 
 namespace calibrate_program {
@@ -10,12 +9,12 @@ namespace calibrate_program {
 using example::Interrupted;
 using example::UsageError;
 
-void add_fit(CLI::App& program);
-void add_curve(CLI::App& program);
-void add_plan(CLI::App& program);
-void add_sheet(CLI::App& program);
-void add_update(CLI::App& program);
-void add_compare(CLI::App& program);
-void add_simulate(CLI::App& program);
+void add_fit(example::Command& program);
+void add_curve(example::Command& program);
+void add_plan(example::Command& program);
+void add_sheet(example::Command& program);
+void add_update(example::Command& program);
+void add_compare(example::Command& program);
+void add_simulate(example::Command& program);
 
 }  // namespace calibrate_program

@@ -150,9 +150,9 @@ void run(CompareWalksOptions options) {
 
 }  // namespace
 
-void add_compare(CLI::App& program) {
+void add_compare(example::Command& program) {
   auto options = std::make_shared<CompareWalksOptions>();
-  CLI::App* command =
+  example::Command* command =
       program.add_subcommand("compare", "What changed in a walk since a former calibration or recording");
   command->footer(compared_files);
   command->add_option("walks", options->both, "OLD and NEW: a file each")->expected(0, 2);
@@ -163,11 +163,11 @@ void add_compare(CLI::App& program) {
       ->add_option("--model", options->model,
                    "whose coefficients are compared; auto: those of motion.json; of recordings with poses after every "
                    "cycle: sides, with final poses alone: full")
-      ->check(CLI::IsMember({"auto", "proportional", "simple", "full", "previous-command", "sides"}))
+      ->check(example::one_of({"auto", "proportional", "simple", "full", "previous-command", "sides"}))
       ->capture_default_str();
   add_accuracy_options(*command, options->read);
   command->add_option("--certainty", options->certainty, "posterior probability from which on a statement is made")
-      ->check(CLI::Range(0.6, 0.9999))
+      ->check(example::between(0.6, 0.9999))
       ->capture_default_str();
   auto* old_joints = command->add_option("--old-joints", options->joints_before,
                                          "logs of the joints in the old walk, as surefoot-walk --log writes them");

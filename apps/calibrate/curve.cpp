@@ -106,10 +106,10 @@ void run(const CurveOptions& options) {
 
 }  // namespace
 
-void add_curve(CLI::App& program) {
+void add_curve(example::Command& program) {
   auto options = std::make_shared<CurveOptions>();
   options->read.method = "published";  // the small models win with few sequences; a prior would hide that
-  CLI::App* command =
+  example::Command* command =
       program.add_subcommand("curve", "Show how many sequences each model needs, and how many more are worth walking");
   command->footer(
       "Reads the same files as `fit`. Writes curve.csv, curve.json, curve and coefficients as .svg and .png, and what "
@@ -118,12 +118,12 @@ void add_curve(CLI::App& program) {
   add_reading_options(*command, options->read);
   command->add_option("--counts", options->counts, "of sequences to fit to, N,N,...; default: about fifteen of them")
       ->delimiter(',')
-      ->check(CLI::Range(1, 100'000));
+      ->check(example::between(1, 100'000));
   command->add_option("--repetitions", options->repetitions, "random splits")
-      ->check(CLI::Range(2, 100'000))
+      ->check(example::between(2, 100'000))
       ->capture_default_str();
   command->add_option("--validation", options->validation, "held-out sequences, for each fit")
-      ->check(CLI::Range(1, 100'000))
+      ->check(example::between(1, 100'000))
       ->capture_default_str();
   add_fitting_options(*command, options->read);
   command->add_option("--out", options->out, "folder for the results, made if needed")->required();

@@ -60,13 +60,13 @@ void run(const FitOptions& options) {
 
 }  // namespace
 
-void add_fit(CLI::App& program) {
+void add_fit(example::Command& program) {
   auto options = std::make_shared<FitOptions>();
-  CLI::App* command = program.add_subcommand("fit", "Calibrate a motion model and its noise from recordings");
+  example::Command* command = program.add_subcommand("fit", "Calibrate a motion model and its noise from recordings");
   command->footer(formats);
   add_reading_options(*command, options->read);
   command->add_option("--model", options->model, "auto: the simplest of those that predict best")
-      ->check(CLI::IsMember({"auto", "proportional", "simple", "full", "previous-command", "previous-order"}))
+      ->check(example::one_of({"auto", "proportional", "simple", "full", "previous-command", "previous-order"}))
       ->capture_default_str();
   add_fitting_options(*command, options->read);
   command->add_option("--test", options->test,

@@ -1,7 +1,6 @@
 // surefoot-calibrate: a motion model from commands and a tape measure, with its noise.
-#include <CLI/CLI.hpp>
 
-#include "../common/run_program.hpp"
+#include "../common/command.hpp"
 #include "commands.hpp"
 
 namespace {
@@ -15,7 +14,7 @@ constexpr const char* usage = R"(Example: plan an experiment, walk it, measure w
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program{"A motion model from commands and measured poses, with its noise", "surefoot-calibrate"};
+  example::Command program{"A motion model from commands and measured poses, with its noise", "surefoot-calibrate"};
   program.require_subcommand(1);
   program.footer(usage);
   calibrate_program::add_plan(program);

@@ -74,24 +74,25 @@ void run(const PlanOptions& options) {
 
 }  // namespace
 
-void add_plan(CLI::App& program) {
+void add_plan(example::Command& program) {
   auto options = std::make_shared<PlanOptions>();
-  CLI::App* command = program.add_subcommand("plan", "Plan the sequences to walk, and print a sheet for the results");
+  example::Command* command =
+      program.add_subcommand("plan", "Plan the sequences to walk, and print a sheet for the results");
   command->add_option("--sequences", options->sequences, "how many")
-      ->check(CLI::Range(1, 10'000))
+      ->check(example::between(1, 10'000))
       ->capture_default_str();
   command->add_option("--cycles", options->cycles, "of each sequence; 25 are 15 s at 1.7 Hz")
-      ->check(CLI::Range(1, 10'000))
+      ->check(example::between(1, 10'000))
       ->capture_default_str();
   command
       ->add_option("--kind", options->kind,
                    "wandering: random accelerations, as published; informative: those of many that tell most about "
                    "the coefficients")
-      ->check(CLI::IsMember({"wandering", "informative"}))
+      ->check(example::one_of({"wandering", "informative"}))
       ->capture_default_str();
   command
       ->add_option("--steps-per-cycle", options->steps_per_cycle, "the file holds commands per step, this many a cycle")
-      ->check(CLI::Range(1e-3, 1e3))
+      ->check(example::between(1e-3, 1e3))
       ->capture_default_str();
   const auto bounds = [&](const char* name, std::vector<double>& values, const char* what) {
     command->add_option(name, values, what)->delimiter(',')->expected(3);
@@ -100,7 +101,7 @@ void add_plan(CLI::App& program) {
   bounds("--high", options->high, "largest command of a cycle; default 0.08,0.04,0.4");
   bounds("--acceleration", options->acceleration, "largest change from cycle to cycle; default 0.04,0.02,0.3");
   command->add_option("--motion", options->motion, "motion.json of the robot, to say what space it needs")
-      ->check(CLI::ExistingFile);
+      ->check(example::existing_file());
   command->add_option("--seed", options->seed, "same seed, same commands")->capture_default_str();
   command->add_option("--out", options->out, "folder for the plan, made if needed")->required();
   command->callback([options] { run(*options); });

@@ -10,18 +10,18 @@ namespace calibrate_program {
 
 using example::UsageError;
 
-void add_reading_options(CLI::App& command, SequenceOptions& options) {
+void add_reading_options(example::Command& command, SequenceOptions& options) {
   command.add_option("files", options.files, "recordings (CSV)")->required();
   add_layout_options(command, options);
 }
 
-void add_layout_options(CLI::App& command, SequenceOptions& options) {
+void add_layout_options(example::Command& command, SequenceOptions& options) {
   ColumnNames& columns = options.load.columns;
   command
       .add_option("--steps-per-cycle", options.load.steps_per_cycle,
                   "a perfect robot moves by this times its command in a cycle; default: what a first line "
                   "`# steps_per_cycle: N` says, else 1")
-      ->check(CLI::Range(1e-3, 1e3));
+      ->check(example::between(1e-3, 1e3));
   command
       .add_option("--commands,--orders", columns.commands,
                   "columns of the commands X,Y,TURN, if they are not recognised")
@@ -33,40 +33,41 @@ void add_layout_options(CLI::App& command, SequenceOptions& options) {
   command.add_option("--wheels", columns.wheels, "columns of the speeds of two wheels LEFT,RIGHT, instead of commands")
       ->delimiter(',')
       ->expected(2);
-  command.add_option("--wheel-base", options.load.wheel_base, "[m] between the wheels")->check(CLI::Range(1e-3, 1e3));
+  command.add_option("--wheel-base", options.load.wheel_base, "[m] between the wheels")
+      ->check(example::between(1e-3, 1e3));
   command.add_flag("--final-only", options.load.final_only, "use the final pose of each sequence alone");
 }
 
-void add_fitting_options(CLI::App& command, SequenceOptions& options) {
+void add_fitting_options(example::Command& command, SequenceOptions& options) {
   command
       .add_option(
           "--method", options.method,
           "likelihood: weighs each measured pose by what the noise makes of it; published: least errors of final "
           "poses (CMA-ES)")
-      ->check(CLI::IsMember({"likelihood", "published"}))
+      ->check(example::one_of({"likelihood", "published"}))
       ->capture_default_str();
   add_accuracy_options(command, options);
 }
 
-void add_accuracy_options(CLI::App& command, SequenceOptions& options) {
+void add_accuracy_options(example::Command& command, SequenceOptions& options) {
   command.add_option("--position-accuracy", options.position_accuracy, "[m] of a measured position")
-      ->check(CLI::Range(0.0, 10.0))
+      ->check(example::between(0.0, 10.0))
       ->capture_default_str();
   command.add_option("--heading-accuracy", options.heading_accuracy, "[rad] of a measured heading")
-      ->check(CLI::Range(0.0, 3.0))
+      ->check(example::between(0.0, 3.0))
       ->capture_default_str();
   command
       .add_option("--heading-tolerance", options.heading_tolerance,
                   "[degrees] errors of headings below count as none; default: 15 if all headings are whole hours of a "
                   "clock, else 0; published: the paper's 30")
-      ->check(CLI::Range(0.0, 90.0));
+      ->check(example::between(0.0, 90.0));
 }
 
-void add_work_options(CLI::App& command, SequenceOptions& options) {
+void add_work_options(example::Command& command, SequenceOptions& options) {
   command.add_option("--seed", options.seed, "of all randomness; the same seed gives the same result")
       ->capture_default_str();
   command.add_option("--threads", options.threads, "0: as many as the machine has; results do not depend on it")
-      ->check(CLI::Range(0, 1024))
+      ->check(example::between(0, 1024))
       ->capture_default_str();
 }
 

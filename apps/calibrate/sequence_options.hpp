@@ -1,13 +1,13 @@
 // The options that say how recordings are read and fitted, the same for several subcommands.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "../common/command.hpp"
 #include "fit_walk.hpp"
 #include "load_sequences.hpp"
 
@@ -25,19 +25,19 @@ struct SequenceOptions {
 };
 
 /// Everything about the files, and the files themselves.
-void add_reading_options(CLI::App& command, SequenceOptions& options);
+void add_reading_options(example::Command& command, SequenceOptions& options);
 
 /// Everything about the files, but not the files.
-void add_layout_options(CLI::App& command, SequenceOptions& options);
+void add_layout_options(example::Command& command, SequenceOptions& options);
 
 /// Accuracies and --method.
-void add_fitting_options(CLI::App& command, SequenceOptions& options);
+void add_fitting_options(example::Command& command, SequenceOptions& options);
 
 /// Accuracies alone.
-void add_accuracy_options(CLI::App& command, SequenceOptions& options);
+void add_accuracy_options(example::Command& command, SequenceOptions& options);
 
 /// --seed and --threads.
-void add_work_options(CLI::App& command, SequenceOptions& options);
+void add_work_options(example::Command& command, SequenceOptions& options);
 
 /// Throws UsageError for options that do not fit together.
 void check(const SequenceOptions& options);

@@ -138,9 +138,9 @@ void run(const SheetOptions& options) {
 
 }  // namespace
 
-void add_sheet(CLI::App& program) {
+void add_sheet(example::Command& program) {
   auto options = std::make_shared<SheetOptions>();
-  CLI::App* command = program.add_subcommand("sheet", "Turn a sheet that was filled in into recordings");
+  example::Command* command = program.add_subcommand("sheet", "Turn a sheet that was filled in into recordings");
   command->add_option("--commands,--orders", options->commands, "commands.csv of the plan")->required();
   command
       ->add_option("--sheet", options->sheet,

@@ -44,29 +44,29 @@ void run(const SimulateOptions& options) {
 
 }  // namespace
 
-void add_simulate(CLI::App& program) {
+void add_simulate(example::Command& program) {
   auto options = std::make_shared<SimulateOptions>();
-  CLI::App* command = program.add_subcommand(
+  example::Command* command = program.add_subcommand(
       "simulate", "Write recordings of a simulated robot: that of the paper, or a calibrated one");
   command->add_option("--sequences", options->sequences, "how many")
-      ->check(CLI::Range(1, 100'000))
+      ->check(example::between(1, 100'000))
       ->capture_default_str();
   command->add_option("--cycles", options->cycles, "of each sequence")
-      ->check(CLI::Range(1, 10'000))
+      ->check(example::between(1, 10'000))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "of commands and noise")->capture_default_str();
   command->add_option("--motion", options->motion, "motion.json of the robot; default: the robot of the paper");
   command->add_flag("--final-only", options->final_only, "the final pose of each sequence alone");
   command->add_option("--position-accuracy", options->position_accuracy, "[m] of a measured position")
-      ->check(CLI::Range(0.0, 10.0))
+      ->check(example::between(0.0, 10.0))
       ->capture_default_str();
   command->add_option("--heading-accuracy", options->heading_accuracy, "[rad] of a measured heading")
-      ->check(CLI::Range(0.0, 3.0))
+      ->check(example::between(0.0, 3.0))
       ->capture_default_str();
   command
       ->add_option("--heading-tolerance", options->heading_tolerance,
                    "[degrees] headings are read off in bins of twice this width; 15: whole hours of a clock")
-      ->check(CLI::Range(0.0, 90.0))
+      ->check(example::between(0.0, 90.0))
       ->capture_default_str();
   command->add_option("--out", options->out, "CSV file to write")->required();
   command->callback([options] { run(*options); });

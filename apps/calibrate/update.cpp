@@ -87,20 +87,20 @@ void run(const UpdateOptions& options) {
 
 }  // namespace
 
-void add_update(CLI::App& program) {
+void add_update(example::Command& program) {
   auto options = std::make_shared<UpdateOptions>();
-  CLI::App* command =
+  example::Command* command =
       program.add_subcommand("update", "Bring a model up to date with new sequences; alarm if the robot has changed");
   command->footer("Reads the same files as `fit`, in their order. Writes motion.json.");
   command->add_option("--motion", options->motion, "motion.json as `fit` or `update` wrote it")->required();
   add_reading_options(*command, options->read);
   command->add_option("--forgetting", options->forgetting, "factor per sequence; 1: everything is remembered")
-      ->check(CLI::Range(0.5, 1.0))
+      ->check(example::between(0.5, 1.0))
       ->capture_default_str();
   command
       ->add_option("--alarm-threshold", options->threshold,
                    "[nats] evidence of a change that raises the alarm; default: found by simulation")
-      ->check(CLI::Range(0.1, 1e6));
+      ->check(example::between(0.1, 1e6));
   command->add_option("--out", options->out, "folder for the new motion.json, made if needed")->required();
   add_work_options(*command, options->read);
   command->callback([options] { run(*options); });

@@ -49,19 +49,19 @@ void run(const Problem& problem, const EvaluateOptions& options) {
 
 }  // namespace
 
-void add_evaluate(CLI::App& program) {
+void add_evaluate(example::Command& program) {
   auto options = std::make_shared<EvaluateOptions>();
-  CLI::App* command = program.add_subcommand("evaluate", "Measure the mean cost of a policy");
+  example::Command* command = program.add_subcommand("evaluate", "Measure the mean cost of a policy");
   add_problem_option(*command, options->problem);
   add_motion_option(*command, options->motion);
   command
       ->add_option("--robot", options->robot,
                    "motion.json of the robot that plays, where it is another than the policy believes (--motion)")
       ->needs("--motion")
-      ->check(CLI::ExistingFile);
+      ->check(example::existing_file());
   command->add_option("--policy", options->policy, "winner2016, tuned, or a file written by train or tune")->required();
   command->add_option("--trials", options->trials, "independent runs")
-      ->check(CLI::Range(2, 100'000'000))
+      ->check(example::between(2, 100'000'000))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "of starts and noise")->capture_default_str();
   add_threads_option(*command, options->threads);

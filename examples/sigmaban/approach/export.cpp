@@ -165,9 +165,10 @@ void run(const surefoot::ForestPolicy<Problem>& policy, const ExportOptions& opt
 
 }  // namespace
 
-void add_export(CLI::App& program) {
+void add_export(example::Command& program) {
   auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = program.add_subcommand("export", "Write a policy as one C99 file without dependencies but libm");
+  example::Command* command =
+      program.add_subcommand("export", "Write a policy as one C99 file without dependencies but libm");
   command->add_option("--policy", options->policy, "policy file of train")->required();
   command->add_option("--out", options->out, "C file")->required();
   add_motion_option(*command, options->motion);
@@ -176,13 +177,13 @@ void add_export(CLI::App& program) {
           "--max-kb", options->max_kb,
           "largest C file [kB]; a policy that does not fit is replaced by a smaller one learnt from it, and the "
           "price is told; 0: no limit")
-      ->check(CLI::Range(0, 1'000'000))
+      ->check(example::between(0, 1'000'000))
       ->capture_default_str();
   command->add_option("--runs", options->runs, "runs of the policy that the smaller one learns from")
-      ->check(CLI::Range(1, 1'000'000))
+      ->check(example::between(1, 1'000'000))
       ->capture_default_str();
   command->add_option("--trials", options->trials, "independent runs that tell its price")
-      ->check(CLI::Range(2, 100'000'000))
+      ->check(example::between(2, 100'000'000))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "of that learning")->capture_default_str();
   add_threads_option(*command, options->threads);

@@ -1,12 +1,11 @@
 // sigmaban_approach: trains, tunes, evaluates, draws and exports policies of the ball approach.
 // After Ctrl-C the best is kept.
-#include <CLI/CLI.hpp>
 
-#include "../../../apps/common/run_program.hpp"
+#include "../../../apps/common/command.hpp"
 #include "commands.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App program{"Policies for the ball approach of the humanoid robot Sigmaban", "sigmaban_approach"};
+  example::Command program{"Policies for the ball approach of the humanoid robot Sigmaban", "sigmaban_approach"};
   program.require_subcommand(1);
   sigmaban::add_train(program);
   sigmaban::add_tune(program);

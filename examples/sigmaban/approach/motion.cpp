@@ -1,11 +1,11 @@
 #include "motion.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "../../../apps/calibrate/motion_file/motion_file.hpp"
+#include "../../../apps/common/command.hpp"
 #include "../../../apps/common/files.hpp"
 #include "../../../apps/common/usage_error.hpp"
 #include "results.hpp"
@@ -24,11 +24,11 @@ std::vector<double> walk_in_record(const nlohmann::json& record) {
 
 }  // namespace
 
-void add_motion_option(CLI::App& command, std::string& file) {
+void add_motion_option(example::Command& command, std::string& file) {
   command
       .add_option("--motion", file,
                   "motion.json of surefoot-calibrate: walk and noise of your robot in place of the published ones")
-      ->check(CLI::ExistingFile);
+      ->check(example::existing_file());
 }
 
 CalibratedApproach calibrated_approach(const std::string& problem_name, const std::string& file) {

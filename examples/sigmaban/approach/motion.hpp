@@ -8,8 +8,8 @@
 #include "surefoot/motion/noise.hpp"
 #include "surefoot/motion/previous_command_correction.hpp"
 
-namespace CLI {
-class App;
+namespace example {
+class Command;
 }
 
 namespace sigmaban {
@@ -17,7 +17,7 @@ namespace sigmaban {
 /// With any linear walk and any noise that calibration knows.
 using CalibratedApproach = ApproachWith<surefoot::PreviousCommandCorrection, surefoot::MotionNoise>;
 
-void add_motion_option(CLI::App& command, std::string& file);
+void add_motion_option(example::Command& command, std::string& file);
 
 CalibratedApproach calibrated_approach(const std::string& problem_name, const std::string& file);
 

@@ -107,13 +107,14 @@ void run(const TableOptions& options) {
 
 }  // namespace
 
-void add_table(CLI::App& program) {
+void add_table(example::Command& program) {
   auto options = std::make_shared<TableOptions>();
-  CLI::App* command = program.add_subcommand("table", "Print the paper's table 3 beside ours, and write it as JSON");
+  example::Command* command =
+      program.add_subcommand("table", "Print the paper's table 3 beside ours, and write it as JSON");
   command->add_option("--results", options->results.folder, "folder with the policies")->capture_default_str();
   command->add_option("--out", options->out, "JSON file; by default table.json among the results");
   command->add_option("--trials", options->trials, "independent runs for each policy")
-      ->check(CLI::Range(2, 100'000'000))
+      ->check(example::between(2, 100'000'000))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "of starts and noise")->capture_default_str();
   add_threads_option(*command, options->threads);

@@ -25,6 +25,6 @@ void train_on(const TrainOptions& options, MakeExecutor&& make_executor) {
 }
 
 /// Adds the subcommand; `work(options)` trains. `threads`: the default.
-void add_train_by(CLI::App& program, std::size_t threads, std::function<void(const TrainOptions&)> work);
+void add_train_by(example::Command& program, std::size_t threads, std::function<void(const TrainOptions&)> work);
 
 }  // namespace sigmaban

@@ -100,9 +100,10 @@ void run(const TrajectoriesOptions& options) {
 
 }  // namespace
 
-void add_trajectories(CLI::App& program) {
+void add_trajectories(example::Command& program) {
   auto options = std::make_shared<TrajectoriesOptions>();
-  CLI::App* command = program.add_subcommand("trajectories", "Draw the approaches and the learning curves (gnuplot)");
+  example::Command* command =
+      program.add_subcommand("trajectories", "Draw the approaches and the learning curves (gnuplot)");
   command->add_option("--results", options->results.folder, "folder with the policies, and for the pictures")
       ->capture_default_str();
   command->add_option("--seed", options->seed, "of the noise")->capture_default_str();

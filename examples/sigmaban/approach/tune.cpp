@@ -88,17 +88,18 @@ void tune_winner2016(const TuneOptions& options) {
   with_problem(options.problem, options.motion, [&](const auto& problem) { run(problem, options); });
 }
 
-void add_tune(CLI::App& program) {
+void add_tune(example::Command& program) {
   auto options = std::make_shared<TuneOptions>();
-  CLI::App* command = program.add_subcommand("tune", "Tune Winner2016 by CMA-ES; Ctrl-C ends early and keeps the best");
+  example::Command* command =
+      program.add_subcommand("tune", "Tune Winner2016 by CMA-ES; Ctrl-C ends early and keeps the best");
   add_problem_option(*command, options->problem);
   add_motion_option(*command, options->motion);
   command
       ->add_option("--budget", options->budget,
                    "work in seconds of one nominal core, all threads together: the same parameters on any machine")
-      ->check(CLI::Range(0.01, 1e7))
+      ->check(example::between(0.01, 1e7))
       ->capture_default_str();
-  command->add_option("--max-wall", options->wall, "[s] hard limit by the clock")->check(CLI::Range(0.1, 1e7));
+  command->add_option("--max-wall", options->wall, "[s] hard limit by the clock")->check(example::between(0.1, 1e7));
   command->add_option("--seed", options->seed, "same seed, same parameters")->capture_default_str();
   add_threads_option(*command, options->threads);
   command->add_option("--out", options->out, "parameter file (JSON)")->required();

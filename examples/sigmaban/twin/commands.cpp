@@ -4,7 +4,7 @@
 
 namespace sigmaban {
 
-void add_twin_options(CLI::App& command, TwinOptions& options) {
+void add_twin_options(example::Command& command, TwinOptions& options) {
   std::ostringstream help;
   help << "physics that is off by default, NAME or NAME=VALUE (of one joint: NAME:JOINT=VALUE), several times:";
   for (const TwinSwitch& s : twin_switches) {
@@ -12,20 +12,20 @@ void add_twin_options(CLI::App& command, TwinOptions& options) {
   }
   command.add_option("--switch", options.switches, help.str());
   command.add_option("--noise", options.noise, "[rad] standard deviation of noise on every joint target")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(example::between(0.0, 1.0))
       ->capture_default_str();
   command.add_flag("--stabilize", options.stabilized, "the walk feels gyroscope, accelerometer and load cells");
   command.add_option("--seed", options.seed, "of all randomness")->capture_default_str();
   command.add_option("--threads", options.threads, "0: as many as the machine has; results do not depend on it")
-      ->check(CLI::Range(0, 1024))
+      ->check(example::between(0, 1024))
       ->capture_default_str();
 }
 
-void add_sequence_options(CLI::App& command, int& sequences, int& cycles) {
+void add_sequence_options(example::Command& command, int& sequences, int& cycles) {
   command.add_option("--sequences", sequences, "of random commands within the paper's bounds")
-      ->check(CLI::Range(1, 100'000))
+      ->check(example::between(1, 100'000))
       ->capture_default_str();
-  command.add_option("--cycles", cycles, "of each sequence")->check(CLI::Range(1, 10'000))->capture_default_str();
+  command.add_option("--cycles", cycles, "of each sequence")->check(example::between(1, 10'000))->capture_default_str();
 }
 
 WalkingTwinOptions walking_twin_options(const TwinOptions& options) {

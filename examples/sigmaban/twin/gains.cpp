@@ -55,9 +55,10 @@ void run(const GainsOptions& options) {
 
 }  // namespace
 
-void add_gains(CLI::App& program) {
+void add_gains(example::Command& program) {
   auto options = std::make_shared<GainsOptions>();
-  CLI::App* command = program.add_subcommand("gains", "Measure falls, gains of the walk, and speed of the simulation");
+  example::Command* command =
+      program.add_subcommand("gains", "Measure falls, gains of the walk, and speed of the simulation");
   add_sequence_options(*command, options->sequences, options->cycles);
   add_twin_options(*command, options->twin);
   command->callback([options] { run(*options); });

@@ -1,7 +1,6 @@
 // surefoot-twin: a walking robot in MuJoCo that stands in for a real one.
-#include <CLI/CLI.hpp>
 
-#include "../../../apps/common/run_program.hpp"
+#include "../../../apps/common/command.hpp"
 #include "commands.hpp"
 
 namespace {
@@ -15,7 +14,7 @@ constexpr const char* usage = R"(Example: record the robot, calibrate it, train 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program{"A humanoid robot walking in MuJoCo, in place of a real one", "surefoot-twin"};
+  example::Command program{"A humanoid robot walking in MuJoCo, in place of a real one", "surefoot-twin"};
   program.require_subcommand(1);
   program.footer(usage);
   sigmaban::add_record(program);

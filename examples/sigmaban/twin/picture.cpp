@@ -118,9 +118,9 @@ void run_problem(const Problem& problem, const PictureOptions& options) {
 
 }  // namespace
 
-void add_picture(CLI::App& program) {
+void add_picture(example::Command& program) {
   auto options = std::make_shared<PictureOptions>();
-  CLI::App* command = program.add_subcommand("picture", "Draw six ball approaches from above (gnuplot)");
+  example::Command* command = program.add_subcommand("picture", "Draw six ball approaches from above (gnuplot)");
   add_problem_option(*command, options->problem);
   add_motion_option(*command, options->motion);
   command->add_option("--policy", options->policy, policy_help)->required();

@@ -144,9 +144,9 @@ void run_problem(const Problem& problem, const PlayOptions& options) {
 
 }  // namespace
 
-void add_play(CLI::App& program) {
+void add_play(example::Command& program) {
   auto options = std::make_shared<PlayOptions>();
-  CLI::App* command = program.add_subcommand("play", "Play whole ball approaches and tell what they cost");
+  example::Command* command = program.add_subcommand("play", "Play whole ball approaches and tell what they cost");
   command->footer(
       "All policies meet the same starts, those of `sigmaban_approach evaluate` with the same seed. A fall ends a run\n"
       "and costs what losing the ball does. Columns: mean cost on the twin; in the model that the policy was made "
@@ -157,7 +157,7 @@ void add_play(CLI::App& program) {
   add_motion_option(*command, options->motion);
   command->add_option("--policy", options->policies, std::string(policy_help) + "; several times")->required();
   command->add_option("--episodes", options->episodes, "approaches of each policy")
-      ->check(CLI::Range(2, 1'000'000))
+      ->check(example::between(2, 1'000'000))
       ->capture_default_str();
   add_twin_options(*command, options->twin);
   command->add_option("--out", options->out, "JSON file with the same figures");

@@ -57,9 +57,9 @@ void run(const RecordOptions& options) {
 
 }  // namespace
 
-void add_record(CLI::App& program) {
+void add_record(example::Command& program) {
   auto options = std::make_shared<RecordOptions>();
-  CLI::App* command =
+  example::Command* command =
       program.add_subcommand("record", "Write what is recorded of the twin: commands, displacement and pose per cycle");
   command->footer(
       "Commands in the file are per step, a cycle has two: tell surefoot-calibrate --steps-per-cycle 2.\n"
@@ -68,7 +68,7 @@ void add_record(CLI::App& program) {
   command
       ->add_option("--commands,--orders", options->commands,
                    "CSV file of commands in place of random ones, as written by surefoot-calibrate plan or by record")
-      ->check(CLI::ExistingFile);
+      ->check(example::existing_file());
   add_twin_options(*command, options->twin);
   command->add_option("--joints", options->joints, "CSV file for the joints: goals, positions, currents");
   command->add_option("--out", options->out, "CSV file to write")->required();

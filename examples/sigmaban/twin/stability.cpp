@@ -90,13 +90,13 @@ void run(const StabilityOptions& options) {
 
 }  // namespace
 
-void add_stability(CLI::App& program) {
+void add_stability(example::Command& program) {
   auto options = std::make_shared<StabilityOptions>();
-  CLI::App* command =
+  example::Command* command =
       program.add_subcommand("stability", "Falls and noise of the walk with and without the stabilisation");
   add_sequence_options(*command, options->sequences, options->cycles);
   command->add_option("--impulse", options->impulse, "of a push [N s]")
-      ->check(CLI::Range(0.0, 10.0))
+      ->check(example::between(0.0, 10.0))
       ->capture_default_str();
   add_twin_options(*command, options->twin);
   command->callback([options] { run(*options); });

@@ -198,52 +198,55 @@ constexpr const char* footer =
     "that did not get there. Ctrl-C stops; the same command goes on.";
 
 /// What makes it an experiment on a robot.
-void add_robot_options(CLI::App& command, Table4Options& options) {
+void add_robot_options(example::Command& command, Table4Options& options) {
   options.robot.ports.clear();
   auto* port = command
                    .add_option("--port", options.robot.ports,
                                "a robot walks in place of the twin: its serial ports, with commas; virtual: simulated "
                                "servos, and the ball as the motion model has it")
                    ->delimiter(',');
-  const auto of_robot = [&](CLI::Option* option) { option->needs(port); };
+  const auto of_robot = [&](example::Option* option) { option->needs(port); };
   of_robot(command.add_option("--motion", options.work.given_motion, "motion.json of the robot's walk")
-               ->check(CLI::ExistingFile));
-  of_robot(command.add_option("--joints", options.robot.joints_file, "as for surefoot-walk")->check(CLI::ExistingFile));
+               ->check(example::existing_file()));
+  of_robot(command.add_option("--joints", options.robot.joints_file, "as for surefoot-walk")
+               ->check(example::existing_file()));
   of_robot(command.add_option("--ball-from", options.robot.ball_from, "as for surefoot-walk"));
   of_robot(command.add_option("--baud", options.robot.bits_per_s, "[bit/s]")->capture_default_str());
   of_robot(command.add_option("--protocol", options.robot.protocol, "of the servos")
-               ->check(CLI::IsMember({1, 2}))
+               ->check(example::one_of({1, 2}))
                ->capture_default_str());
 }
 
 }  // namespace
 
-void add_table4(CLI::App& program) {
+void add_table4(example::Command& program) {
   auto options = std::make_shared<Table4Options>();
-  CLI::App* command =
+  example::Command* command =
       program.add_subcommand("table4", "The paper's experiment: time from twelve starts to a stand in the kick area");
   command->footer(footer);
   command->add_option("--out", options->work.folder, "folder for all that is made; goes on with what is there")
       ->required();
-  command->add_option("--runs", options->runs, "from each start")->check(CLI::Range(1, 1000))->capture_default_str();
+  command->add_option("--runs", options->runs, "from each start")
+      ->check(example::between(1, 1000))
+      ->capture_default_str();
   command->add_option("--longest", options->longest, "[s] of an approach")
-      ->check(CLI::Range(1.0, 1e4))
+      ->check(example::between(1.0, 1e4))
       ->capture_default_str();
   command->add_option("--sighted", options->camera.seen, "share of walk cycles in which the camera sees the ball")
-      ->check(CLI::Range(0.05, 1.0))
+      ->check(example::between(0.05, 1.0))
       ->capture_default_str();
   command->add_option("--sequences", options->work.sequences, "recorded for the calibration")
-      ->check(CLI::Range(3, 10'000))
+      ->check(example::between(3, 10'000))
       ->capture_default_str();
   command
       ->add_option("--tune-budget", options->work.tune_budget,
                    "of tuning for each problem, in seconds of one nominal core")
-      ->check(CLI::Range(0.01, 1e7))
+      ->check(example::between(0.01, 1e7))
       ->capture_default_str();
   command
       ->add_option("--train-budget", options->work.train_budget,
                    "of training for each problem, in seconds of one nominal core")
-      ->check(CLI::Range(0.1, 1e7))
+      ->check(example::between(0.1, 1e7))
       ->capture_default_str();
   command
       ->add_option(

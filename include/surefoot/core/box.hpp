@@ -2,14 +2,20 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <string>
+#include <cstddef>
+#include <span>
+#include <utility>
 
-#include "surefoot/core/error.hpp"
+#include "surefoot/core/compiled.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
 
 namespace surefoot {
+
+namespace detail {
+/// Throws CoreError unless they are equally many, finite, and low <= high in every dimension.
+void check_bounds(std::span<const double> low, std::span<const double> high);
+}  // namespace detail
 
 /// Closed box [low, high] in N dimensions, in the units of whatever it bounds. N may be Eigen::Dynamic.
 /// A box can only be built valid: finite bounds with low <= high in every dimension, else CoreError.
@@ -17,13 +23,8 @@ template <int N>
 class Box {
  public:
   Box(Vec<N> low, Vec<N> high) : low_(std::move(low)), high_(std::move(high)) {
-    if (low_.size() != high_.size()) throw CoreError("Box: low and high must have the same size");
-    for (Eigen::Index i = 0; i < low_.size(); ++i) {
-      if (!std::isfinite(low_[i]) || !std::isfinite(high_[i]) || low_[i] > high_[i]) {
-        throw CoreError("Box: dimension " + std::to_string(i) + " must have finite bounds with low <= high, got [" +
-                        std::to_string(low_[i]) + ", " + std::to_string(high_[i]) + "]");
-      }
-    }
+    detail::check_bounds({low_.data(), static_cast<std::size_t>(low_.size())},
+                         {high_.data(), static_cast<std::size_t>(high_.size())});
   }
 
   /// The box [-half, half].
@@ -70,3 +71,7 @@ class Box {
 };
 
 }  // namespace surefoot
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/core/box.ipp"
+#endif

@@ -1,18 +1,17 @@
 // sigmaban_approach_mpi: the training of sigmaban_approach on many processes, on one machine or on several:
 //   mpirun -n 8 sigmaban_approach_mpi train --problem ha --budget 1000 --out ha.policy
 // Same options, same bits. If a process is lost, the others end; the same command with --resume goes on.
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <sstream>
 
-#include "../../../../apps/common/run_program.hpp"
+#include "../../../../apps/common/command.hpp"
 #include "surefoot/mpi/mpi_session.hpp"
 #include "training.hpp"
 
 int main(int argc, char** argv) {
   surefoot::MpiSession session(argc, argv);
-  CLI::App program{"Policies for the ball approach of the humanoid robot Sigmaban, on many processes",
-                   "sigmaban_approach_mpi"};
+  example::Command program{"Policies for the ball approach of the humanoid robot Sigmaban, on many processes",
+                           "sigmaban_approach_mpi"};
   program.require_subcommand(1);
   sigmaban::add_training(program, session);
 

@@ -9,7 +9,7 @@
 
 namespace sigmaban {
 
-void add_training(CLI::App& program, surefoot::MpiSession& session) {
+void add_training(example::Command& program, surefoot::MpiSession& session) {
   const auto make_executor = [&session](const TrainOptions& options) {
     session.when_lost([checkpoint = options.checkpoint()] {
       const bool saved = std::filesystem::exists(checkpoint);

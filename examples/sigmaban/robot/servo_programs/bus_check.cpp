@@ -3,7 +3,6 @@
 //
 // A damaged answer could in principle pass the CRC-16: damage to two bytes in a row, as made here, never does; damage
 // to more does in one of 65,536 cases.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,8 +15,8 @@
 #include <thread>
 #include <vector>
 
+#include "../../../../apps/common/command.hpp"
 #include "../../../../apps/common/interrupt.hpp"
-#include "../../../../apps/common/run_program.hpp"
 #include "../bus/background_port.hpp"
 #include "../bus/realtime.hpp"
 #include "../bus/serial_port.hpp"
@@ -249,21 +248,23 @@ int check(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program{"The servo bus against virtual servos with faults, in real time", "bus_check"};
+  example::Command program{"The servo bus against virtual servos with faults, in real time", "bus_check"};
   Options options;
-  program.add_option("--seconds", options.seconds)->check(CLI::Range(1.0, 1e6))->capture_default_str();
-  program.add_option("--servos", options.servos)->check(CLI::Range(2, 64))->capture_default_str();
-  program.add_option("--ports", options.ports, "that the servos share")->check(CLI::Range(1, 8))->capture_default_str();
-  program.add_option("--rate", options.rate_hz, "[Hz]")->check(CLI::Range(1.0, 1000.0))->capture_default_str();
+  program.add_option("--seconds", options.seconds)->check(example::between(1.0, 1e6))->capture_default_str();
+  program.add_option("--servos", options.servos)->check(example::between(2, 64))->capture_default_str();
+  program.add_option("--ports", options.ports, "that the servos share")
+      ->check(example::between(1, 8))
+      ->capture_default_str();
+  program.add_option("--rate", options.rate_hz, "[Hz]")->check(example::between(1.0, 1000.0))->capture_default_str();
   program.add_option("--baud", options.bits_per_s, "[bit/s]")->capture_default_str();
   program.add_option("--latency", options.latency_s, "of the operating system, allowed for [s]")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(example::between(0.0, 1.0))
       ->capture_default_str();
   program
       .add_option(
           "--memory", options.memory_s,
           "how late answers are still recognised [s]; a busy kernel hands over the bytes of a pseudo-terminal late")
-      ->check(CLI::Range(1e-3, 1.0))
+      ->check(example::between(1e-3, 1.0))
       ->capture_default_str();
   program.add_option("--silent-for", options.silent_for_s, "[s]")->capture_default_str();
   program.add_option("--lost", options.faults.lost, "share of answers")->capture_default_str();

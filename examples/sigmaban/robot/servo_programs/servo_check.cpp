@@ -1,5 +1,4 @@
 // servo_check: which servos are on a bus, and how they are.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -7,7 +6,7 @@
 #include <iostream>
 #include <string>
 
-#include "../../../../apps/common/run_program.hpp"
+#include "../../../../apps/common/command.hpp"
 #include "../bus/bus.hpp"
 #include "../bus/serial_port.hpp"
 #include "../dynamixel/servo_models.hpp"
@@ -74,11 +73,11 @@ void check(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program{"Which servos are on a bus, and how they are", "servo_check"};
+  example::Command program{"Which servos are on a bus, and how they are", "servo_check"};
   Options options;
   program.add_option("--port", options.port, "such as /dev/ttyUSB0")->required();
   program.add_option("--ids", options.ids, "to ask")->capture_default_str();
-  program.add_option("--protocol", options.protocol)->check(CLI::IsMember({1, 2}))->capture_default_str();
+  program.add_option("--protocol", options.protocol)->check(example::one_of({1, 2}))->capture_default_str();
   program.add_option("--baud", options.bits_per_s, "[bit/s]")->capture_default_str();
   program.callback([&] { options.protocol == 1 ? check<Protocol1>(options) : check<Protocol2>(options); });
   return example::run_program(program, argc, argv);

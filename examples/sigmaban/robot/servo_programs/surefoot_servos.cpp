@@ -1,5 +1,4 @@
 // surefoot-servos: from servos in a box to servos that walk: who is there, how they are, their settings, their line.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -7,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "../../../../apps/common/run_program.hpp"
+#include "../../../../apps/common/command.hpp"
 #include "../bus/realtime.hpp"
 #include "../setup/change.hpp"
 #include "../setup/measure.hpp"
@@ -29,25 +28,25 @@ struct LineOptions {
   }
 };
 
-void add_line(CLI::App& command, LineOptions& options) {
+void add_line(example::Command& command, LineOptions& options) {
   command.add_option("--port", options.line.port, "such as /dev/ttyUSB0")->required();
   command.add_option("--baud", options.line.bits_per_s, "of the servos now [bit/s]; scan tells")->capture_default_str();
-  command.add_option("--protocol", options.line.protocol)->check(CLI::IsMember({1, 2}))->capture_default_str();
+  command.add_option("--protocol", options.line.protocol)->check(example::one_of({1, 2}))->capture_default_str();
   command.add_option("--ids", options.ids, "such as 1-12; default: all that answer");
 }
 
-void add_scan(CLI::App& program) {
+void add_scan(example::Command& program) {
   struct Options {
     std::vector<std::string> ports;
     ScanOptions scan;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("scan", "Find servos: all ports, speeds and protocols");
+  example::Command* command = program.add_subcommand("scan", "Find servos: all ports, speeds and protocols");
   command->add_option("--port", options->ports, "only there; several times");
   command->add_option("--baud", options->scan.bits_per_s, "only at these speeds [bit/s]")->delimiter(',');
-  command->add_option("--protocol", options->scan.protocols, "only by that one")->check(CLI::IsMember({1, 2}));
+  command->add_option("--protocol", options->scan.protocols, "only by that one")->check(example::one_of({1, 2}));
   command->add_option("--last-id", options->scan.last_id_1, "to be asked by Protocol 1.0, which has no broadcast ping")
-      ->check(CLI::Range(0, 253))
+      ->check(example::between(0, 253))
       ->capture_default_str();
   command->callback([options] {
     const auto ports = options->ports.empty() ? serial_ports() : options->ports;
@@ -73,12 +72,12 @@ void add_scan(CLI::App& program) {
   });
 }
 
-void add_show(CLI::App& program) {
+void add_show(example::Command& program) {
   struct Options : LineOptions {
     bool all = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("show", "Tell how servos are and how they are set");
+  example::Command* command = program.add_subcommand("show", "Tell how servos are and how they are set");
   add_line(*command, *options);
   command->add_flag("--all", options->all, "every register");
   command->callback([options] {
@@ -101,7 +100,7 @@ std::pair<std::string, double> parse_setting(const std::string& text) {
   return {text.substr(0, equals), value};
 }
 
-void add_setup(CLI::App& program) {
+void add_setup(example::Command& program) {
   struct Options : LineOptions {
     SettingsChange change;
     std::vector<std::string> settings;
@@ -111,13 +110,14 @@ void add_setup(CLI::App& program) {
     std::filesystem::path backup;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("setup", "Set servos up; what they were goes into a backup file first");
+  example::Command* command =
+      program.add_subcommand("setup", "Set servos up; what they were goes into a backup file first");
   command->footer("Torque is switched off. New servos all have the id 1: connect them one by one, or set --ids.");
   add_line(*command, *options);
   command->add_option("--backup", options->backup, "file for the settings as they are now; must not exist")->required();
-  command->add_option("--new-id", options->new_id, "of a single servo")->check(CLI::Range(0, 252));
+  command->add_option("--new-id", options->new_id, "of a single servo")->check(example::between(0, 252));
   command->add_option("--new-baud", options->new_baud, "of all [bit/s]");
-  command->add_option("--return-delay", options->return_delay_us, "[us]")->check(CLI::Range(0.0, 508.0));
+  command->add_option("--return-delay", options->return_delay_us, "[us]")->check(example::between(0.0, 508.0));
   command->add_flag("--zero", options->change.zero_here, "where each is now becomes its centre (Protocol 2.0)");
   command->add_option("--set", options->settings, "NAME=VALUE in the unit that show --all prints; several times");
   command->callback([options] {
@@ -138,15 +138,15 @@ void add_setup(CLI::App& program) {
   });
 }
 
-void add_restore(CLI::App& program) {
+void add_restore(example::Command& program) {
   struct Options {
     std::string port;
     std::filesystem::path backup;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("restore", "Make servos what they were before setup");
+  example::Command* command = program.add_subcommand("restore", "Make servos what they were before setup");
   command->add_option("--port", options->port, "such as /dev/ttyUSB0")->required();
-  command->add_option("backup", options->backup, "file that setup wrote")->required()->check(CLI::ExistingFile);
+  command->add_option("backup", options->backup, "file that setup wrote")->required()->check(example::existing_file());
   command->callback([options] {
     const SettingsBackup backup = read_backup(options->backup);
     with_protocol(backup.protocol, [&](auto protocol) { restore_settings<decltype(protocol)>(options->port, backup); });
@@ -154,9 +154,10 @@ void add_restore(CLI::App& program) {
   });
 }
 
-void add_reboot(CLI::App& program) {
+void add_reboot(example::Command& program) {
   auto options = std::make_shared<LineOptions>();
-  CLI::App* command = program.add_subcommand("reboot", "Start servos anew: a hardware error keeps their torque off");
+  example::Command* command =
+      program.add_subcommand("reboot", "Start servos anew: a hardware error keeps their torque off");
   add_line(*command, *options);
   command->callback([options] {
     const auto ids = options->wanted();
@@ -168,16 +169,17 @@ void add_reboot(CLI::App& program) {
   });
 }
 
-void add_measure(CLI::App& program) {
+void add_measure(example::Command& program) {
   struct Options : LineOptions {
     int cycles = 200;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("measure", "Measure a line: what rate it can hold, and what would help");
+  example::Command* command =
+      program.add_subcommand("measure", "Measure a line: what rate it can hold, and what would help");
   command->footer(
       "Torque must be off. Predicted: from single answers and the bytes of a cycle; measured: whole cycles.");
   add_line(*command, *options);
-  command->add_option("--cycles", options->cycles)->check(CLI::Range(10, 100'000))->capture_default_str();
+  command->add_option("--cycles", options->cycles)->check(example::between(10, 100'000))->capture_default_str();
   command->callback([options] {
     const auto ids = options->wanted();
     ask_for_realtime();  // as a walk does
@@ -190,7 +192,7 @@ void add_measure(CLI::App& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program{"Servos on serial lines: found, shown, set up, restored, measured", "surefoot-servos"};
+  example::Command program{"Servos on serial lines: found, shown, set up, restored, measured", "surefoot-servos"};
   program.require_subcommand(1);
   add_scan(program);
   add_show(program);

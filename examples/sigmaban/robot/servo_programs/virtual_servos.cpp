@@ -1,5 +1,4 @@
 // virtual_servos: servos behind a pseudo-terminal, for programs that want some. Runs until Ctrl-C.
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -8,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "../../../../apps/common/run_program.hpp"
+#include "../../../../apps/common/command.hpp"
 #include "../bus/realtime.hpp"
 #include "../virtual_bus/virtual_bus.hpp"
 #include "../walk/stop_signals.hpp"
@@ -144,53 +143,53 @@ void serve(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program{"Servos behind a pseudo-terminal, until Ctrl-C; prints its name", "virtual_servos"};
+  example::Command program{"Servos behind a pseudo-terminal, until Ctrl-C; prints its name", "virtual_servos"};
   Options options;
   Faults& faults = options.answerer.faults;
   program.add_option("--port-link", options.link, "also make this symbolic link to it");
   program.add_option("--servos", options.ids, "their ids")->capture_default_str();
-  program.add_option("--protocol", options.protocol)->check(CLI::IsMember({1, 2}))->capture_default_str();
+  program.add_option("--protocol", options.protocol)->check(example::one_of({1, 2}))->capture_default_str();
   program.add_option("--model", options.models, "such as XM430-W350, by turns where there are several; else MX-64")
       ->delimiter(',');
   program.add_flag("--new", options.new_ones, "as from the factory: their own speed, answers after 500 us");
   program.add_option("--baud", options.answerer.bits_per_s, "[bit/s]")
-      ->check(CLI::Range(1'200, 4'500'000))
+      ->check(example::between(1'200, 4'500'000))
       ->capture_default_str();
   program.add_flag_callback(
       "--chain-goes-on", [&] { options.answerer.chain = Chain::goes_on; },
       "in a sync or bulk read, servos behind a silent one answer a little later; else not at all");
   program.add_option("--seed", options.answerer.seed, "of the faults")->capture_default_str();
-  program.add_option("--lost", faults.lost, "share of answers")->check(CLI::Range(0.0, 1.0));
-  program.add_option("--corrupted", faults.corrupted, "share of answers")->check(CLI::Range(0.0, 1.0));
+  program.add_option("--lost", faults.lost, "share of answers")->check(example::between(0.0, 1.0));
+  program.add_option("--corrupted", faults.corrupted, "share of answers")->check(example::between(0.0, 1.0));
   program.add_option("--corrupted-bytes", faults.corrupted_bytes, "in a row, at most")
-      ->check(CLI::Range(1, 6))
+      ->check(example::between(1, 6))
       ->capture_default_str();
-  program.add_option("--late", faults.late, "share of answers")->check(CLI::Range(0.0, 1.0));
-  program.add_option("--late-by", faults.late_s, "[s]")->check(CLI::Range(0.0, 1.0))->capture_default_str();
-  program.add_option("--duplicated", faults.duplicated, "share of answers")->check(CLI::Range(0.0, 1.0));
-  program.add_option("--wrong-id", faults.wrong_id, "share of answers")->check(CLI::Range(0.0, 1.0));
+  program.add_option("--late", faults.late, "share of answers")->check(example::between(0.0, 1.0));
+  program.add_option("--late-by", faults.late_s, "[s]")->check(example::between(0.0, 1.0))->capture_default_str();
+  program.add_option("--duplicated", faults.duplicated, "share of answers")->check(example::between(0.0, 1.0));
+  program.add_option("--wrong-id", faults.wrong_id, "share of answers")->check(example::between(0.0, 1.0));
   program.add_option("--silent", options.silent, "ids that do not answer");
   program.add_option("--silent-from", options.silent_from_s, "[s] after the start");
   program.add_option("--silent-to", options.silent_to_s, "[s] after the start");
   program.add_option("--hot", options.hot, "ids that are 90 degrees hot");
   program.add_option("--voltage", options.voltage_v, "[V]; else what each model is made for")
-      ->check(CLI::Range(0.1, 25.0));
+      ->check(example::between(0.1, 25.0));
   program.add_option("--unheard", faults.unheard, "share of instructions that no servo hears")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(example::between(0.0, 1.0));
   program.add_option("--return-delay", options.return_delay_us, "of the servos; new ones have 500 [us]")
-      ->check(CLI::Range(0.0, 508.0))
+      ->check(example::between(0.0, 508.0))
       ->capture_default_str();
   program.add_option("--status-return-level", options.status_return_level)
-      ->check(CLI::Range(0, 2))
+      ->check(example::between(0, 2))
       ->capture_default_str();
   program.add_option("--latency-timer", options.answerer.latency_timer_s, "of the adapter [s]")
-      ->check(CLI::Range(0.0, 0.1))
+      ->check(example::between(0.0, 0.1))
       ->capture_default_str();
   program.add_option("--then", options.then_s, "when the next ones happen [s]")->capture_default_str();
   program.add_option("--reboot", options.reboot, "ids that start anew");
   program.add_option("--overload", options.overload, "ids that shut themselves down");
   program.add_option("--cut", options.cut, "ids whose cable is cut");
-  program.add_option("--voltage-then", options.voltage_then_v, "[V]")->check(CLI::Range(0.0, 25.0));
+  program.add_option("--voltage-then", options.voltage_then_v, "[V]")->check(example::between(0.0, 25.0));
   program.add_flag("--hang-up", options.hang_up, "the port goes away");
   program.callback([&] {
     if (faults.lost + faults.corrupted + faults.late + faults.duplicated + faults.wrong_id > 1) {

@@ -1,10 +1,9 @@
 // surefoot-walk: a policy on the robot. Ball, policy, walk engine and servos, on hardware or on virtual servos.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <memory>
 
-#include "../../../../apps/common/run_program.hpp"
+#include "../../../../apps/common/command.hpp"
 #include "../../approach/commands.hpp"
 #include "../policy_option.hpp"
 #include "joints_file.hpp"
@@ -13,9 +12,9 @@
 namespace sigmaban {
 namespace {
 
-void add_run(CLI::App& program) {
+void add_run(example::Command& program) {
   auto options = std::make_shared<WalkRun>();
-  CLI::App* command = program.add_subcommand("run", "Stand up, walk to the ball, stop");
+  example::Command* command = program.add_subcommand("run", "Stand up, walk to the ball, stop");
   add_problem_option(*command, options->problem);
   add_motion_option(*command, options->motion);
   command->add_option("--policy", options->policy, policy_help)->capture_default_str();
@@ -31,10 +30,10 @@ void add_run(CLI::App& program) {
       "--fast-sync-read", options->fast_sync_read,
       "servos answer in one packet (Protocol 2.0, new firmware); what it does not bring is asked as usual");
   command->add_option("--protocol", options->protocol, "of the servos")
-      ->check(CLI::IsMember({1, 2}))
+      ->check(example::one_of({1, 2}))
       ->capture_default_str();
   command->add_option("--joints", options->joints_file, "JSON file: which servo moves which joint (see joints)")
-      ->check(CLI::ExistingFile);
+      ->check(example::existing_file());
   auto* ball =
       command->add_option("--ball", options->ball, "simulated ball at x, y [m], kick direction [rad]; else at random")
           ->expected(3);
@@ -53,7 +52,7 @@ void add_run(CLI::App& program) {
       ->excludes(body);
   command->add_option("--body-baud", options->body.bits_per_s, "[bit/s]")->capture_default_str();
   command->add_option("--body-ids", options->body.devices.ids, "of inertial unit, left foot, right foot")
-      ->check(CLI::Range(0, 253))
+      ->check(example::between(0, 253))
       ->capture_default_str();
   command
       ->add_option("--unloaded-counts", options->body.devices.unloaded_counts, "of the feet in the air, left and right")
@@ -61,25 +60,25 @@ void add_run(CLI::App& program) {
   command->add_option("--newton-per-count", options->body.devices.newton_per_count, "of the load cells")
       ->capture_default_str();
   command->add_option("--seconds", options->seconds, "of walking at most")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(example::between(0.0, 1e6))
       ->capture_default_str();
   command->add_option("--rate", options->rate_hz, "of the servos' goals [Hz]")
-      ->check(CLI::Range(10.0, 500.0))
+      ->check(example::between(10.0, 500.0))
       ->capture_default_str();
   command->add_option("--after", options->after, "off: sit down, then torque off; hold: go on standing")
-      ->check(CLI::IsMember({"off", "hold"}))
+      ->check(example::one_of({"off", "hold"}))
       ->capture_default_str();
   command
       ->add_option("--bus-watchdog", options->bus_watchdog_s,
                    "after which servos of Protocol 2.0 stop without instructions; 0: never [s]")
-      ->check(CLI::Range(0.0, 2.5))
+      ->check(example::between(0.0, 2.5))
       ->capture_default_str();
   command->add_option("--log", options->log, "recording (CSV) of every tick");
   command->add_option("--trunk-x", options->walk.trunk_x_offset, "of the trunk before the feet [m]")
-      ->check(CLI::Range(-0.05, 0.05))
+      ->check(example::between(-0.05, 0.05))
       ->capture_default_str();
   command->add_option("--trunk-z", options->walk.trunk_z_offset, "by which the knees are bent [m]")
-      ->check(CLI::Range(0.0, 0.1))
+      ->check(example::between(0.0, 0.1))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "of the simulated ball")->capture_default_str();
   command->footer("First try without a robot: --port virtual. Then with the robot hanging in the air.");
@@ -88,16 +87,16 @@ void add_run(CLI::App& program) {
   });
 }
 
-void add_joints(CLI::App& program) {
+void add_joints(example::Command& program) {
   struct Options {
     bool all = false;
     std::size_t ports = 1;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("joints", "Print the file that --joints takes, with the defaults");
+  example::Command* command = program.add_subcommand("joints", "Print the file that --joints takes, with the defaults");
   command->add_flag("--all", options->all, "neck and arms, too, 20 joints: held in a pose");
   command->add_option("--ports", options->ports, "left leg, right leg, and neck and arms on so many ports")
-      ->check(CLI::Range(1, 3))
+      ->check(example::between(1, 3))
       ->capture_default_str();
   command->callback([options] {
     RobotJoints robot = default_joints(options->all);
@@ -111,7 +110,7 @@ void add_joints(CLI::App& program) {
 }  // namespace sigmaban
 
 int main(int argc, char** argv) {
-  CLI::App program{"A trained policy on the robot: ball, policy, walk engine, servos", "surefoot-walk"};
+  example::Command program{"A trained policy on the robot: ball, policy, walk engine, servos", "surefoot-walk"};
   program.require_subcommand(1);
   sigmaban::add_run(program);
   sigmaban::add_joints(program);
