@@ -25,7 +25,7 @@ EvaluatedHypothesis made_up(const TankBench& bench, const std::vector<std::strin
 
 TEST_CASE("the most probable structure is named if its odds against none are high enough") {
   TankBench bench({});
-  bench.problem.structured = [](const Hypothesis&, const Integration&) { return false; };
+  bench.problem.structured = [](const Hypothesis&, const FitProblem&) { return false; };
   const SelectionCriteria& criteria = bench.problem.criteria;
   const double needed = std::log(criteria.named_odds);
   const auto chosen_with = [&](double log_prior) {

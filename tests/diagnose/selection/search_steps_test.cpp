@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <memory>
@@ -67,14 +68,14 @@ TEST_CASE("the search begins a second time from the nominal parameters, with the
   TankBench bench({rate_in_tank});
   Search search = bench.search();
   search.problem.fit.weighting.sigma[0] = 0.001;
-  const auto children = extended_from(search, bench.problem.nominal);
+  const auto children = extended_from(search, bench.problem.nominal, nullptr);
   REQUIRE_FALSE(children.empty());
   const EvaluatedHypothesis& best = children[best_of(children, bench.problem.criteria)];
   CHECK(names_in(best) == "constant_rate");
   CHECK(best.loss < 1);  // in units of what the nominal parameters leave
   CHECK(search.problem.fit.weighting.sigma[0] == 0.001);
   search.problem.stopped = [] { return true; };
-  CHECK(extended_from(search, bench.problem.nominal).empty());
+  CHECK(extended_from(search, bench.problem.nominal, nullptr).empty());
 }
 
 TEST_CASE("from the parameters of two effects that stand in for one, that one is found") {
@@ -107,13 +108,26 @@ TEST_CASE("a pool grows as long as a further effect makes the best structure bet
   CHECK(search.problem.fit.weighting.sigma[0] == doctest::Approx(0.01).epsilon(0.1));
 
   Search idle = nothing.search();
-  idle.problem.structured = [](const Hypothesis&, const Integration&) { return false; };
+  idle.problem.structured = [](const Hypothesis&, const FitProblem&) { return false; };
   std::vector<EvaluatedHypothesis> clean{nothing.with({})};
   int rounds = 0;
   idle.problem.on_progress = [&](const std::string&, double) { ++rounds; };
   grow(idle, clean);
   CHECK(rounds == 1);
   CHECK(names_in(clean[best_of(clean, nothing.problem.criteria)]).empty());
+}
+
+TEST_CASE("a first effect whose fit ended in a valley is tried from places around before others mend it") {
+  const TankBench bench({rate_in_tank});
+  Search search = bench.search();
+  search.problem.structured = [](const Hypothesis& one, const FitProblem&) {
+    return one.effects.size() != 1 || std::abs(one.values[0][0] - 0.2) > 0.02;
+  };
+  const Fit unfinished{bench.start({"constant_rate"}), 0, true};
+  std::vector<EvaluatedHypothesis> children{evaluate_fit(bench.bound, unfinished, bench.problem, bench.parallel)};
+  begin_elsewhere(search, children);
+  REQUIRE(children.size() == 1);
+  CHECK(children[0].hypothesis.values[0][0] == doctest::Approx(0.2).epsilon(0.1));
 }
 
 TEST_CASE("where residuals hold structure one step that does not pay is followed by another, but not two") {
@@ -133,7 +147,7 @@ TEST_CASE("where residuals hold structure one step that does not pay is followed
   bench.problem.effort.hopeless = 15;  // behind the best one, beyond which nothing is followed
   CHECK(rounds_with(bench.search()) == 1);
   bench.problem.effort.hopeless = 1e6;
-  bench.problem.structured = [](const Hypothesis&, const Integration&) { return false; };
+  bench.problem.structured = [](const Hypothesis&, const FitProblem&) { return false; };
   CHECK(rounds_with(bench.search()) == 1);
 }
 
@@ -151,10 +165,10 @@ TEST_CASE("a first effect that leaves only noise needs no other start") {
   const TankBench bench({rate_in_tank});
   Search search = bench.search();
   std::vector<EvaluatedHypothesis> children{bench.with({"constant_rate"})};
-  search.problem.structured = [](const Hypothesis&, const Integration&) { return false; };
+  search.problem.structured = [](const Hypothesis&, const FitProblem&) { return false; };
   begin_elsewhere(search, children);
   CHECK(children.size() == 1);
-  search.problem.structured = [](const Hypothesis&, const Integration&) { return true; };
+  search.problem.structured = [](const Hypothesis&, const FitProblem&) { return true; };
   begin_elsewhere(search, children);
   CHECK(children.size() > 1);
 }

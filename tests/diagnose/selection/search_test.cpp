@@ -57,10 +57,10 @@ TEST_CASE("where no effect acts none is chosen") {
 
 TEST_CASE("of residuals that look like noise only strong proposals get a fit") {
   TankBench bench({});
-  bench.problem.structured = [](const Hypothesis&, const Integration&) { return false; };
+  bench.problem.structured = [](const Hypothesis&, const FitProblem&) { return false; };
   CHECK(bench.found().alternatives.empty());
   TankBench strong({rate_in_tank});
-  strong.problem.structured = [](const Hypothesis&, const Integration&) { return false; };
+  strong.problem.structured = [](const Hypothesis&, const FitProblem&) { return false; };
   CHECK(names_in(strong.found().chosen) == "constant_rate");
 }
 

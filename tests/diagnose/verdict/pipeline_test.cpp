@@ -141,8 +141,27 @@ TEST_CASE("residuals are searched for more as long as they hold what noise does 
       hold_out_recordings(bind_tank, toys::noisy_tanks(toys::extra_inflow(), 0.01), {options, parallel});
   const Calibration calibration = calibrate_model(setup, {options, parallel});
   const SearchProblem problem = search_problem(setup, calibration, {options, parallel});
-  CHECK(problem.structured(calibration.calibrated.hypothesis, problem.fit.integration));
-  CHECK_FALSE(problem.structured(toys::with_effects(setup, toys::extra_inflow()), problem.fit.integration));
+  CHECK(problem.structured(calibration.calibrated.hypothesis, problem.fit));
+  CHECK_FALSE(problem.structured(toys::with_effects(setup, toys::extra_inflow()), problem.fit));
+}
+
+TEST_CASE("what a structure leaves of recordings that it was not fitted to says nothing of it") {
+  DiagnoseOptions options;
+  options.starts = 2;
+  const Parallel parallel = serially();
+  std::vector<Recording> recordings = toys::noisy_tanks({}, 0.01);
+  const Recording other = toys::noisy_tanks(toys::extra_inflow(), 0.01).back();
+  recordings.back().outputs = other.outputs;
+  EstimationSetup setup = hold_out_recordings(bind_tank, std::move(recordings), {options, parallel});
+  const Calibration calibration = calibrate_model(setup, {options, parallel});
+  const SearchProblem problem = search_problem(setup, calibration, {options, parallel});
+  const Hypothesis truth = toys::with_effects(setup, {});
+  CHECK(problem.structured(truth, problem.fit));
+  FitProblem without_it = problem.fit;
+  std::erase_if(without_it.recordings,
+                [&](std::size_t r) { return setup.bound.recordings[r].outputs == other.outputs; });
+  REQUIRE(without_it.recordings.size() + 1 == problem.fit.recordings.size());
+  CHECK_FALSE(problem.structured(truth, without_it));
 }
 
 TEST_CASE("by default every recording is for the fit, and held out once") {

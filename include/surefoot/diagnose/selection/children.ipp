@@ -64,7 +64,9 @@ SUREFOOT_ONCE Fit fit_child(const BoundSimulator& bound, const Hypothesis& paren
   }
   const bool scalable = predicted != weak;
   attempt(predicted, !scalable);  // what cannot grow from nothing begins with everything else settled around it
-  if (scalable && !(best.loss < effort.bold_loss * parent_loss)) attempt(weak);
+  double promised = 1 - effort.bold_loss;  // much of it is enough, or half of what the signatures say
+  for (const Proposal& addition : additions) promised = std::min(promised, std::max(0.0, addition.gain) / 2);
+  if (scalable && !(best.loss < (1 - promised) * parent_loss)) attempt(weak);
   if (!scalable && additions.size() == 1) {
     const auto& others = additions.front().more_starts;
     for (std::size_t k = 0; k < std::min(effort.more_starts, others.size()); ++k) attempt({others[k]}, true);
@@ -94,12 +96,19 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> finished(const Search& search, st
   std::erase_if(fits, [](const Fit& one) { return !one.ok; });
   sort_items(fits, [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
   if (fits.size() > keep) fits.resize(keep);
+  parallel(fits.size(), [&](std::size_t i) {
+    if (!problem.stopped()) fits[i] = fit(bound, fits[i].hypothesis, problem.fit, serially());
+  });
+  // what is missing may have pushed the calibrated parameters where no fit finds back from; not if one leaves noise
+  // only
+  const auto least = std::ranges::min_element(fits, {}, &Fit::loss);
+  const bool scatter = problem.scatter && least != fits.end() &&
+                       least->hypothesis.effects.size() == problem.known + 1 &&
+                       problem.structured(least->hypothesis, problem.fit);
   std::vector<EvaluatedHypothesis> evaluated(fits.size());
   parallel(fits.size(), [&](std::size_t i) {
-    if (problem.stopped()) return;
-    Fit one = fit(bound, fits[i].hypothesis, problem.fit, serially());
-    // what is missing may have pushed the calibrated parameters where no fit finds back from
-    if (problem.scatter && one.hypothesis.effects.size() == problem.known + 1) {
+    Fit& one = fits[i];
+    if (scatter && !problem.stopped()) {
       one = scattered_fit(bound, one, one.hypothesis, problem.fit, problem.effort.scattered_points, scatter_seed,
                           serially());
     }
@@ -202,6 +211,7 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> combined(const Search& search,
   }
   FitProblem quick = problem.fit;
   quick.recordings = problem.screened;
+  quick.max_iterations = problem.effort.first_iterations;
   parallel(fits.size(), [&](std::size_t i) {
     if (!problem.stopped()) fits[i] = fit(bound, fits[i].hypothesis, quick, serially());
   });

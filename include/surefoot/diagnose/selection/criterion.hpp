@@ -102,8 +102,9 @@ struct SearchProblem {
   bool scatter = true;                // start the model's parameters from elsewhere too, beside a first effect
   std::size_t known = 0;              // effects that are part of the model already: the first ones, never removed
   std::size_t candidates = 1;         // effects and places that may be tried
-  /// Whether the residuals of a hypothesis still hold what noise does not; where not, only strong proposals get a fit.
-  std::function<bool(const Hypothesis&, const Integration&)> structured = [](const Hypothesis&, const Integration&) {
+  /// Whether the residuals of a hypothesis, on the recordings that it was fitted to, still hold what noise does not;
+  /// where not, only strong proposals get a fit.
+  std::function<bool(const Hypothesis&, const FitProblem&)> structured = [](const Hypothesis&, const FitProblem&) {
     return true;
   };
   std::function<void(const std::string&, double)> on_progress = [](const std::string&, double) {};

@@ -69,7 +69,7 @@ SUREFOOT_ONCE Selection ranked(const Search& search, const std::vector<Evaluated
     without = share[i];
   }
   // What residuals show to be missing anyway is named as far as it stands out: the verdict says that this is a part.
-  const bool refuted = search.problem.structured(selection.nominal.hypothesis, search.problem.fit.integration);
+  const bool refuted = search.problem.structured(selection.nominal.hypothesis, search.problem.fit);
   const bool something =
       1 - without > criteria.named_odds * without || (refuted && share[order.front()] > criteria.tie_odds * without);
   const bool named = something && search.effects(pool[order.front()]) > 0;

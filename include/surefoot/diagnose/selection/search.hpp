@@ -29,11 +29,13 @@ void reweight(Search& search, const EvaluatedHypothesis& best);
 bool refine_integration(Search& search, const EvaluatedHypothesis& best);
 
 /// The children of the model without effects, but with the parameters and initial states of `start`: what is missing
-/// may have pushed the calibrated ones where no fit finds back from, and where signatures look otherwise.
-std::vector<EvaluatedHypothesis> extended_from(Search search, Hypothesis start);
+/// may have pushed the calibrated ones where no fit finds back from, and where signatures look otherwise. With a `best`
+/// structure so far, only what could come near it.
+std::vector<EvaluatedHypothesis> extended_from(Search search, Hypothesis start, const EvaluatedHypothesis* best);
 
-/// Where first effects leave more than noise: first effects from the nominal parameters on, and pairs of the best.
-void begin_elsewhere(const Search& search, std::vector<EvaluatedHypothesis>& children);
+/// Where first effects leave more than noise: the best from places around, first effects from the nominal parameters
+/// on, and pairs of the best.
+void begin_elsewhere(Search search, std::vector<EvaluatedHypothesis>& children);
 
 /// Extends the best structures of a pool, as long as that makes the best one better; once more where no first effect
 /// does and something is left. What the best one can do without is taken away at once (floating search; P. Pudil,
@@ -44,7 +46,11 @@ void grow(Search& search, std::vector<EvaluatedHypothesis>& pool);
 /// The best structures, and the model without effects, fitted and evaluated with the present weights and recordings.
 std::vector<EvaluatedHypothesis> fitted_again(const Search& search, const std::vector<EvaluatedHypothesis>& pool);
 
-/// The same within a pool; the very best ones also from places around.
+/// Fits the best of a pool from places around, with a growing horizon and under guidance, where they leave more than
+/// noise: another effect would only mend a fit that ended in a valley.
+void try_around(const Search& search, std::vector<EvaluatedHypothesis>& pool);
+
+/// The best structures of a pool fitted again, the very best ones also from places around.
 void refit_best(const Search& search, std::vector<EvaluatedHypothesis>& pool);
 
 /// A structure without each of its effects in turn, fitted from its parameters on; none for a single effect.

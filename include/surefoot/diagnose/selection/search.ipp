@@ -50,7 +50,7 @@ SUREFOOT_ONCE void reweight(Search& search, const EvaluatedHypothesis& best) {
 
 /// Whether a hypothesis leaves more than noise: what leaves only noise needs no second effect, nor another start.
 SUREFOOT_ONCE bool leaves_structure(const Search& search, const EvaluatedHypothesis& one) {
-  return search.problem.structured(one.hypothesis, search.problem.fit.integration);
+  return search.problem.structured(one.hypothesis, search.problem.fit);
 }
 
 /// The children of one parent into the pool of children; no fits for what cannot come near the best structure so far.
@@ -64,7 +64,7 @@ SUREFOOT_ONCE void extend(const Search& search, const EvaluatedHypothesis& paren
     std::erase_if(proposals,
                   [&](const Proposal& one) { return one.gain < problem.criteria.unstructured_proposal_gain; });
   }
-  const bool first = search.effects(parent) == 0;
+  const bool first = search.effects(best) == 0;
   const SearchEffort& effort = problem.effort;
   // the calibrated parameters may be far off, so that signatures of first effects say little
   std::vector<Proposal> singles = proposals;
@@ -95,7 +95,8 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> extended(const Search& search,
   return children;
 }
 
-SUREFOOT_ONCE std::vector<EvaluatedHypothesis> extended_from(Search search, Hypothesis start) {
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> extended_from(Search search, Hypothesis start,
+                                                             const EvaluatedHypothesis* best) {
   std::vector<EvaluatedHypothesis> children;
   if (search.problem.stopped()) return children;
   start.effects.resize(search.problem.known);
@@ -103,17 +104,31 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> extended_from(Search search, Hypo
   const EvaluatedHypothesis bare = evaluate_fit(search.bound, Fit{start, 0, true}, search.problem, search.parallel);
   reweight(search, bare);
   search.problem.scatter = false;
-  extend(search, bare, bare, children);
+  extend(search, bare, best != nullptr ? *best : bare, children);
   return children;
 }
 
-SUREFOOT_ONCE void begin_elsewhere(const Search& search, std::vector<EvaluatedHypothesis>& children) {
+/// A hypothesis, fitted and evaluated again.
+SUREFOOT_ONCE EvaluatedHypothesis refitted(const Search& search, const EvaluatedHypothesis& one) {
+  return evaluate_fit(search.bound, fit(search.bound, one.hypothesis, search.problem.fit, serially()), search.problem,
+                      serially());
+}
+
+SUREFOOT_ONCE void begin_elsewhere(Search search, std::vector<EvaluatedHypothesis>& children) {
   const SelectionCriteria& criteria = search.problem.criteria;
   const auto done = [&] {
     return !children.empty() && !leaves_structure(search, children[best_of(children, criteria)]);
   };
   if (done()) return;
-  for (const EvaluatedHypothesis& child : extended_from(search, search.problem.nominal)) {
+  try_around(search, children);  // other effects would mend a fit that ended in a valley
+  if (!children.empty()) {
+    EvaluatedHypothesis& best = children[best_of(children, criteria)];
+    reweight(search, best);
+    refine_integration(search, best);
+    best = refitted(search, best);
+    if (done()) return;
+  }
+  for (const EvaluatedHypothesis& child : extended_from(search, search.problem.nominal, nullptr)) {
     keep_best_form(children, child, criteria);
   }
   if (criteria.max_effects < 2 || children.empty() || done()) return;
@@ -126,12 +141,6 @@ SUREFOOT_ONCE bool refine_integration(Search& search, const EvaluatedHypothesis&
                                        problem.recordings, search.parallel);
   if (finer) problem.integration = *finer;
   return finer.has_value();
-}
-
-/// A hypothesis, fitted and evaluated again.
-SUREFOOT_ONCE EvaluatedHypothesis refitted(const Search& search, const EvaluatedHypothesis& one) {
-  return evaluate_fit(search.bound, fit(search.bound, one.hypothesis, search.problem.fit, serially()), search.problem,
-                      serially());
 }
 
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> smaller(const Search& search, const EvaluatedHypothesis& whole) {
@@ -154,7 +163,8 @@ SUREFOOT_ONCE void take_effects_away(const Search& search, std::vector<Evaluated
 
 SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool) {
   const SelectionCriteria& criteria = search.problem.criteria;
-  std::vector<EvaluatedHypothesis> beam = pool;
+  const SearchEffort& effort = search.problem.effort;
+  std::vector<EvaluatedHypothesis> beam = best_structures(pool, effort.beam, effort.hopeless, criteria);
   bool in_vain = false;  // a first step that does not pay may lead to one that does; two in a row do not
   for (int depth = 0; depth < criteria.max_effects && !search.problem.stopped(); ++depth) {
     search.problem.on_progress("searching effect " + std::to_string(depth + 1),
@@ -163,26 +173,34 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool) 
     const auto most = static_cast<std::size_t>(criteria.max_effects);
     std::erase_if(beam, [&](const EvaluatedHypothesis& one) { return search.effects(one) >= most; });
     std::vector<EvaluatedHypothesis> children = extended(search, beam, best);
-    if (depth == 0) begin_elsewhere(search, children);
+    if (search.effects(best) == 0 && depth == 0) begin_elsewhere(search, children);
     for (const EvaluatedHypothesis& child : children) keep_best_form(pool, child, criteria);
     const EvaluatedHypothesis now = pool[best_of(pool, criteria)];
     const bool no_better = same_structure(now.hypothesis, best.hypothesis);
     if (no_better && (in_vain || search.effects(now) > 0 || !leaves_structure(search, now))) break;
     in_vain = no_better;
-    const SearchEffort& effort = search.problem.effort;
     std::erase_if(children, [&](const EvaluatedHypothesis& one) {
       return holds_idle_effect(one, pool) || log_odds(one, now, criteria) < -effort.hopeless;
     });
     beam = best_structures(children, effort.beam, effort.hopeless, criteria);
     if (beam.empty()) break;
     reweight(search, now);
-    if (refine_integration(search, now)) {  // all that may still be chosen is compared with the same errors
-      pool = fitted_again(search, pool);
-      for (EvaluatedHypothesis& one : beam) one = refitted(search, one);
+    const bool finer = refine_integration(search, now);
+    if (finer) pool = fitted_again(search, pool);  // compared with the same errors
+    for (EvaluatedHypothesis& one : beam) {        // and with the weights of their children
+      const auto again = std::ranges::find_if(
+          pool, [&](const auto& other) { return same_structure(other.hypothesis, one.hypothesis); });
+      if (finer && again != pool.end()) {
+        one = *again;
+      } else {
+        one = refitted(search, one);
+        keep_best_form(pool, one, criteria);
+      }
     }
     if (no_better) continue;
-    for (const EvaluatedHypothesis& rest : smaller(search, now)) {
-      if (keep_best_form(pool, rest, criteria)) beam.push_back(rest);
+    for (const EvaluatedHypothesis& rest : smaller(search, pool[best_of(pool, criteria)])) {
+      const bool hopeless = log_odds(rest, now, criteria) < -effort.hopeless;
+      if (keep_best_form(pool, rest, criteria) && !hopeless) beam.push_back(rest);
     }
   }
 }
@@ -200,19 +218,18 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> fitted_again(const Search& search
   return best;
 }
 
-SUREFOOT_ONCE void refit_best(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
+SUREFOOT_ONCE void try_around(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
   constexpr std::uint64_t restart_seed = 1;
   const SearchProblem& problem = search.problem;
-  if (problem.stopped()) return;
-  for (const EvaluatedHypothesis& one : fitted_again(search, pool)) keep_best_form(pool, one, problem.criteria);
   FitProblem quick = problem.fit;
   quick.recordings = problem.screened;
   quick.max_iterations = problem.effort.restart_iterations;
   constexpr double none_is_hopeless = std::numeric_limits<double>::infinity();
   for (const EvaluatedHypothesis& one :
        best_structures(pool, problem.effort.restarted, none_is_hopeless, problem.criteria)) {
-    if (problem.stopped() || !leaves_structure(search, one)) continue;
-    const Fit fitted{one.hypothesis, one.loss, true};
+    const bool calibrated = search.effects(one) == 0;  // from many places, before the search
+    if (problem.stopped() || calibrated || !leaves_structure(search, one)) continue;
+    const Fit fitted = fit(search.bound, one.hypothesis, problem.fit, search.parallel);  // with the present weights
     Fit again =
         restarted_fit(search.bound, fitted, problem.fit, quick, problem.effort.restarts, restart_seed, search.parallel);
     again = grown_fit(search.bound, again, again.hypothesis, problem.fit, search.parallel);
@@ -220,6 +237,14 @@ SUREFOOT_ONCE void refit_best(const Search& search, std::vector<EvaluatedHypothe
     if (!(again.loss < fitted.loss)) continue;
     keep_best_form(pool, evaluate_fit(search.bound, again, problem, search.parallel), problem.criteria);
   }
+}
+
+SUREFOOT_ONCE void refit_best(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
+  if (search.problem.stopped()) return;
+  for (const EvaluatedHypothesis& one : fitted_again(search, pool)) {
+    keep_best_form(pool, one, search.problem.criteria);
+  }
+  try_around(search, pool);
 }
 
 SUREFOOT_ONCE void swap_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
@@ -248,7 +273,7 @@ SUREFOOT_ONCE void begin_anew(const Search& search, std::vector<EvaluatedHypothe
   const SelectionCriteria& criteria = search.problem.criteria;
   const EvaluatedHypothesis best = pool[best_of(pool, criteria)];
   if (search.effects(best) < 2) return;  // the search began with single effects
-  for (const EvaluatedHypothesis& child : extended_from(search, best.hypothesis)) {
+  for (const EvaluatedHypothesis& child : extended_from(search, best.hypothesis, &best)) {
     keep_best_form(pool, child, criteria);
   }
 }
@@ -285,11 +310,14 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
     if (same_structure(pool[best_of(pool, criteria)].hypothesis, best)) break;
   }
   if (search.problem.fit.recordings.size() < all.size()) {
+    const bool finished = !leaves_structure(search, pool[best_of(pool, criteria)]);
     search.problem.fit.recordings = all;
     reweight(search, pool[best_of(pool, criteria)]);
     const EvaluatedHypothesis without_effects = evaluate_fit(bound, calibrated, search.problem, parallel);
     search.problem.least = negligible_differences(without_effects.errors, criteria);
     pool = fitted_again(search, pool);
+    if (finished && leaves_structure(search, pool[best_of(pool, criteria)]))
+      grow(search, pool);  // the others show more
   }
   Selection selection = ranked(search, pool);
   for (std::size_t e = search.problem.known; e < selection.chosen.hypothesis.effects.size(); ++e) {

@@ -152,14 +152,14 @@ SUREFOOT_ONCE std::vector<AttachedEffect> candidate_effects(const EstimationSetu
       distinct_inputs(setup.bound, calibration.calibrated.hypothesis, setup.split.training, calibration.training_runs));
 }
 
-/// Whether the residuals of a hypothesis hold what noise does not; final poses are too few to tell.
-SUREFOOT_ONCE bool holds_structure(const EstimationSetup& setup, const Hypothesis& hypothesis,
-                                   const Integration& integration, const SelectionCriteria& criteria,
-                                   const Parallel& parallel) {
+/// Whether the residuals of a hypothesis hold what noise does not; final poses are too few to tell. Recordings that it
+/// was not fitted to would tell of parameters.
+SUREFOOT_ONCE bool holds_structure(const EstimationSetup& setup, const Hypothesis& hypothesis, const FitProblem& fit,
+                                   const SelectionCriteria& criteria, const Parallel& parallel) {
   if (setup.noise == NoiseKind::final_pose) return true;
-  const auto& training = setup.split.training;
-  const auto runs = simulate_all(setup.bound, hypothesis, training, integration, parallel);
-  const Mismatch mismatch = measure_mismatch(setup.bound, training, runs, setup.problem.weighting.sigma, setup.noise);
+  const auto runs = simulate_all(setup.bound, hypothesis, fit.recordings, fit.integration, parallel);
+  const Mismatch mismatch =
+      measure_mismatch(setup.bound, fit.recordings, runs, setup.problem.weighting.sigma, setup.noise);
   return mismatch.p_value < criteria.structure_significance && mismatch.share > criteria.structure_share;
 }
 
@@ -189,15 +189,14 @@ SUREFOOT_ONCE SearchProblem search_problem(const EstimationSetup& setup, const C
     run.progress(stage, progress_search + (progress_evaluation - progress_search) * share);
   };
   problem.stopped = [run] { return run.search_has_ended(); };
-  problem.structured = [&setup, run, criteria = problem.criteria](const Hypothesis& hypothesis,
-                                                                  const Integration& integration) {
-    return holds_structure(setup, hypothesis, integration, criteria, run.parallel);
+  problem.structured = [&setup, run, criteria = problem.criteria](const Hypothesis& hypothesis, const FitProblem& fit) {
+    return holds_structure(setup, hypothesis, fit, criteria, run.parallel);
   };
   return problem;
 }
 
-SUREFOOT_ONCE void describe_models(const EstimationSetup& setup, const FittedModels& models,
-                                   const Selection& selection, const RunContext& run, Diagnosis& diagnosis) {
+SUREFOOT_ONCE void describe_models(const EstimationSetup& setup, const FittedModels& models, const Selection& selection,
+                                   const RunContext& run, Diagnosis& diagnosis) {
   const BoundSimulator& bound = setup.bound;
   const Hypothesis &calibrated = models.calibrated.hypothesis, &chosen = models.chosen.hypothesis;
   const std::size_t known = calibrated.effects.size();
