@@ -22,6 +22,9 @@ function(surefoot_unity target files)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${SUREFOOT_UNITY} UNITY_BUILD_BATCH_SIZE ${files})
 endfunction()
 
+# What computes for longer than it takes to compile may be optimised more than the rest of a build.
+set(SUREFOOT_COMPUTING_OPTIONS "" CACHE STRING "Further options for programs and tests that compute for long")
+
 surefoot_unity(surefoot_compiled 3)  # a user's build has the files one by one, for small computers
 
 if(SUREFOOT_TIDY)

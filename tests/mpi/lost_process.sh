@@ -8,7 +8,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 fail() { echo "lost_process.sh: $*" >&2; exit 1; }
 
-options=(train --problem ha --budget 5 --seed 3 --checkpoint-every 0)
+options=(train --problem ha --budget 3 --seed 3 --checkpoint-every 0)
 "$bin/sigmaban_approach" "${options[@]}" --threads 1 --out "$scratch/alone.policy" >"$scratch/alone.txt"
 
 for lost in 0 1; do
