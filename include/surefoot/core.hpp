@@ -1,4 +1,7 @@
 // The face of surefoot/core: problems, policies, executors, random numbers, rollouts.
+//
+// validate.hpp is not here but in solve.hpp: only those who write a problem need it, and it would cost all others 30 MB
+// to compile.
 #pragma once
 
 #include "surefoot/core/any_executor.hpp"
@@ -13,5 +16,4 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/rollout.hpp"
 #include "surefoot/core/transition.hpp"
-#include "surefoot/core/validate.hpp"
 #include "surefoot/core/vec.hpp"
