@@ -3,6 +3,7 @@
 #pragma once
 
 #include "surefoot/core.hpp"
+#include "surefoot/core/validate.hpp"
 #include "surefoot/diagnose.hpp"
 #include "surefoot/forest.hpp"
 #include "surefoot/motion.hpp"

@@ -48,7 +48,7 @@ NO_FACE = ["surefoot/core/compiled.hpp",  # the switch between the two ways to b
            "surefoot/core/positive_definite.hpp", "surefoot/optimize/householder.hpp",
            "surefoot/optimize/linear_algebra.hpp", "surefoot/optimize/symmetric_eigen.hpp"]  # compiled once, for others
 # Part of the face, but not in the header of their area: what they need costs other users too much to compile.
-ON_THEIR_OWN = ["surefoot/motion/walk_changes.hpp", "surefoot/solve/policy_search.hpp"]
+ON_THEIR_OWN = ["surefoot/core/validate.hpp", "surefoot/motion/walk_changes.hpp", "surefoot/solve/policy_search.hpp"]
 
 # Beyond Eigen and the standard library.
 SYSTEM_HEADERS = {

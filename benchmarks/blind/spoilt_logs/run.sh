@@ -29,10 +29,14 @@ echo "seed $seed, $logs logs, results in $out"
 mkdir -p "$out"
 "$build/bin/concealed_plants" --out "$out/plants" --cases "$logs" --seed "$seed" >"$out/plants.txt"
 "$build/bin/spoilt_logs" --draw "$out/plants" "$out" "$seed"
-for folder in "$out"/cases/case_*; do
-  result=$out/results/${folder##*/}
+budget=60  # seconds of a diagnosis: the log is looked at again with what was found
+diagnose_one() {
+  local folder=$1 result=$out/results/${1##*/}
   mkdir -p "$result"
-  timeout 900 "$build/bin/surefoot-diagnose" --model "$folder/model.toml" --out "$result" --quiet --repair --max-effects 0 \
-    "$folder"/rec_*.csv >"$result/log.txt" 2>&1 || echo "${folder##*/}: exit code $?, see $result/log.txt"
-done
+  timeout 900 "$build/bin/surefoot-diagnose" --model "$folder/model.toml" --out "$result" --quiet --threads 1 \
+    --budget "$budget" "$folder"/rec_*.csv >"$result/log.txt" 2>&1 || echo "${folder##*/}: exit code $?, see $result/log.txt"
+}
+export -f diagnose_one
+export build out budget
+printf '%s\0' "$out"/cases/case_* | xargs -0 -P "$(nproc)" -n 1 bash -c 'diagnose_one "$1"' _
 "$build/bin/spoilt_logs" --score "$out" "$out/results" | tee "$out/score.txt"

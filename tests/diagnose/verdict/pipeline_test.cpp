@@ -30,29 +30,6 @@ TEST_CASE("recordings are checked, freed of outliers, and remarked upon") {
   CHECK_THROWS_AS(screen_recordings(toys::LeakyTank{}.info(), none), DiagnoseError);
 }
 
-TEST_CASE("faults of the log are named first, and repaired only if that is asked for") {
-  DiagnoseOptions options;
-  const Parallel parallel = serially();
-  const RunContext run{options, parallel};
-  auto recordings = toys::noisy_tanks({}, 0.01);
-  recordings[3].outputs *= -1;
-  const auto logged = recordings[3].outputs;
-  const auto named = examine_recordings(bind_tank, recordings, run);
-  REQUIRE(named.size() == 1);
-  CHECK(named[0].recording == "tank 3");
-  CHECK(named[0].kind == "sign_flipped");
-  CHECK_FALSE(named[0].repaired);
-  CHECK(recordings[3].outputs == logged);
-  options.repair = true;
-  CHECK(examine_recordings(bind_tank, recordings, run).at(0).repaired);
-  CHECK(recordings[3].outputs(0, 7) == -logged(0, 7));
-  const SimulatorInfo info = toys::LeakyTank{}.info();
-  CHECK(run_pipeline(bind_tank, info, recordings, {.max_effects = 0}, parallel, 1, {}).log_faults.empty());
-  recordings[3].outputs *= -1;
-  CHECK(run_pipeline(bind_tank, info, recordings, {.max_effects = 0}, parallel, 1, {})
-            .sentence.starts_with("Caution, the log has a fault: tank 3: level_m has the opposite sign"));
-}
-
 TEST_CASE("few recordings are cut, unless those to hold out are named; one short recording is refused") {
   DiagnoseOptions options;
   options.starts = 2;

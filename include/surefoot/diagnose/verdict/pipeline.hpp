@@ -1,58 +1,23 @@
 // The pipeline: the stages of a diagnosis, one after the other.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
-#include <functional>
 #include <stop_token>
-#include <string_view>
 #include <vector>
 
 #include "surefoot/diagnose/options.hpp"
 #include "surefoot/diagnose/verdict/alternatives.hpp"
+#include "surefoot/diagnose/verdict/examine_recordings.hpp"
 #include "surefoot/diagnose/verdict/fitted_model.hpp"
 #include "surefoot/diagnose/verdict/held_out_check.hpp"
+#include "surefoot/diagnose/verdict/run_context.hpp"
 #include "surefoot/diagnose/verdict/verdict.hpp"
 
 namespace surefoot::diagnosis {
 
-/// Binds the user's simulator to recordings.
-using BindSimulator = std::function<BoundSimulator(std::vector<Recording>)>;
-
-/// Of the time that is given: what calibration and search may take.
-inline constexpr double search_share = 0.85;
-
-/// How a diagnosis is run: what every stage may ask for.
-struct RunContext {
-  const DiagnoseOptions& options;
-  const Parallel& parallel;
-  std::uint64_t seed = 1;
-  std::stop_token stop = {};
-  std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
-
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); }
-  bool has_ended() const { return stop.stop_requested() || seconds() > options.max_seconds; }
-  /// The rest of the time is for fits without each held-out recording: unless these are made, errors are of recordings
-  /// that were fitted.
-  bool search_has_ended() const { return has_ended() || seconds() > search_share * options.max_seconds; }
-  void progress(std::string_view stage, double share, std::string_view best = "") const {
-    if (options.on_progress) options.on_progress(stage, share, best);
-  }
-};
-
 /// Checks recordings, takes outliers out of them and says in remarks what cannot be seen in them. Throws DiagnoseError
 /// if one does not fit the simulator.
 std::vector<Remark> screen_recordings(const SimulatorInfo& info, std::vector<Recording>& recordings);
-
-/// Names faults of the log, and repairs them if that is asked for.
-std::vector<LogFault> examine_recordings(const BindSimulator& bind, std::vector<Recording>& recordings,
-                                         const RunContext& run);
-
-/// All effects that may be named: those of the library and the user's own.
-std::vector<Effect> nameable_effects(const DiagnoseOptions& options);
-
-/// The simulator as it is, with the effects that are part of the model already.
-Hypothesis nominal_with_known(const BoundSimulator& bound, const DiagnoseOptions& options);
 
 /// Few recordings are cut into parts, unless those to hold out are named.
 std::vector<Recording> cut_few_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
@@ -100,6 +65,15 @@ void describe_limits(const EstimationSetup& setup, const FittedModels& models, c
 void evaluate_selection(const EstimationSetup& setup, const Calibration& calibration, const SearchProblem& problem,
                         const Selection& selection, const std::vector<AttachedEffect>& candidates,
                         const RunContext& run, Diagnosis& diagnosis);
+
+/// All stages after the recordings were screened and examined. Returns the model as it was found, and fills in the
+/// diagnosis.
+struct FoundModel {
+  Hypothesis hypothesis;
+  Sizes sizes;
+};
+FoundModel diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings, const RunContext& run,
+                               Diagnosis& diagnosis);
 
 /// Runs all stages. The result does not depend on how `parallel` shares out the work.
 Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorInfo& info, std::vector<Recording> recordings,

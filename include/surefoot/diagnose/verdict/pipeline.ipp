@@ -17,7 +17,6 @@
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/standard_errors.hpp"
-#include "surefoot/diagnose/log_doctor/examine_log.hpp"
 #include "surefoot/diagnose/residual_tests/noise.hpp"
 #include "surefoot/diagnose/screening.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
@@ -47,36 +46,6 @@ SUREFOOT_ONCE std::vector<Remark> screen_recordings(const SimulatorInfo& info, s
   const auto screened = screen(info, recordings);
   remarks.insert(remarks.end(), screened.begin(), screened.end());
   return remarks;
-}
-
-SUREFOOT_ONCE std::vector<Effect> nameable_effects(const DiagnoseOptions& options) {
-  std::vector<Effect> effects = all_effects();
-  effects.insert(effects.end(), options.more_effects.begin(), options.more_effects.end());
-  return effects;
-}
-
-SUREFOOT_ONCE Hypothesis nominal_with_known(const BoundSimulator& bound, const DiagnoseOptions& options) {
-  const std::vector<Effect> effects = nameable_effects(options);
-  Hypothesis hypothesis = nominal_hypothesis(bound);
-  for (const NamedEffect& named : options.known) {
-    hypothesis.effects.push_back(attach(bound.info, named, effects));
-    hypothesis.values.emplace_back(static_cast<Eigen::Index>(named.values.size()));
-    std::copy(named.values.begin(), named.values.end(), hypothesis.values.back().data());
-  }
-  return hypothesis;
-}
-
-SUREFOOT_ONCE std::vector<LogFault> examine_recordings(const BindSimulator& bind, std::vector<Recording>& recordings,
-                                                       const RunContext& run) {
-  const auto nominal = [&](const BoundSimulator& bound) { return nominal_with_known(bound, run.options); };
-  LogExamination examined =
-      examine_log({bind, nominal, run.parallel, {}, [run] { return run.search_has_ended(); }}, recordings);
-  if (run.options.repair) {
-    recordings = std::move(examined.repaired);
-  } else {
-    for (LogFault& fault : examined.faults) fault.repaired = false;
-  }
-  return examined.faults;
 }
 
 SUREFOOT_ONCE std::vector<Recording> cut_few_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
@@ -321,9 +290,8 @@ SUREFOOT_ONCE void remove_outliers_from(EstimationSetup& setup, const Hypothesis
   }
 }
 
-/// All stages after the recordings were screened and examined.
-SUREFOOT_ONCE void diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
-                                       const RunContext& run, Diagnosis& diagnosis) {
+SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
+                                             const RunContext& run, Diagnosis& diagnosis) {
   recordings = cut_few_recordings(bind, std::move(recordings), run);
   EstimationSetup setup = hold_out_recordings(bind, std::move(recordings), run);
   name_recordings(setup, diagnosis);
@@ -343,6 +311,26 @@ SUREFOOT_ONCE void diagnose_recordings(const BindSimulator& bind, std::vector<Re
 
   run.progress("evaluating", progress_evaluation);
   evaluate_selection(setup, calibration, problem, selection, candidates, run, diagnosis);
+  return {selection.chosen.hypothesis, setup.bound.sizes};
+}
+
+/// Stages after the log was examined. What was found shows more faults: with these repaired all begins anew.
+SUREFOOT_ONCE void diagnose_and_examine_again(const BindSimulator& bind, const std::vector<Recording>& logged,
+                                              LogExamination log, const RunContext& run, Diagnosis& diagnosis) {
+  const Diagnosis begun = diagnosis;
+  constexpr int looks = 2;
+  for (int look = 0; look < looks; ++look) {
+    diagnosis = begun;
+    const FoundModel found = diagnose_recordings(bind, run.options.repair ? log.repaired : logged, run, diagnosis);
+    diagnosis.log_faults = log.faults;
+    if (look > 0 || found.hypothesis.effects.size() == run.options.known.size() || run.search_has_ended()) return;
+    LogExamination more = examine_with_effects(bind, log.repaired, found.hypothesis, found.sizes, run);
+    if (more.faults.empty()) return;
+    log.faults.insert(log.faults.end(), more.faults.begin(), more.faults.end());
+    diagnosis.log_faults = log.faults;
+    if (!run.options.repair) return;
+    log.repaired = std::move(more.repaired);
+  }
 }
 
 SUREFOOT_ONCE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorInfo& info,
@@ -359,14 +347,14 @@ SUREFOOT_ONCE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorI
   sort_recordings(recordings);
   const Eigen::Index kept = shorten_recordings(recordings, options.max_rows);
   if (kept > 0) diagnosis.remarks.push_back({"", shortening_sentence(kept)});
-  diagnosis.log_faults = examine_recordings(bind, recordings, run);
-  const std::string warning = caution(diagnosis.log_faults);
+  LogExamination log = examine_recordings(bind, recordings, run);
+  const std::string warning = caution(log.faults);
   try {
-    diagnose_recordings(bind, std::move(recordings), run, diagnosis);
+    diagnose_and_examine_again(bind, recordings, std::move(log), run, diagnosis);
   } catch (const DiagnoseError& error) {  // which may well come of the fault
     throw DiagnoseError(warning + error.what());
   }
-  diagnosis.sentence = warning + diagnosis.sentence;
+  diagnosis.sentence = caution(diagnosis.log_faults) + diagnosis.sentence;
   diagnosis.seconds = run.seconds();
   run.progress("done", 1, diagnosis.sentence);
   return diagnosis;

@@ -1,0 +1,30 @@
+// The log doctor in the course of a diagnosis: by the model as it is, and again with the effects that were found.
+#pragma once
+
+#include <vector>
+
+#include "surefoot/diagnose/log_doctor/examine_log.hpp"
+#include "surefoot/diagnose/verdict/run_context.hpp"
+
+namespace surefoot::diagnosis {
+
+/// All effects that may be named: those of the library and the user's own.
+std::vector<Effect> nameable_effects(const DiagnoseOptions& options);
+
+/// The simulator as it is, with the effects that are part of the model already.
+Hypothesis nominal_with_known(const BoundSimulator& bound, const DiagnoseOptions& options);
+
+/// Looks for faults of the log; they are marked as repaired only if that is asked for.
+LogExamination examine_recordings(const BindSimulator& bind, const std::vector<Recording>& recordings,
+                                  const RunContext& run);
+
+/// The same by a model with the effects that were found, and with its typical sizes: physics that was missing hides a
+/// clock that is some percent off, or one recording's sensor that sticks.
+LogExamination examine_with_effects(const BindSimulator& bind, const std::vector<Recording>& recordings,
+                                    const Hypothesis& found, const Sizes& sizes, const RunContext& run);
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/verdict/examine_recordings.ipp"
+#endif

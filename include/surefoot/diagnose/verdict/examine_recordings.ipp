@@ -1,0 +1,66 @@
+// Definitions of surefoot/diagnose/verdict/examine_recordings.hpp.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/verdict/examine_recordings.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_ONCE std::vector<Effect> nameable_effects(const DiagnoseOptions& options) {
+  std::vector<Effect> effects = all_effects();
+  effects.insert(effects.end(), options.more_effects.begin(), options.more_effects.end());
+  return effects;
+}
+
+SUREFOOT_ONCE Hypothesis nominal_with_known(const BoundSimulator& bound, const DiagnoseOptions& options) {
+  const std::vector<Effect> effects = nameable_effects(options);
+  Hypothesis hypothesis = nominal_hypothesis(bound);
+  for (const NamedEffect& named : options.known) {
+    hypothesis.effects.push_back(attach(bound.info, named, effects));
+    hypothesis.values.emplace_back(static_cast<Eigen::Index>(named.values.size()));
+    std::copy(named.values.begin(), named.values.end(), hypothesis.values.back().data());
+  }
+  return hypothesis;
+}
+
+/// Examines with a model as it is at its begin.
+SUREFOOT_ONCE LogExamination examine(const BindSimulator& bind, const std::vector<Recording>& recordings,
+                                     const std::function<Hypothesis(const BoundSimulator&)>& model,
+                                     const RunContext& run) {
+  LogExamination examined =
+      examine_log({bind, model, run.parallel, {}, [run] { return run.search_has_ended(); }}, recordings);
+  if (run.options.repair) return examined;
+  for (LogFault& fault : examined.faults) fault.repaired = false;
+  return examined;
+}
+
+SUREFOOT_ONCE LogExamination examine_recordings(const BindSimulator& bind, const std::vector<Recording>& recordings,
+                                                const RunContext& run) {
+  return examine(
+      bind, recordings, [&](const BoundSimulator& bound) { return nominal_with_known(bound, run.options); }, run);
+}
+
+SUREFOOT_ONCE LogExamination examine_with_effects(const BindSimulator& bind, const std::vector<Recording>& recordings,
+                                                  const Hypothesis& found, const Sizes& sizes, const RunContext& run) {
+  const auto bind_with_sizes = [&](std::vector<Recording> logged) {
+    BoundSimulator bound = bind(std::move(logged));
+    bound.sizes = sizes;
+    return bound;
+  };
+  const auto model = [&](const BoundSimulator& bound) {
+    Hypothesis hypothesis = nominal_hypothesis(bound);
+    hypothesis.parameters = found.parameters;
+    hypothesis.effects = found.effects;
+    hypothesis.values = found.values;
+    return hypothesis;
+  };
+  return examine(bind_with_sizes, recordings, model, run);
+}
+
+}  // namespace surefoot::diagnosis

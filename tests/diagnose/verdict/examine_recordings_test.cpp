@@ -1,0 +1,68 @@
+// Faults of the log in the course of a diagnosis.
+#include "surefoot/diagnose/verdict/examine_recordings.hpp"
+
+#include <doctest/doctest.h>
+
+#include "surefoot/diagnose/diagnose.hpp"
+#include "surefoot/diagnose/verdict/pipeline.hpp"
+#include "tests/diagnose/log_doctor/servo_log.hpp"
+#include "tests/diagnose/verdict/tank_setup.hpp"
+
+namespace surefoot::diagnosis {
+namespace {
+
+const BindSimulator bind_tank = [](std::vector<Recording> recordings) {
+  return bind_simulator(toys::LeakyTank{}, std::move(recordings));
+};
+
+TEST_CASE("faults of the log are named first, and repaired only if that is asked for") {
+  DiagnoseOptions options;
+  const Parallel parallel = serially();
+  const RunContext run{options, parallel};
+  auto recordings = toys::noisy_tanks({}, 0.01);
+  recordings[3].outputs *= -1;
+  const auto logged = recordings[3].outputs;
+  const auto named = examine_recordings(bind_tank, recordings, run).faults;
+  REQUIRE(named.size() == 1);
+  CHECK(named[0].recording == "tank 3");
+  CHECK(named[0].kind == "sign_flipped");
+  CHECK_FALSE(named[0].repaired);
+  CHECK(recordings[3].outputs == logged);
+  options.repair = true;
+  const LogExamination examined = examine_recordings(bind_tank, recordings, run);
+  CHECK(examined.faults.at(0).repaired);
+  CHECK(examined.repaired[3].outputs(0, 7) == -logged(0, 7));
+  recordings = examined.repaired;
+  const SimulatorInfo info = toys::LeakyTank{}.info();
+  CHECK(run_pipeline(bind_tank, info, recordings, {.max_effects = 0}, parallel, 1, {}).log_faults.empty());
+  recordings[3].outputs *= -1;
+  CHECK(run_pipeline(bind_tank, info, recordings, {.max_effects = 0}, parallel, 1, {})
+            .sentence.starts_with("Caution, the log has a fault: tank 3: level_m has the opposite sign"));
+}
+
+TEST_CASE("a fast clock that missing friction hides is named, and repaired if asked for, once the friction is found") {
+  const BindSimulator bind = [](std::vector<Recording> some) { return bind_simulator(toys::Servo{}, std::move(some)); };
+  const SimulatorInfo info = toys::Servo{}.info();
+  auto log = toys::servo_log(toys::dry_friction());
+  log[2].time *= 1.02;
+  DiagnoseOptions options{.effects = {"coulomb_friction"}, .max_effects = 1};
+  const Parallel parallel = serially();
+  CHECK(examine_recordings(bind, log, RunContext{options, parallel}).faults.empty());
+  const Diagnosis named = run_pipeline(bind, info, log, options, parallel, 1, {});
+  REQUIRE(named.log_faults.size() == 1);
+  CHECK(named.log_faults[0].kind == "clock_skew");
+  CHECK(named.log_faults[0].recording == "rec_03.csv");
+  CHECK(named.log_faults[0].size == doctest::Approx(0.02).epsilon(0.05));
+  CHECK_FALSE(named.log_faults[0].repaired);
+  CHECK(named.sentence.starts_with("Caution, the log has a fault: rec_03.csv"));
+  options.repair = true;
+  const Diagnosis repaired = run_pipeline(bind, info, log, options, parallel, 1, {});
+  REQUIRE(repaired.log_faults.size() == 1);
+  CHECK(repaired.log_faults[0].repaired);
+  CHECK(named.verdict == Verdict::unexplained);
+  CHECK(repaired.verdict == Verdict::missing_physics);
+  CHECK(repaired.fit.size() == named.fit.size());
+}
+
+}  // namespace
+}  // namespace surefoot::diagnosis
