@@ -34,7 +34,7 @@ diagnose_one() {
   local folder=$1 result=$out/results/${1##*/}
   mkdir -p "$result"
   timeout 900 "$build/bin/surefoot-diagnose" --model "$folder/model.toml" --out "$result" --quiet --threads 1 \
-    --budget "$budget" "$folder"/rec_*.csv >"$result/log.txt" 2>&1 || echo "${folder##*/}: exit code $?, see $result/log.txt"
+    --budget "$budget" --repair "$folder"/rec_*.csv >"$result/log.txt" 2>&1 || echo "${folder##*/}: exit code $?, see $result/log.txt"
 }
 export -f diagnose_one
 export build out budget

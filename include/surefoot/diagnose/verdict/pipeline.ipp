@@ -314,22 +314,39 @@ SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vec
   return {selection.chosen.hypothesis, setup.bound.sizes};
 }
 
+/// Whether something that was repaired is named once more: the first look, without the physics, was wrong about it.
+SUREFOOT_ONCE bool is_mended_again(const std::vector<LogFault>& first, const std::vector<LogFault>& then) {
+  return std::ranges::any_of(first, [&](const LogFault& one) {
+    return std::ranges::any_of(then, [&](const LogFault& other) {
+      return one.kind == other.kind && one.recording == other.recording && one.channel == other.channel;
+    });
+  });
+}
+
 /// Stages after the log was examined. What was found shows more faults: with these repaired all begins anew.
-SUREFOOT_ONCE void diagnose_and_examine_again(const BindSimulator& bind, const std::vector<Recording>& logged,
-                                              LogExamination log, const RunContext& run, Diagnosis& diagnosis) {
-  const Diagnosis begun = diagnosis;
-  constexpr int looks = 2;
-  for (int look = 0; look < looks; ++look) {
-    diagnosis = begun;
+SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, const std::vector<Recording>& logged,
+                                                   LogExamination log, const std::vector<Remark>& remarks,
+                                                   const RunContext& run) {
+  bool begins_anew = false;
+  while (true) {
+    Diagnosis diagnosis;
+    diagnosis.remarks = remarks;
     const FoundModel found = diagnose_recordings(bind, run.options.repair ? log.repaired : logged, run, diagnosis);
-    diagnosis.log_faults = log.faults;
-    if (look > 0 || found.hypothesis.effects.size() == run.options.known.size() || run.search_has_ended()) return;
-    LogExamination more = examine_with_effects(bind, log.repaired, found.hypothesis, found.sizes, run);
-    if (more.faults.empty()) return;
-    log.faults.insert(log.faults.end(), more.faults.begin(), more.faults.end());
-    diagnosis.log_faults = log.faults;
-    if (!run.options.repair) return;
-    log.repaired = std::move(more.repaired);
+    const bool found_any = found.hypothesis.effects.size() > run.options.known.size();
+    LogExamination more;
+    if (found_any && !begins_anew && !run.search_has_ended()) {
+      more = examine_with_effects(bind, log.repaired, found.hypothesis, found.sizes, run);
+    }
+    begins_anew = run.options.repair && !more.faults.empty();
+    if (is_mended_again(log.faults, more.faults)) {
+      log = examine_with_effects(bind, logged, found.hypothesis, found.sizes, run);
+    } else if (!more.faults.empty()) {
+      log.faults.insert(log.faults.end(), more.faults.begin(), more.faults.end());
+      log.repaired = std::move(more.repaired);
+    }
+    if (begins_anew) continue;
+    diagnosis.log_faults = std::move(log.faults);
+    return diagnosis;
   }
 }
 
@@ -338,26 +355,24 @@ SUREFOOT_ONCE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorI
                                      const Parallel& parallel, std::uint64_t seed, std::stop_token stop) {
   check(options);
   const RunContext run{options, parallel, seed, stop};
-  Diagnosis diagnosis;
-  diagnosis.model = info.name;
-  diagnosis.seed = seed;
-
   run.progress("screening", 0);
-  diagnosis.remarks = screen_recordings(info, recordings);
+  std::vector<Remark> remarks = screen_recordings(info, recordings);
   sort_recordings(recordings);
   const Eigen::Index kept = shorten_recordings(recordings, options.max_rows);
-  if (kept > 0) diagnosis.remarks.push_back({"", shortening_sentence(kept)});
+  if (kept > 0) remarks.push_back({"", shortening_sentence(kept)});
   LogExamination log = examine_recordings(bind, recordings, run);
   const std::string warning = caution(log.faults);
   try {
-    diagnose_and_examine_again(bind, recordings, std::move(log), run, diagnosis);
+    Diagnosis diagnosis = diagnose_and_examine_again(bind, recordings, std::move(log), remarks, run);
+    diagnosis.model = info.name;
+    diagnosis.seed = seed;
+    diagnosis.sentence = caution(diagnosis.log_faults) + diagnosis.sentence;
+    diagnosis.seconds = run.seconds();
+    run.progress("done", 1, diagnosis.sentence);
+    return diagnosis;
   } catch (const DiagnoseError& error) {  // which may well come of the fault
     throw DiagnoseError(warning + error.what());
   }
-  diagnosis.sentence = caution(diagnosis.log_faults) + diagnosis.sentence;
-  diagnosis.seconds = run.seconds();
-  run.progress("done", 1, diagnosis.sentence);
-  return diagnosis;
 }
 
 }  // namespace surefoot::diagnosis
