@@ -1,7 +1,7 @@
 // The face of surefoot/core, but for validate.hpp: problems, policies, executors, random numbers, rollouts.
 //
-// validate.hpp (checks of a problem) is not here: only those who write a problem need it, and it would cost all others
-// 30 MB to compile.
+// validate.hpp (checks of a problem) is not here but in solve.hpp: only those who write a problem need it, and it would
+// cost all others 30 MB to compile.
 #pragma once
 
 #include "surefoot/core/any_executor.hpp"

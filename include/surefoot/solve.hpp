@@ -5,6 +5,7 @@
 #pragma once
 
 #include "surefoot/core.hpp"
+#include "surefoot/core/validate.hpp"
 #include "surefoot/forest.hpp"
 #include "surefoot/solve/export_policy.hpp"
 #include "surefoot/solve/forest_policy.hpp"

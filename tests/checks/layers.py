@@ -205,7 +205,8 @@ def check(root):
     for area in areas:
         face = [header for header in inner if area_of(header) == area and is_face(header)]
         faults += expect_includes(f"surefoot/{area}.hpp", files, set(face) - set(alone),
-                                  face + [f"surefoot/{used}.hpp" for used in MAY[area]])
+                                  face + [f"surefoot/{used}.hpp" for used in MAY[area]] +
+                                  [header for header in alone if area_of(header) in MAY[area]])
     faults += expect_includes("surefoot/surefoot.hpp", files,
                               ["surefoot/version.hpp"] + [f"surefoot/{area}.hpp" for area in areas] + alone, [])
     return faults
