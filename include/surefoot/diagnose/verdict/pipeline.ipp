@@ -314,7 +314,7 @@ SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vec
   return {selection.chosen.hypothesis, setup.bound.sizes};
 }
 
-/// Whether something that was repaired is named once more: the first look, without the physics, was wrong about it.
+/// Whether something that was repaired is named once more: the model without the physics was wrong about it.
 SUREFOOT_ONCE bool is_mended_again(const std::vector<LogFault>& first, const std::vector<LogFault>& then) {
   return std::ranges::any_of(first, [&](const LogFault& one) {
     return std::ranges::any_of(then, [&](const LogFault& other) {
