@@ -64,5 +64,15 @@ TEST_CASE("a fast clock that missing friction hides is named, and repaired if as
   CHECK(repaired.fit.size() == named.fit.size());
 }
 
+TEST_CASE("a repaired fault is named again only by the same kind in the same channel of the same recording") {
+  const LogFault slow{.kind = "clock_skew", .recording = "rec_03.csv", .size = -0.0137};
+  const LogFault fast{.kind = "clock_skew", .recording = "rec_03.csv", .size = 0.0138};
+  const LogFault other{.kind = "clock_skew", .recording = "rec_04.csv", .size = 0.0138};
+  const LogFault stuck{.kind = "stuck_sensor", .recording = "rec_03.csv", .channel = "theta_rad"};
+  CHECK(is_named_again({stuck, slow}, {fast}));
+  CHECK_FALSE(is_named_again({slow}, {other, stuck}));
+  CHECK_FALSE(is_named_again({slow}, {}));
+}
+
 }  // namespace
 }  // namespace surefoot::diagnosis

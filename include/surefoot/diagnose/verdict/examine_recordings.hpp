@@ -23,6 +23,10 @@ LogExamination examine_recordings(const BindSimulator& bind, const std::vector<R
 LogExamination examine_with_effects(const BindSimulator& bind, const std::vector<Recording>& recordings,
                                     const Hypothesis& found, const Sizes& sizes, const RunContext& run);
 
+/// Whether a fault is named once more in recordings that were repaired: the model without the effects was wrong about
+/// it.
+bool is_named_again(const std::vector<LogFault>& repaired, const std::vector<LogFault>& named);
+
 }  // namespace surefoot::diagnosis
 
 #ifndef SUREFOOT_COMPILED

@@ -29,7 +29,7 @@ SUREFOOT_ONCE Hypothesis nominal_with_known(const BoundSimulator& bound, const D
   return hypothesis;
 }
 
-/// Examines with a model as it is at its begin.
+/// The examination by a model that is calibrated from these parameters on.
 SUREFOOT_ONCE LogExamination examine(const BindSimulator& bind, const std::vector<Recording>& recordings,
                                      const std::function<Hypothesis(const BoundSimulator&)>& model,
                                      const RunContext& run) {
@@ -61,6 +61,14 @@ SUREFOOT_ONCE LogExamination examine_with_effects(const BindSimulator& bind, con
     return hypothesis;
   };
   return examine(bind_with_sizes, recordings, model, run);
+}
+
+SUREFOOT_ONCE bool is_named_again(const std::vector<LogFault>& repaired, const std::vector<LogFault>& named) {
+  return std::ranges::any_of(repaired, [&](const LogFault& one) {
+    return std::ranges::any_of(named, [&](const LogFault& other) {
+      return one.kind == other.kind && one.recording == other.recording && one.channel == other.channel;
+    });
+  });
 }
 
 }  // namespace surefoot::diagnosis

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
-#include "surefoot/diagnose/effects/catalogue.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
@@ -314,15 +313,6 @@ SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vec
   return {selection.chosen.hypothesis, setup.bound.sizes};
 }
 
-/// Whether something that was repaired is named once more: the model without the physics was wrong about it.
-SUREFOOT_ONCE bool is_mended_again(const std::vector<LogFault>& first, const std::vector<LogFault>& then) {
-  return std::ranges::any_of(first, [&](const LogFault& one) {
-    return std::ranges::any_of(then, [&](const LogFault& other) {
-      return one.kind == other.kind && one.recording == other.recording && one.channel == other.channel;
-    });
-  });
-}
-
 /// Stages after the log was examined. What was found shows more faults: with these repaired all begins anew.
 SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, const std::vector<Recording>& logged,
                                                    LogExamination log, const std::vector<Remark>& remarks,
@@ -338,7 +328,7 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
       more = examine_with_effects(bind, log.repaired, found.hypothesis, found.sizes, run);
     }
     begins_anew = run.options.repair && !more.faults.empty();
-    if (is_mended_again(log.faults, more.faults)) {
+    if (is_named_again(log.faults, more.faults)) {
       log = examine_with_effects(bind, logged, found.hypothesis, found.sizes, run);
     } else if (!more.faults.empty()) {
       log.faults.insert(log.faults.end(), more.faults.begin(), more.faults.end());
