@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <chrono>
+
 #include "surefoot/diagnose/diagnose.hpp"
 #include "surefoot/diagnose/verdict/pipeline.hpp"
 #include "tests/diagnose/log_doctor/servo_log.hpp"
@@ -62,6 +64,17 @@ TEST_CASE("a fast clock that missing friction hides is named, and repaired if as
   CHECK(named.verdict == Verdict::unexplained);
   CHECK(repaired.verdict == Verdict::missing_physics);
   CHECK(repaired.fit.size() == named.fit.size());
+}
+
+TEST_CASE("a search begins anew only if there is time for as much again") {
+  const Parallel parallel = serially();
+  const DiagnoseOptions options{.max_seconds = 1000};
+  RunContext run{options, parallel};
+  run.began -= std::chrono::seconds(600);
+  CHECK(run.has_time_for_as_much_again(300));
+  CHECK_FALSE(run.has_time_for_as_much_again(100));
+  const DiagnoseOptions patient;
+  CHECK(RunContext{patient, parallel, 1, {}, run.began}.has_time_for_as_much_again(0));
 }
 
 TEST_CASE("a repaired fault is named again only by the same kind in the same channel of the same recording") {

@@ -276,6 +276,11 @@ SUREFOOT_ONCE std::string shortening_sentence(Eigen::Index rows) {
          " of each recording were used; max_rows (--max-rows) takes more, in proportionally more time";
 }
 
+SUREFOOT_ONCE std::string no_time_to_begin_anew_sentence() {
+  return "a fault of the log showed only with what was found, and there was no time to begin anew with it repaired: "
+         "repair the recording, or give more time (max_seconds, --budget)";
+}
+
 /// Takes out single readings that are far from a model while their neighbours are not: no physics lasts for one row.
 SUREFOOT_ONCE void remove_outliers_from(EstimationSetup& setup, const Hypothesis& model, const RunContext& run,
                                         Diagnosis& diagnosis) {
@@ -313,12 +318,15 @@ SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vec
   return {selection.chosen.hypothesis, setup.bound.sizes};
 }
 
-/// Stages after the log was examined. What was found shows more faults: with these repaired all begins anew.
+/// Stages after the log was examined. What was found shows more faults: with these repaired all begins anew, if there
+/// is time for as much again.
 SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, const std::vector<Recording>& logged,
                                                    LogExamination log, const std::vector<Remark>& remarks,
                                                    const RunContext& run) {
   bool begins_anew = false;
   while (true) {
+    const double started = run.seconds();
+    const std::vector<LogFault> considered = log.faults;
     Diagnosis diagnosis;
     diagnosis.remarks = remarks;
     const FoundModel found = diagnose_recordings(bind, run.options.repair ? log.repaired : logged, run, diagnosis);
@@ -327,7 +335,9 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
     if (found_any && !begins_anew && !run.search_has_ended()) {
       more = examine_with_effects(bind, log.repaired, found.hypothesis, found.sizes, run);
     }
-    begins_anew = run.options.repair && !more.faults.empty();
+    const bool found_late = run.options.repair && !more.faults.empty();
+    begins_anew = found_late && run.has_time_for_as_much_again(started);
+    if (found_late && !begins_anew) diagnosis.remarks.push_back({"", no_time_to_begin_anew_sentence()});
     if (is_named_again(log.faults, more.faults)) {
       log = examine_with_effects(bind, logged, found.hypothesis, found.sizes, run);
     } else if (!more.faults.empty()) {
@@ -335,6 +345,7 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
       log.repaired = std::move(more.repaired);
     }
     if (begins_anew) continue;
+    for (LogFault& fault : log.faults) fault.repaired = fault.repaired && is_named_again(considered, {fault});
     diagnosis.log_faults = std::move(log.faults);
     return diagnosis;
   }

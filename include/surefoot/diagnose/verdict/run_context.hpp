@@ -32,6 +32,8 @@ struct RunContext {
   /// The rest of the time is for fits without each held-out recording: unless these are made, errors are of recordings
   /// that were fitted.
   bool search_has_ended() const { return has_ended() || seconds() > search_share * options.max_seconds; }
+  /// Whether what has taken since `started` [s], as seconds() gave it, could be done once more.
+  bool has_time_for_as_much_again(double started) const { return 2 * seconds() - started <= options.max_seconds; }
   void progress(std::string_view stage, double share, std::string_view best = "") const {
     if (options.on_progress) options.on_progress(stage, share, best);
   }
