@@ -1,7 +1,11 @@
 // An end stop: the position cannot pass `level`; what hits it comes back with `restitution` of its speed (Newton's law
-// of impact). Forms: "upper" and "lower".
+// of impact). Forms: "upper" and "lower"; "upper, elastic" and "lower, elastic" yield under the load.
 // Confusable with a limit of the input (the machine does not get further) and with a hardening spring.
 #pragma once
+
+#include <algorithm>
+#include <string>
+#include <utility>
 
 #include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/detail/extremes.hpp"
@@ -33,8 +37,35 @@ Effect end_stop_of(std::string form) {
       }};
 }
 
+/// A stop that yields: it pushes back with force = stiffness (way into it + settling * speed), and never pulls.
+template <int Side>
+Effect elastic_end_stop_of(std::string form) {
+  Effect stop = end_stop_of<Side>(std::move(form));
+  stop.sentence =
+      "an end stop at {level} that yields, with a spring of {stiffness} and a damper of {settling} times that, at {at}";
+  stop.parameters.pop_back();
+  stop.parameters.push_back({.name = "stiffness",
+                             .measure = {.effort = 1, .position = -1},
+                             .low = 0,
+                             .high = 1000,
+                             .starts = {10},
+                             .strength = true});
+  stop.parameters.push_back(
+      {.name = "settling", .measure = {.value = -1, .position = 1}, .low = 0, .high = 1, .starts = {0.03}});
+  stop.limit = {};
+  stop.force = +[](const EffectContext& m, Values p, Values) {
+    const double into = Side * (m.position - p[0]);
+    return into > 0 ? -Side * p[1] * std::max(0.0, into + p[2] * Side * m.value) : 0.0;
+  };
+  return stop;
+}
+
 inline Effect end_stop_upper() { return end_stop_of<1>("upper"); }
 
 inline Effect end_stop_lower() { return end_stop_of<-1>("lower"); }
+
+inline Effect elastic_end_stop_upper() { return elastic_end_stop_of<1>("upper, elastic"); }
+
+inline Effect elastic_end_stop_lower() { return elastic_end_stop_of<-1>("lower, elastic"); }
 
 }  // namespace surefoot::effects

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <memory>
@@ -17,6 +18,36 @@
 
 namespace surefoot::diagnosis {
 
+/// Inputs, and after them signals, in each row of a run.
+SUREFOOT_ONCE Eigen::MatrixXd inputs_and_signals(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                 std::size_t recording, const SimulatedRun& run) {
+  Eigen::MatrixXd efforts, signals;
+  bound.probe(bound, recording, hypothesis.parameters, run.states, efforts, signals);
+  const Eigen::MatrixXd& driven = bound.recordings[recording].inputs;
+  Eigen::MatrixXd all(driven.rows() + signals.rows(), signals.cols());
+  for (Eigen::Index column = 0; column < all.cols(); ++column) {
+    for (Eigen::Index k = 0; k < all.rows(); ++k) {
+      const double value = k < driven.rows() ? driven(k, column) : signals(k - driven.rows(), column);
+      all(k, column) = std::isfinite(value) ? value : 0.0;
+    }
+  }
+  return all;
+}
+
+SUREFOOT_ONCE std::vector<bool> zero_at_first(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                              const std::vector<std::size_t>& recordings,
+                                              const std::vector<SimulatedRun>& trajectories) {
+  std::vector<bool> zero(bound.info.inputs.size() + bound.info.signals.size(), true);
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    if (!trajectories[i].finite) continue;
+    const Eigen::MatrixXd all = inputs_and_signals(bound, hypothesis, recordings[i], trajectories[i]);
+    for (std::size_t k = 0; k < zero.size(); ++k) {
+      if (all(static_cast<Eigen::Index>(k), 0) != 0) zero[k] = false;
+    }
+  }
+  return zero;
+}
+
 SUREFOOT_ONCE std::vector<bool> distinct_inputs(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                                 const std::vector<std::size_t>& recordings,
                                                 const std::vector<SimulatedRun>& trajectories, double collinear) {
@@ -25,14 +56,9 @@ SUREFOOT_ONCE std::vector<bool> distinct_inputs(const BoundSimulator& bound, con
   std::vector<bool> changes(count, false);
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     if (!trajectories[i].finite) continue;
-    Eigen::MatrixXd efforts, signals;
-    bound.probe(bound, recordings[i], hypothesis.parameters, trajectories[i].states, efforts, signals);
-    const Eigen::MatrixXd& driven = bound.recordings[recordings[i]].inputs;
-    Eigen::MatrixXd all(products.rows(), signals.cols());
+    const Eigen::MatrixXd all = inputs_and_signals(bound, hypothesis, recordings[i], trajectories[i]);
     for (Eigen::Index column = 0; column < all.cols(); ++column) {
       for (Eigen::Index k = 0; k < all.rows(); ++k) {
-        const double value = k < driven.rows() ? driven(k, column) : signals(k - driven.rows(), column);
-        all(k, column) = std::isfinite(value) ? value : 0.0;
         if (all(k, column) != all(k, 0)) changes[static_cast<std::size_t>(k)] = true;
       }
     }
@@ -53,12 +79,22 @@ SUREFOOT_ONCE std::vector<bool> distinct_inputs(const BoundSimulator& bound, con
   return distinct;
 }
 
+/// Whether a position in this unit is no angle; one of unknown unit may be.
+SUREFOOT_ONCE bool is_length_unit(const std::string& unit) {
+  constexpr std::array<const char*, 4> lengths{"m", "cm", "mm", "km"};
+  return std::ranges::find(lengths, unit) != lengths.end();
+}
+
 SUREFOOT_ONCE bool fits_velocity(const BoundSimulator& bound, const Effect& effect, std::size_t state) {
+  const int position = bound.structure.position_of[state];
+  if (effect.needs_angle && (position < 0 || is_length_unit(bound.info.states[static_cast<std::size_t>(position)].unit))) {
+    return false;
+  }
   bool needs_position = effect.seen_position || effect.limit;
   for (const EffectParameter& parameter : effect.parameters) {
     needs_position = needs_position || parameter.measure.position != 0;
   }
-  return bound.structure.velocity[state] && (bound.structure.position_of[state] >= 0 || !needs_position);
+  return bound.structure.velocity[state] && (position >= 0 || !needs_position);
 }
 
 SUREFOOT_ONCE bool fits_state(const BoundSimulator& bound, const Effect& effect, std::size_t state) {
