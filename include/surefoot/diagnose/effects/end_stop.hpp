@@ -37,35 +37,36 @@ Effect end_stop_of(std::string form) {
       }};
 }
 
-/// A stop that yields: it pushes back with force = stiffness (way into it + settling * speed), and never pulls.
-template <int Side>
-Effect elastic_end_stop_of(std::string form) {
-  Effect stop = end_stop_of<Side>(std::move(form));
-  stop.sentence =
-      "an end stop at {level} that yields, with a spring of {stiffness} and a damper of {settling} times that, at {at}";
-  stop.parameters.pop_back();
-  stop.parameters.push_back({.name = "stiffness",
-                             .measure = {.effort = 1, .position = -1},
-                             .low = 0,
-                             .high = 1000,
-                             .starts = {10},
-                             .strength = true});
-  stop.parameters.push_back(
-      {.name = "settling", .measure = {.value = -1, .position = 1}, .low = 0, .high = 1, .starts = {0.03}});
-  stop.limit = {};
-  stop.force = +[](const EffectContext& m, Values p, Values) {
-    const double into = Side * (m.position - p[0]);
-    return into > 0 ? -Side * p[1] * std::max(0.0, into + p[2] * Side * m.value) : 0.0;
-  };
-  return stop;
-}
-
 inline Effect end_stop_upper() { return end_stop_of<1>("upper"); }
 
 inline Effect end_stop_lower() { return end_stop_of<-1>("lower"); }
 
-inline Effect elastic_end_stop_upper() { return elastic_end_stop_of<1>("upper, elastic"); }
+// side +1: upper, -1: lower
+inline double elastic_force(const EffectContext& m, Values p, int side) {
+  const double into = side * (m.position - p[0]);
+  return into > 0 ? -side * p[1] * std::max(0.0, into + p[2] * side * m.value) : 0.0;
+}
 
-inline Effect elastic_end_stop_lower() { return elastic_end_stop_of<-1>("lower, elastic"); }
+/// A stop that yields: it pushes back with force = stiffness (way into it + settling * speed), and never pulls.
+[[gnu::cold]] inline Effect elastic_end_stop(bool upper) {
+  Effect stop = upper ? end_stop_upper() : end_stop_lower();
+  stop.form += ", elastic";
+  stop.sentence =
+      "an end stop at {level} that yields, with a spring of {stiffness} and a damper of {settling} times that, at {at}";
+  const std::vector<EffectParameter> own = parameters_of(
+      {{.name = "stiffness",
+        .measure = {.effort = 1, .position = -1},
+        .low = 0,
+        .high = 1000,
+        .starts = {10},
+        .strength = true},
+       {.name = "settling", .measure = {.value = -1, .position = 1}, .low = 0, .high = 1, .starts = {0.03}}});
+  stop.parameters[1] = own[0];
+  stop.parameters.push_back(own[1]);
+  stop.limit = {};
+  stop.force = upper ? +[](const EffectContext& m, Values p, Values) { return elastic_force(m, p, 1); }
+                     : +[](const EffectContext& m, Values p, Values) { return elastic_force(m, p, -1); };
+  return stop;
+}
 
 }  // namespace surefoot::effects

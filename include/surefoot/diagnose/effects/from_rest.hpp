@@ -2,14 +2,13 @@
 // until then. Without this the first value counts for all that was before.
 #pragma once
 
-#include <utility>
-
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
 
 /// The same effect where its input was 0 before the first row; hidden states begin at zero.
-inline Effect from_rest(Effect effect) {
+[[gnu::cold]] inline Effect from_rest(const Effect& without) {
+  Effect effect = without;
   effect.form = "from rest";
   effect.from_rest = true;
   effect.start = {};

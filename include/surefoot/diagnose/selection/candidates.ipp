@@ -18,36 +18,6 @@
 
 namespace surefoot::diagnosis {
 
-/// Inputs, and after them signals, in each row of a run.
-SUREFOOT_ONCE Eigen::MatrixXd inputs_and_signals(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                                 std::size_t recording, const SimulatedRun& run) {
-  Eigen::MatrixXd efforts, signals;
-  bound.probe(bound, recording, hypothesis.parameters, run.states, efforts, signals);
-  const Eigen::MatrixXd& driven = bound.recordings[recording].inputs;
-  Eigen::MatrixXd all(driven.rows() + signals.rows(), signals.cols());
-  for (Eigen::Index column = 0; column < all.cols(); ++column) {
-    for (Eigen::Index k = 0; k < all.rows(); ++k) {
-      const double value = k < driven.rows() ? driven(k, column) : signals(k - driven.rows(), column);
-      all(k, column) = std::isfinite(value) ? value : 0.0;
-    }
-  }
-  return all;
-}
-
-SUREFOOT_ONCE std::vector<bool> zero_at_first(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                              const std::vector<std::size_t>& recordings,
-                                              const std::vector<SimulatedRun>& trajectories) {
-  std::vector<bool> zero(bound.info.inputs.size() + bound.info.signals.size(), true);
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    if (!trajectories[i].finite) continue;
-    const Eigen::MatrixXd all = inputs_and_signals(bound, hypothesis, recordings[i], trajectories[i]);
-    for (std::size_t k = 0; k < zero.size(); ++k) {
-      if (all(static_cast<Eigen::Index>(k), 0) != 0) zero[k] = false;
-    }
-  }
-  return zero;
-}
-
 SUREFOOT_ONCE std::vector<bool> distinct_inputs(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                                 const std::vector<std::size_t>& recordings,
                                                 const std::vector<SimulatedRun>& trajectories, double collinear) {
@@ -56,9 +26,14 @@ SUREFOOT_ONCE std::vector<bool> distinct_inputs(const BoundSimulator& bound, con
   std::vector<bool> changes(count, false);
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     if (!trajectories[i].finite) continue;
-    const Eigen::MatrixXd all = inputs_and_signals(bound, hypothesis, recordings[i], trajectories[i]);
+    Eigen::MatrixXd efforts, signals;
+    bound.probe(bound, recordings[i], hypothesis.parameters, trajectories[i].states, efforts, signals);
+    const Eigen::MatrixXd& driven = bound.recordings[recordings[i]].inputs;
+    Eigen::MatrixXd all(products.rows(), signals.cols());
     for (Eigen::Index column = 0; column < all.cols(); ++column) {
       for (Eigen::Index k = 0; k < all.rows(); ++k) {
+        const double value = k < driven.rows() ? driven(k, column) : signals(k - driven.rows(), column);
+        all(k, column) = std::isfinite(value) ? value : 0.0;
         if (all(k, column) != all(k, 0)) changes[static_cast<std::size_t>(k)] = true;
       }
     }
@@ -79,9 +54,24 @@ SUREFOOT_ONCE std::vector<bool> distinct_inputs(const BoundSimulator& bound, con
   return distinct;
 }
 
+SUREFOOT_ONCE std::vector<bool> zero_at_first(const BoundSimulator& bound,
+                                              const std::vector<std::size_t>& recordings) {
+  const std::size_t inputs = bound.info.inputs.size();
+  std::vector<bool> zero(inputs + bound.info.signals.size(), true);
+  for (const std::size_t r : recordings) {
+    for (std::size_t k = 0; k < zero.size(); ++k) {
+      const std::size_t first = k < inputs ? k : 0, last = k < inputs ? k + 1 : inputs;
+      for (std::size_t i = first; i < last; ++i) {
+        if (bound.recordings[r].inputs(static_cast<Eigen::Index>(i), 0) != 0) zero[k] = false;
+      }
+    }
+  }
+  return zero;
+}
+
 /// Whether a position in this unit is no angle; one of unknown unit may be.
 SUREFOOT_ONCE bool is_length_unit(const std::string& unit) {
-  constexpr std::array<const char*, 4> lengths{"m", "cm", "mm", "km"};
+  constexpr std::array lengths{"m", "cm", "mm", "km"};
   return std::ranges::find(lengths, unit) != lengths.end();
 }
 

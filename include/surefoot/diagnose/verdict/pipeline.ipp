@@ -115,13 +115,11 @@ SUREFOOT_ONCE std::vector<AttachedEffect> candidate_effects(const EstimationSetu
   if (setup.noise == NoiseKind::process) {  // each row starts from readings, so that a sensor's faults cannot be told
     std::erase_if(effects, [](const Effect& effect) { return effect.place == Place::output; });
   }
-  const Hypothesis& calibrated = calibration.calibrated.hypothesis;
-  const std::vector<std::size_t>& training = setup.split.training;
-  const std::vector<SimulatedRun>& runs = calibration.training_runs;
-  std::vector<AttachedEffect> candidates =
-      attachments(setup.bound, effects, distinct_inputs(setup.bound, calibrated, training, runs));
+  std::vector<AttachedEffect> candidates = attachments(
+      setup.bound, effects,
+      distinct_inputs(setup.bound, calibration.calibrated.hypothesis, setup.split.training, calibration.training_runs));
   const bool map = setup.bound.info.kind == SimulatorKind::map;  // whose first row is the first command
-  const std::vector<bool> zero = zero_at_first(setup.bound, calibrated, training, runs);
+  const std::vector<bool> zero = zero_at_first(setup.bound, setup.split.training);
   std::erase_if(candidates, [&](const AttachedEffect& one) {
     return one.effect->from_rest && (map || zero[static_cast<std::size_t>(one.at)]);
   });
