@@ -72,7 +72,7 @@ SUREFOOT_ONCE std::vector<bool> zero_at_first(const BoundSimulator& bound,
 /// Whether a position in this unit is no angle; one of unknown unit may be.
 SUREFOOT_ONCE bool is_length_unit(const std::string& unit) {
   constexpr std::array lengths{"m", "cm", "mm", "km"};
-  return std::ranges::find(lengths, unit) != lengths.end();
+  return std::find(lengths.begin(), lengths.end(), unit) != lengths.end();
 }
 
 SUREFOOT_ONCE bool fits_velocity(const BoundSimulator& bound, const Effect& effect, std::size_t state) {
