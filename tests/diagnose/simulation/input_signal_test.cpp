@@ -118,7 +118,9 @@ TEST_CASE("what was not told before the first row was zero, and what is told the
   CHECK(u.next_change(2.05, 2.1) == 2.1);
   CHECK(u.between(2.0, 0.04, 0.5) == Vec<2>(0, 0));
   CHECK(u.between(2.0, 0.1, 0)[0] == doctest::Approx(0.5));  // half of the step
-  CHECK(u.between(2.06, 0.02, 0) == Vec<2>(1, 1.1));
+  const Vec<2> arrived = u.between(2.06, 0.02, 0);
+  CHECK(arrived[0] == doctest::Approx(1));
+  CHECK(arrived[1] == doctest::Approx(1.1));
 }
 
 TEST_CASE("before the first row the first value counts, after the last the last") {
