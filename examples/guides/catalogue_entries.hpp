@@ -127,6 +127,8 @@ inline std::vector<Form> forms() {
        {0.35, 0.3},
        "the top of each swing is cut off, with a bounce"},
       {"end_stop", "lower", "q is at least level; there v becomes -restitution v"},
+      {"end_stop", "upper, elastic", "F = -stiffness max(q - level + settling v, 0) where q > level"},
+      {"end_stop", "lower, elastic", "F = stiffness max(level - q - settling v, 0) where q < level"},
 
       // on a state
       {"leak", "", "rate = rate - leak x", {0.03}, "the more there is, the more is missing; it decays too quickly"},
@@ -156,8 +158,11 @@ inline std::vector<Form> forms() {
        "u follows its command by at most rate per second",
        {1},
        "late after large steps, in time after small ones"},
+      {"rate_limit", "from rest", "the same, from 0 at the first row on, and not from its first command"},
       {"input_delay", "", "u(t - delay)", {0.05}, "a copy of the motion's slope: late everywhere by the same time"},
+      {"input_delay", "from rest", "the same, 0 until the first command arrives"},
       {"first_order_lag", "", "time u' = command - u", {0.08}, "late after sharp steps, and their corners rounded"},
+      {"first_order_lag", "from rest", "the same, from 0 at the first row on, and not from its first command"},
       {"supply_sag", "", "u = u (1 - sag |u|), not below 0", {1}, "falls short with the square of the command"},
 
       // in a sensor

@@ -11,6 +11,7 @@
 #include "surefoot/diagnose/effects/catalogue.hpp"
 #include "surefoot/diagnose/effects/dead_zone.hpp"
 #include "surefoot/diagnose/effects/first_order_lag.hpp"
+#include "surefoot/diagnose/effects/from_rest.hpp"
 #include "surefoot/diagnose/effects/input_asymmetry.hpp"
 #include "surefoot/diagnose/effects/input_delay.hpp"
 #include "surefoot/diagnose/effects/input_gain.hpp"
@@ -170,6 +171,18 @@ TEST_CASE("a lag starts from the first input") {
   CHECK(x[100] == doctest::Approx(1));
   const auto y = simulated(Integrator{}, "u", effects::rate_limit(), {0.3}, step_recording(101, 0.01, 0));
   CHECK(y[100] == doctest::Approx(1));
+}
+
+TEST_CASE("on a machine that was not told anything before, memories of an input begin at zero") {
+  const Recording told = step_recording(101, 0.01, 0);  // from the first row on
+  for (const double size : {0.0371, 0.2}) {
+    const auto late = simulated(Integrator{}, "u", effects::from_rest(effects::input_delay()), {size}, told);
+    CHECK(late[100] == doctest::Approx(1 - size).epsilon(1e-9));
+    const auto lagging = simulated(Integrator{}, "u", effects::from_rest(effects::first_order_lag()), {size}, told);
+    CHECK(lagging[100] == doctest::Approx(1 - size * (1 - std::exp(-1 / size))).epsilon(1e-7));
+    const auto slow = simulated(Integrator{}, "u", effects::from_rest(effects::rate_limit()), {1 / size}, told);
+    CHECK(slow[100] == doctest::Approx(1 - 0.5 * size).epsilon(1e-9));
+  }
 }
 
 TEST_CASE("a limited rate answers a step with a ramp") {

@@ -217,5 +217,23 @@ TEST_CASE("an end stop holds the position and takes its part of the speed") {
   CHECK(lower(1, 199) == 0);
 }
 
+TEST_CASE("an elastic end stop pushes back as far as one is in it, and never pulls") {
+  const auto force = [](const Effect& stop, double position, double speed) {
+    const std::vector<double> p = {stop.form[0] == 'u' ? 0.5 : -0.5, 100, 0.1};  // level, stiffness, settling
+    EffectContext m;
+    m.position = position;
+    m.value = speed;
+    return stop.force(m, p, {});
+  };
+  const Effect upper = effects::elastic_end_stop(true), lower = effects::elastic_end_stop(false);
+  CHECK(force(upper, 0.4, 5) == 0);
+  CHECK(force(upper, 0.6, 0) == doctest::Approx(-10));
+  CHECK(force(upper, 0.6, 1) == doctest::Approx(-20));
+  CHECK(force(upper, 0.6, -2) == 0);
+  CHECK(force(lower, -0.4, -5) == 0);
+  CHECK(force(lower, -0.6, -1) == doctest::Approx(20));
+  CHECK(force(lower, -0.6, 2) == 0);
+}
+
 }  // namespace
 }  // namespace surefoot

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "surefoot/diagnose/effects/constant_force.hpp"
 #include "surefoot/diagnose/effects/constant_rate.hpp"
+#include "surefoot/diagnose/effects/gravity_offset.hpp"
 #include "surefoot/diagnose/effects/leak.hpp"
 #include "surefoot/diagnose/effects/overflow.hpp"
 #include "tests/diagnose/small_simulators.hpp"
@@ -80,6 +82,28 @@ TEST_CASE("a store can leak and overflow, a place and an angle cannot") {
     CHECK(places(car, effect).empty());
   }
   CHECK(places(car, effects::constant_rate()) == std::vector<std::string>{"x", "yaw"});
+}
+
+TEST_CASE("a turning wheel without an angle has no weight off its axle") {
+  struct Wheel : toys::LeakyTank {
+    SimulatorInfo info() const {
+      SimulatorInfo wheel = toys::LeakyTank::info();
+      wheel.states[0].unit = "rad/s";
+      return wheel;
+    }
+  };
+  const BoundSimulator wheel = bind_simulator(Wheel{}, {toys::blank_recording(Wheel{}.info(), 100, 0.1)});
+  CHECK(places(wheel, effects::constant_force()) == std::vector<std::string>{"level"});
+  CHECK(places(wheel, effects::gravity_offset()).empty());
+}
+
+TEST_CASE("it is known which inputs begin at zero in all recordings") {
+  Recording still = toys::blank_recording(TwoTanks{}.info(), 100, 0.1), pumped = still;
+  still.inputs(0, 1) = 1;
+  pumped.inputs(0, 0) = 1;
+  const BoundSimulator bound = bind_simulator(TwoTanks{}, {still, pumped});
+  CHECK(zero_at_first(bound, {0}) == std::vector<bool>{true});
+  CHECK(zero_at_first(bound, {0, 1}) == std::vector<bool>{false});
 }
 
 // A cart that moves by its command and by that of the step before.

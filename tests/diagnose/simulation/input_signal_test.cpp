@@ -106,6 +106,23 @@ TEST_CASE("a late held input is its mean over the step, a late interpolated one 
   CHECK(u.between(2.5, 0.2, 1)[0] == u.between(2.5, 0.2, 0)[0]);
 }
 
+TEST_CASE("what was not told before the first row was zero, and what is told there arrives late") {
+  const SimulatorInfo info = two_inputs();
+  Recording recording = unequal();
+  recording.inputs.row(1).array() += 1;
+  InputSignal<Vec<2>> u(info, recording);
+  u.delay(0, 0.05, true);
+  u.delay(1, 0.05, true);
+  u.go_to(0);
+  CHECK(u.next_change(2.0, 2.1) == doctest::Approx(2.05));
+  CHECK(u.next_change(2.05, 2.1) == 2.1);
+  CHECK(u.between(2.0, 0.04, 0.5) == Vec<2>(0, 0));
+  CHECK(u.between(2.0, 0.1, 0)[0] == doctest::Approx(0.5));  // half of the step
+  const Vec<2> arrived = u.between(2.06, 0.02, 0);
+  CHECK(arrived[0] == doctest::Approx(1));
+  CHECK(arrived[1] == doctest::Approx(1.1));
+}
+
 TEST_CASE("before the first row the first value counts, after the last the last") {
   const SimulatorInfo info = two_inputs();
   const Recording recording = unequal();

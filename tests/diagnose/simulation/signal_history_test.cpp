@@ -19,6 +19,13 @@ TEST_CASE("a ramp comes late by the delay, and the first value counts before the
   CHECK(history.delayed(5, 7, 0) == 7);
 }
 
+TEST_CASE("or it was zero before there was any") {
+  SignalHistory history;
+  CHECK(history.delayed(1, 3, 0.5, true) == 0);
+  CHECK(history.delayed(1.5, 4, 0.5, true) == 3);
+  CHECK(history.delayed(2, 5, 0.75, true) == doctest::Approx(3.5));
+}
+
 TEST_CASE("a step that was taken back is forgotten") {
   SignalHistory history;
   history.delayed(1, 0, 0);

@@ -17,6 +17,7 @@
 #include "surefoot/diagnose/effects/effect.hpp"
 #include "surefoot/diagnose/effects/end_stop.hpp"
 #include "surefoot/diagnose/effects/first_order_lag.hpp"
+#include "surefoot/diagnose/effects/from_rest.hpp"
 #include "surefoot/diagnose/effects/gravity_offset.hpp"
 #include "surefoot/diagnose/effects/ground_slope.hpp"
 #include "surefoot/diagnose/effects/hysteresis.hpp"
@@ -68,13 +69,20 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
           effects::cogging(),
           effects::gravity_offset(),
           effects::end_stop_upper(),
-          effects::end_stop_lower()};
+          effects::end_stop_lower(),
+          effects::elastic_end_stop(true),
+          effects::elastic_end_stop(false)};
 }
 
 SUREFOOT_ONCE std::vector<Effect> input_effects() {
-  return {effects::input_gain(),  effects::input_asymmetry(), effects::dead_zone(),          effects::dead_zone_step(),
-          effects::saturation(),  effects::saturation_soft(), effects::saturation_gradual(), effects::rate_limit(),
-          effects::input_delay(), effects::first_order_lag(), effects::supply_sag()};
+  std::vector<Effect> all = {
+      effects::input_gain(),  effects::input_asymmetry(), effects::dead_zone(),          effects::dead_zone_step(),
+      effects::saturation(),  effects::saturation_soft(), effects::saturation_gradual(), effects::rate_limit(),
+      effects::input_delay(), effects::first_order_lag(), effects::supply_sag()};
+  for (std::size_t i = 0, count = all.size(); i < count; ++i) {
+    if (all[i].start || all[i].delay) all.push_back(effects::from_rest(all[i]));
+  }
+  return all;
 }
 
 SUREFOOT_ONCE std::vector<Effect> planar_effects() {

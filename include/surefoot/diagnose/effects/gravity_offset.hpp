@@ -22,6 +22,7 @@ inline Effect gravity_offset() {
                                         .strength = true}}),
           .confusable_with = names_of({"constant_force", "sensor_bias", "cogging"}),
           .experiment = "hold angles over at least half a turn, each reached from both sides",
+          .needs_angle = true,
           .force = +[](const EffectContext& m, Values p, Values) { return p[0] * std::cos(m.position); }};
 }
 

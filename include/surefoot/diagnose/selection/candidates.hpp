@@ -21,6 +21,10 @@ std::vector<bool> distinct_inputs(const BoundSimulator& bound, const Hypothesis&
                                   const std::vector<SimulatedRun>& trajectories,
                                   double collinear = SelectionCriteria{}.collinear);
 
+/// Inputs that are 0 in the first row of every recording, and signals (after the inputs) if all inputs are: it is the
+/// same whether they were as in that row before, or 0.
+std::vector<bool> zero_at_first(const BoundSimulator& bound, const std::vector<std::size_t>& recordings);
+
 /// Whether an effect on a velocity, or on another state, fits this state.
 bool fits_velocity(const BoundSimulator& bound, const Effect& effect, std::size_t state);
 bool fits_state(const BoundSimulator& bound, const Effect& effect, std::size_t state);

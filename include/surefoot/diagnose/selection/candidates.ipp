@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <memory>
@@ -53,12 +54,37 @@ SUREFOOT_ONCE std::vector<bool> distinct_inputs(const BoundSimulator& bound, con
   return distinct;
 }
 
+SUREFOOT_ONCE std::vector<bool> zero_at_first(const BoundSimulator& bound,
+                                              const std::vector<std::size_t>& recordings) {
+  const std::size_t inputs = bound.info.inputs.size();
+  std::vector<bool> zero(inputs + bound.info.signals.size(), true);
+  for (const std::size_t r : recordings) {
+    for (std::size_t k = 0; k < zero.size(); ++k) {
+      const std::size_t first = k < inputs ? k : 0, last = k < inputs ? k + 1 : inputs;
+      for (std::size_t i = first; i < last; ++i) {
+        if (bound.recordings[r].inputs(static_cast<Eigen::Index>(i), 0) != 0) zero[k] = false;
+      }
+    }
+  }
+  return zero;
+}
+
+/// Whether a position in this unit is no angle; one of unknown unit may be.
+SUREFOOT_ONCE bool is_length_unit(const std::string& unit) {
+  constexpr std::array lengths{"m", "cm", "mm", "km"};
+  return std::find(lengths.begin(), lengths.end(), unit) != lengths.end();
+}
+
 SUREFOOT_ONCE bool fits_velocity(const BoundSimulator& bound, const Effect& effect, std::size_t state) {
+  const int position = bound.structure.position_of[state];
+  if (effect.needs_angle && (position < 0 || is_length_unit(bound.info.states[static_cast<std::size_t>(position)].unit))) {
+    return false;
+  }
   bool needs_position = effect.seen_position || effect.limit;
   for (const EffectParameter& parameter : effect.parameters) {
     needs_position = needs_position || parameter.measure.position != 0;
   }
-  return bound.structure.velocity[state] && (bound.structure.position_of[state] >= 0 || !needs_position);
+  return bound.structure.velocity[state] && (position >= 0 || !needs_position);
 }
 
 SUREFOOT_ONCE bool fits_state(const BoundSimulator& bound, const Effect& effect, std::size_t state) {

@@ -66,7 +66,8 @@ double through(AugmentedSimulator<S>& m, const EffectSlot& slot, double value, c
   EffectContext now = context(m, value, t, h);
   now.drive = value;
   m.raw[slot.number] = value;
-  if (slot.effect->delay) return m.past[slot.number].delayed(t, value, slot.effect->delay(slot.p));
+  if (slot.effect->delay)
+    return m.past[slot.number].delayed(t, value, slot.effect->delay(slot.p), slot.effect->from_rest);
   if (slot.effect->hidden_rate) slot.effect->hidden_rate(now, slot.p, slot.hidden(z), slot.hidden(dz));
   return slot.effect->signal(now, slot.p, slot.hidden(z));
 }

@@ -19,6 +19,7 @@ class InputSignal {
       : recording_(recording),
         late_(info.inputs.size(), 0.0),
         linear_(info.inputs.size()),
+        from_rest_(info.inputs.size(), false),
         seen_(info.inputs.size(), 0) {
     for (std::size_t i = 0; i < linear_.size(); ++i) {
       linear_[i] = info.inputs[i].linear;
@@ -28,9 +29,11 @@ class InputSignal {
     held_ = at_row(0);
   }
 
-  /// Makes input i come later by `delay` [s, or steps]; delays of one input add up.
-  void delay(int i, double delay) {
+  /// Makes input i come later by `delay` [s, or steps]; delays of one input add up. Before the first row it was as in
+  /// that row or, `from_rest`, 0.
+  void delay(int i, double delay, bool from_rest = false) {
     late_[static_cast<std::size_t>(i)] += delay;
+    if (from_rest) from_rest_[static_cast<std::size_t>(i)] = true;
     any_special_ = true;
     integral_.resize(late_.size());
     auto& sum = integral_[static_cast<std::size_t>(i)];
@@ -62,6 +65,8 @@ class InputSignal {
     for (std::size_t i = 0; i < late_.size(); ++i) {
       if (late_[i] == 0 || linear_[i]) continue;
       const auto k = static_cast<Eigen::Index>(i);
+      const double begin = recording_.time[0] + late_[i];
+      if (from_rest_[i] && begin > after && recording_.inputs(k, 0) != 0) next = std::min(next, begin);
       for (Eigen::Index row = row_before(i, after - late_[i]) + 1; row < recording_.rows(); ++row) {
         const double change = recording_.time[row] + late_[i];
         if (change >= next) break;
@@ -107,14 +112,18 @@ class InputSignal {
 
   double interpolated(Eigen::Index i, double t) const {
     const Eigen::Index row = row_before(static_cast<std::size_t>(i), t);
+    if (rests(static_cast<std::size_t>(i), t)) return 0;
     if (t <= recording_.time[0]) return recording_.inputs(i, 0);
     if (row + 1 >= recording_.rows()) return recording_.inputs(i, row);
     const double share = (t - recording_.time[row]) / (recording_.time[row + 1] - recording_.time[row]);
     return recording_.inputs(i, row) + share * (recording_.inputs(i, row + 1) - recording_.inputs(i, row));
   }
 
-  // Integral of a held input from the first row on; before it the first value counts.
+  bool rests(std::size_t i, double t) const { return from_rest_[i] && t < recording_.time[0]; }
+
+  // Integral of a held input from the first row on; before it the first value counts, or 0.
   double integral(std::size_t i, double t) const {
+    if (rests(i, t)) return 0;
     const auto k = static_cast<Eigen::Index>(i);
     const Eigen::Index row = row_before(i, t);
     return integral_[i][static_cast<std::size_t>(row)] + recording_.inputs(k, row) * (t - recording_.time[row]);
@@ -122,7 +131,7 @@ class InputSignal {
 
   const Recording& recording_;
   std::vector<double> late_;
-  std::vector<bool> linear_;
+  std::vector<bool> linear_, from_rest_;
   std::vector<std::vector<double>> integral_;
   std::vector<Eigen::Index> seen_;  // by input: the row it showed at the beginning of the present one
   Input held_;

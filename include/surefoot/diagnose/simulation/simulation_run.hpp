@@ -46,7 +46,8 @@ class SimulationRun {
         modes_(m_.slots.dry.size()) {
     m_.driven_signals = has_tap<S> && std::any_of(structure.driven_signal.begin(), structure.driven_signal.end(),
                                                   [](bool driven) { return driven; });
-    for (const EffectSlot& slot : m_.slots.delays) u_.delay(slot.at, slot.effect->delay(slot.p));
+    for (const EffectSlot& slot : m_.slots.delays)
+      u_.delay(slot.at, slot.effect->delay(slot.p), slot.effect->from_rest);
     prepare(m_.simulator, m_.p);
   }
 

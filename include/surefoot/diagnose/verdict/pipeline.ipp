@@ -115,9 +115,15 @@ SUREFOOT_ONCE std::vector<AttachedEffect> candidate_effects(const EstimationSetu
   if (setup.noise == NoiseKind::process) {  // each row starts from readings, so that a sensor's faults cannot be told
     std::erase_if(effects, [](const Effect& effect) { return effect.place == Place::output; });
   }
-  return attachments(
+  std::vector<AttachedEffect> candidates = attachments(
       setup.bound, effects,
       distinct_inputs(setup.bound, calibration.calibrated.hypothesis, setup.split.training, calibration.training_runs));
+  const bool map = setup.bound.info.kind == SimulatorKind::map;  // whose first row is the first command
+  const std::vector<bool> zero = zero_at_first(setup.bound, setup.split.training);
+  std::erase_if(candidates, [&](const AttachedEffect& one) {
+    return one.effect->from_rest && (map || zero[static_cast<std::size_t>(one.at)]);
+  });
+  return candidates;
 }
 
 /// Whether the residuals of a hypothesis hold what noise does not; final poses are too few to tell. Recordings that it
