@@ -87,7 +87,8 @@ class Evictor {
   std::vector<unsigned char> buffer_ = std::vector<unsigned char>(2 * last_cache());
 };
 
-/// `cold`: one prediction at a time, nothing in the caches; else all points, which visit most nodes several times.
+/// `cold`: one prediction at a time, nothing in the caches; else all points, which visit most nodes several times, for
+/// the second time in a row.
 void descent(benchmark::State& state, bool cold) {
   const Trees& trees = forest_of<ConstantLeaf, 1>(state.range(0)).raw();
   const SmallPages before(trees.nodes);
@@ -98,9 +99,16 @@ void descent(benchmark::State& state, bool cold) {
   Payloads payloads{}, expected{};
   std::size_t first = 0;
   const auto time = [&](std::span<const Node> nodes, Payloads& out) {
-    if (cold) evict();
+    const auto predict = [&] {
+      for (std::size_t i = first; i < first + group; ++i) descend(nodes, trees.roots, points[i], out);
+    };
+    if (cold) {
+      evict();
+    } else {
+      predict();
+    }
     const double start = nanoseconds(!cold);
-    for (std::size_t i = first; i < first + group; ++i) descend(nodes, trees.roots, points[i], out);
+    predict();
     return (nanoseconds(!cold) - start) / static_cast<double>(group);
   };
   bool now_first = false;

@@ -16,7 +16,7 @@ namespace surefoot {
 SUREFOOT_ONCE void check(const DiagnoseOptions& options) {
   const auto fail = [](const std::string& text) { throw DiagnoseError("DiagnoseOptions::" + text); };
   for (std::size_t i = 0; i < options.held_out.size(); ++i) {
-    if (std::ranges::count(options.held_out, options.held_out[i]) > 1) {
+    if (std::count(options.held_out.begin(), options.held_out.end(), options.held_out[i]) > 1) {
       fail("held_out names '" + options.held_out[i] + "' more than once: name each recording once");
     }
   }
@@ -32,7 +32,7 @@ SUREFOOT_ONCE void check(const DiagnoseOptions& options) {
   std::vector<Effect> every = all_effects();
   every.insert(every.end(), options.more_effects.begin(), options.more_effects.end());
   const auto exists = [&](const std::string& name) {
-    return std::ranges::any_of(every, [&](const Effect& effect) { return effect.name == name; });
+    return std::any_of(every.begin(), every.end(), [&](const Effect& effect) { return effect.name == name; });
   };
   for (const std::string& name : options.effects) {
     if (!exists(name)) {
@@ -42,7 +42,7 @@ SUREFOOT_ONCE void check(const DiagnoseOptions& options) {
     }
   }
   for (const NamedEffect& known : options.known) {
-    if (!std::ranges::all_of(known.values, [](double value) { return std::isfinite(value); })) {
+    if (!std::all_of(known.values.begin(), known.values.end(), [](double value) { return std::isfinite(value); })) {
       fail("known: a parameter of '" + known.name +
            "' is not a finite number; give the value it has, or leave the "
            "effect out");

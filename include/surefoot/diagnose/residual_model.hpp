@@ -5,7 +5,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -22,10 +21,10 @@ struct ResidualModel {
   ResidualForest forest;
 };
 
-void save_residual_model(const ResidualModel& model, const std::filesystem::path& path);
+void save_residual_model(const ResidualModel& model, const std::string& path);
 
 /// Throws CoreError or ForestError if the file is damaged or of another kind.
-ResidualModel load_residual_model(const std::filesystem::path& path);
+ResidualModel load_residual_model(const std::string& path);
 
 }  // namespace surefoot
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,7 +24,7 @@ inline constexpr FileFormat residual_format{"SUREFRES", 1, "a residual model"};
 
 }  // namespace detail
 
-SUREFOOT_ONCE void save_residual_model(const ResidualModel& model, const std::filesystem::path& path) {
+SUREFOOT_ONCE void save_residual_model(const ResidualModel& model, const std::string& path) {
   ByteWriter out;
   write_format(out, detail::residual_format);
   out.u32(static_cast<std::uint32_t>(model.features.size()));
@@ -38,9 +37,9 @@ SUREFOOT_ONCE void save_residual_model(const ResidualModel& model, const std::fi
   write_file_atomically(path, out.bytes());
 }
 
-SUREFOOT_ONCE ResidualModel load_residual_model(const std::filesystem::path& path) {
+SUREFOOT_ONCE ResidualModel load_residual_model(const std::string& path) {
   const Bytes bytes = read_file(path);
-  ByteReader in(bytes, "file " + path.string());
+  ByteReader in(bytes, "file " + path);
   expect_format(in, detail::residual_format);
   const std::uint32_t features = in.u32(), outputs = in.u32();
   ResidualModel model;

@@ -106,7 +106,7 @@ TEST_CASE_TEMPLATE("all ways down a tree end in the same leaf", Function, toy::C
                                      [&](std::size_t t, const Node* leaf) { found[t] = leaf->payload(); });
         compare();
         if (count <= detail::most_in_flight) {
-          detail::find_leaves_far(trees.nodes.data(), roots, keys, found.data());
+          detail::find_leaves_far(std::span<const Node>(trees.nodes), roots, keys, found.data());
           compare();
         }
 #ifdef SUREFOOT_AVX2

@@ -57,7 +57,7 @@ SUREFOOT_ONCE Fit scattered_fit(const BoundSimulator& bound, Fit best, const Hyp
   });
   std::vector<std::size_t> order(starts.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return losses[a] < losses[b]; });
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return losses[a] < losses[b]; });
   std::vector<Fit> fits(std::min<std::size_t>(fitted, order.size()));
   parallel(fits.size(), [&](std::size_t k) { fits[k] = fit(bound, starts[order[k]], problem, serially()); });
   for (const Fit& other : fits) {

@@ -103,7 +103,8 @@ SUREFOOT_INLINE std::vector<Hypothesis> fits_to_other_folds(const BoundSimulator
   std::vector<Hypothesis> result;
   for (const std::vector<std::size_t>& fold : folds) {
     FitProblem others = problem;
-    std::erase_if(others.recordings, [&](std::size_t r) { return std::ranges::find(fold, r) != fold.end(); });
+    std::erase_if(others.recordings,
+                  [&](std::size_t r) { return std::find(fold.begin(), fold.end(), r) != fold.end(); });
     result.push_back(with_estimated_initial_states(bound, fit(bound, start, others, parallel).hypothesis, fold, problem,
                                                    parallel));
   }

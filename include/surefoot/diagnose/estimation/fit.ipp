@@ -184,7 +184,7 @@ SUREFOOT_INLINE std::optional<Hypothesis> read_off_again(const BoundSimulator& b
     const double robust = problem.weighting.robust;
     better[i] = mean_loss(there, robust) < mean_loss(here, robust) ? 1 : 0;
   });
-  if (std::ranges::find(better, 1) == better.end()) return std::nullopt;
+  if (std::find(better.begin(), better.end(), 1) == better.end()) return std::nullopt;
   Hypothesis result = fitted.fit.hypothesis;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t r = problem.recordings[i];

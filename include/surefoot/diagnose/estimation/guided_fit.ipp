@@ -21,7 +21,8 @@ SUREFOOT_ONCE double mean_rows(const BoundSimulator& bound, const std::vector<st
 SUREFOOT_ONCE Fit guided_fit(const BoundSimulator& bound, Fit best, const Hypothesis& start,
                              const FitProblem& problem, const Parallel& parallel) {
   constexpr int iterations = 8;  // of each fit on the way: only a place to begin the next one from
-  const bool measured = std::ranges::any_of(bound.structure.output_of, [](int output) { return output >= 0; });
+  const bool measured = std::any_of(bound.structure.output_of.begin(), bound.structure.output_of.end(),
+                                    [](int output) { return output >= 0; });
   if (!measured || problem.integration.restart > 0) return best;
   const double rows = mean_rows(bound, problem.recordings);
   Fit guided{.hypothesis = start};

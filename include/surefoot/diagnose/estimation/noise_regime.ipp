@@ -76,7 +76,7 @@ SUREFOOT_INLINE NoiseKind noise_kind(const BoundSimulator& bound, const Hypothes
   if (only_final_pose(bound)) return NoiseKind::final_pose;
   if (!bound.structure.all_states_measured) return NoiseKind::measurement;
   const auto states_it = [](const OutputInfo& output) { return output.process_noise > 0; };
-  if (std::ranges::all_of(bound.info.outputs, states_it)) return NoiseKind::process;
+  if (std::all_of(bound.info.outputs.begin(), bound.info.outputs.end(), states_it)) return NoiseKind::process;
   const Eigen::MatrixXd apart = step_correlations(bound, hypothesis, recordings);
   constexpr double alternating = 0.3;    // a correlation two or three rows apart: such steps differ in turn, no noise
   constexpr double differenced = -0.25;  // half way between noise of the process (0) and of measurement (-1/2)

@@ -80,7 +80,7 @@ SUREFOOT_INLINE std::vector<std::size_t> some_by_error(const BoundSimulator& bou
     const std::size_t rank = count > 1 ? i * (order.size() - 1) / (count - 1) : 0;
     result.push_back(recordings[order[rank]]);
   }
-  std::ranges::sort(result);
+  std::sort(result.begin(), result.end());
   return result;
 }
 

@@ -84,7 +84,7 @@ SUREFOOT_ONCE std::vector<double> errors_without(const ClockProfile& profile, Ei
 /// Place of the least error, by the parabola through it and its neighbours; NaN at the edge of the range.
 SUREFOOT_ONCE double least_error_at(const std::vector<double>& amounts, const std::vector<double>& errors,
                                     double& least) {
-  const auto at = static_cast<std::size_t>(std::ranges::min_element(errors) - errors.begin());
+  const auto at = static_cast<std::size_t>(std::min_element(errors.begin(), errors.end()) - errors.begin());
   least = errors[at];
   if (at == 0 || at + 1 == errors.size()) return std::numeric_limits<double>::quiet_NaN();
   const double left = errors[at - 1], right = errors[at + 1], step = amounts[1] - amounts[0];

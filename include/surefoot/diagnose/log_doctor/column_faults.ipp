@@ -256,7 +256,7 @@ SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_all(const LogDoctorInputs&
     }
     gains.push_back(common_gain(fit, fit_log(inputs, std::move(recordings)), repairs, criteria));
   }
-  const auto best = std::ranges::max_element(gains);
+  const auto best = std::max_element(gains.begin(), gains.end());
   if (!(*best > 0)) return std::nullopt;
   FoundFault found{tried[static_cast<std::size_t>(best - gains.begin())]};
   for (std::size_t t = 0; t < tried.size(); ++t) {

@@ -118,7 +118,8 @@ SUREFOOT_ONCE void examine_clocks(LogUnderExamination& log) {
       recordings[r] = repaired(log.fit.bound, recordings[r], {.kind = fault->kind, .amount = fault->amounts[r]});
     }
     log.calibrate_again(std::move(recordings));
-    const auto off = std::ranges::count_if(fault->amounts, [](double amount) { return amount != 0; });
+    const auto off =
+        std::count_if(fault->amounts.begin(), fault->amounts.end(), [](double amount) { return amount != 0; });
     if (off > 1) break;  // all were estimated together
   }
 }

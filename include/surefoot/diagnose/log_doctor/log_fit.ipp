@@ -159,7 +159,7 @@ SUREFOOT_ONCE void measure_what_is_left(LogFit& fit, const FitProblem& problem, 
   fit.typical = fit.size;
   parallel(count, [&](std::size_t r) {
     Recording version = fit.bound.recordings[r];
-    const bool fitted = std::ranges::find(problem.recordings, r) != problem.recordings.end();
+    const bool fitted = std::find(problem.recordings.begin(), problem.recordings.end(), r) != problem.recordings.end();
     if (fitted && has_unknown_initial_state(version)) {
       fit.runs[r] = simulate(fit.bound, fit.hypothesis, r, fit.bound.integration);
       fit.residuals[r] = residual_rows(with_version(fit.bound, r, version), r, fit.runs[r]);

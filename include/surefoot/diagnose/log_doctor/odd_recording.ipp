@@ -57,7 +57,7 @@ SUREFOOT_ONCE std::vector<double> errors_of(const LogFit& fit, const LogFit& lik
 /// The recording that is far off and further than all others, if any is.
 SUREFOOT_ONCE std::optional<std::size_t> outstanding(const std::vector<double>& errors,
                                                      const LogDoctorCriteria& criteria) {
-  const auto worst = static_cast<std::size_t>(std::ranges::max_element(errors) - errors.begin());
+  const auto worst = static_cast<std::size_t>(std::max_element(errors.begin(), errors.end()) - errors.begin());
   double others = 0;
   for (std::size_t o = 0; o < errors.size(); ++o) others = std::max(others, o == worst ? 0 : errors[o]);
   const bool far_off = errors[worst] > criteria.decisive * others && errors[worst] > criteria.odd;

@@ -79,7 +79,7 @@ SUREFOOT_INLINE WhitenessTest test_whiteness(const BoundSimulator& bound, const 
   if (count < 1) return result;
   result.rms = std::sqrt(sum / count);
   const auto middle = each.begin() + static_cast<std::ptrdiff_t>(each.size() / 2);
-  std::ranges::nth_element(each, middle);
+  std::nth_element(each.begin(), middle, each.end());
   result.typical = std::sqrt(*middle);
   to = std::min(to, longest / 4);
   if (to < from || longest < 6 * from) return result;

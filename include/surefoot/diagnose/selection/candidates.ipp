@@ -64,7 +64,8 @@ SUREFOOT_ONCE bool fits_velocity(const BoundSimulator& bound, const Effect& effe
 SUREFOOT_ONCE bool fits_state(const BoundSimulator& bound, const Effect& effect, std::size_t state) {
   const SimulatorInfo& info = bound.info;
   const auto i = static_cast<int>(state);
-  const bool is_position = std::ranges::find(bound.structure.position_of, i) != bound.structure.position_of.end();
+  const bool is_position = std::find(bound.structure.position_of.begin(), bound.structure.position_of.end(), i) !=
+                           bound.structure.position_of.end();
   if (bound.structure.remembers[state]) return false;  // no matter is kept there, only what was commanded
   const bool pose = info.planar && (i == info.planar->x || i == info.planar->y || i == info.planar->heading);
   if (is_position || bound.structure.velocity[state] || pose) return false;  // there forces act, or walking effects

@@ -81,8 +81,8 @@ SUREFOOT_ONCE std::vector<Proposal> proposals_for(const Search& search, const Ev
   screened.recordings = problem.screened;
   std::vector<AttachedEffect> open;
   for (const AttachedEffect& candidate : candidates) {
-    const bool used = std::ranges::any_of(
-        parent.hypothesis.effects, [&](const AttachedEffect& effect) { return same_but_for_form(effect, candidate); });
+    const bool used = std::any_of(parent.hypothesis.effects.begin(), parent.hypothesis.effects.end(),
+                                  [&](const AttachedEffect& effect) { return same_but_for_form(effect, candidate); });
     if (!used) open.push_back(candidate);
   }
   std::vector<Proposal> proposals = propose(bound, parent.hypothesis, screened, open, parallel);
@@ -101,7 +101,8 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> finished(const Search& search, st
   });
   // what is missing may have pushed the calibrated parameters where no fit finds back from; not if one leaves noise
   // only
-  const auto least = std::ranges::min_element(fits, {}, &Fit::loss);
+  const auto least =
+      std::min_element(fits.begin(), fits.end(), [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
   const bool scatter = problem.scatter && least != fits.end() &&
                        least->hypothesis.effects.size() == problem.known + 1 &&
                        problem.structured(least->hypothesis, problem.fit);

@@ -141,8 +141,11 @@ SUREFOOT_INLINE std::vector<double> probabilities(const std::vector<EvaluatedHyp
                                                   const SelectionCriteria& criteria) {
   std::vector<double> result(evaluated.size(), 0.0);
   if (evaluated.empty()) return result;
-  const ErrorSquares& reference =
-      std::ranges::min_element(evaluated, {}, [](const EvaluatedHypothesis& one) { return one.errors.rms(); })->errors;
+  const ErrorSquares& reference = std::min_element(evaluated.begin(), evaluated.end(),
+                                                   [](const EvaluatedHypothesis& a, const EvaluatedHypothesis& b) {
+                                                     return a.errors.rms() < b.errors.rms();
+                                                   })
+                                      ->errors;
   std::vector<std::vector<double>> densities;
   for (const EvaluatedHypothesis& one : evaluated) densities.push_back(log_densities(one.errors, reference, criteria));
   const std::size_t recordings = densities.front().size();

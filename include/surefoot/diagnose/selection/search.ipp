@@ -188,8 +188,9 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool) 
     const bool finer = refine_integration(search, now);
     if (finer) pool = fitted_again(search, pool);  // compared with the same errors
     for (EvaluatedHypothesis& one : beam) {        // and with the weights of their children
-      const auto again = std::ranges::find_if(
-          pool, [&](const auto& other) { return same_structure(other.hypothesis, one.hypothesis); });
+      const auto again = std::find_if(pool.begin(), pool.end(), [&](const EvaluatedHypothesis& other) {
+        return same_structure(other.hypothesis, one.hypothesis);
+      });
       if (finer && again != pool.end()) {
         one = *again;
       } else {
@@ -210,7 +211,8 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> fitted_again(const Search& search
   const SearchEffort& effort = search.problem.effort;
   std::vector<EvaluatedHypothesis> best =
       best_structures(pool, effort.finalists, effort.hopeless, search.problem.criteria);
-  const bool has_none = std::ranges::any_of(best, [&](const auto& one) { return search.effects(one) == 0; });
+  const bool has_none =
+      std::any_of(best.begin(), best.end(), [&](const auto& one) { return search.effects(one) == 0; });
   for (const EvaluatedHypothesis& one : pool) {
     if (!has_none && search.effects(one) == 0) best.push_back(one);
   }
@@ -259,7 +261,8 @@ SUREFOOT_ONCE void swap_effects(const Search& search, std::vector<EvaluatedHypot
     std::vector<Proposal> proposals = proposals_for(search, rest);
     drop_what_cannot_pay(proposals, needed_gain(search, rest, best, 1), problem.effort);
     const std::string& name = best.hypothesis.effects[e].effect->name;  // the right name may be at a wrong place
-    std::ranges::stable_partition(proposals, [&](const Proposal& one) { return one.effect.effect->name == name; });
+    std::stable_partition(proposals.begin(), proposals.end(),
+                          [&](const Proposal& one) { return one.effect.effect->name == name; });
     for (const EvaluatedHypothesis& other :
          next_effects(search, rest, std::move(proposals),
                       std::min(problem.effort.compared_shortlist, problem.effort.further_shortlist),

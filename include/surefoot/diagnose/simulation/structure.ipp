@@ -64,7 +64,7 @@ SUREFOOT_ONCE void refute(StructureSearch& search, const Eigen::VectorXd& x, con
 SUREFOOT_ONCE bool is_speed_unit(const std::string& unit) {
   constexpr std::array<const char*, 9> speeds{"m/s",   "cm/s", "mm/s",    "km/h", "rad/s",
                                                "deg/s", "rpm",  "rev/min", "rev/s"};
-  return std::ranges::find(speeds, unit) != speeds.end();
+  return std::find(speeds.begin(), speeds.end(), unit) != speeds.end();
 }
 
 /// Compares the rates at a point with those after each state was moved from it.

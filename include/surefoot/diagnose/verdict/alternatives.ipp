@@ -20,8 +20,8 @@ SUREFOOT_ONCE Evidence evidence_for(const Selection& selection, std::size_t effe
   double confidence = selection.probability;
   for (std::size_t i = 0; i < selection.alternatives.size(); ++i) {
     const auto& others = selection.alternatives[i].hypothesis.effects;
-    const bool has_it =
-        std::ranges::any_of(others, [&](const AttachedEffect& other) { return same_but_for_form(other, mine); });
+    const bool has_it = std::any_of(others.begin(), others.end(),
+                                    [&](const AttachedEffect& other) { return same_but_for_form(other, mine); });
     if (has_it) confidence += selection.alternative_probabilities[i];
   }
   return {gain.gain, gain.stderr_, gain.p_value, std::min(1.0, confidence)};
@@ -31,7 +31,7 @@ SUREFOOT_ONCE std::string names_of(const Hypothesis& hypothesis, std::size_t kno
   std::vector<std::string> names;
   for (std::size_t e = known; e < hypothesis.effects.size(); ++e) {
     std::string name = hypothesis.effects[e].effect->name;
-    std::ranges::replace(name, '_', ' ');
+    std::replace(name.begin(), name.end(), '_', ' ');
     names.push_back(name + " at " + hypothesis.effects[e].place);
   }
   return names.empty() ? "no effect at all" : in_list(names);

@@ -108,7 +108,7 @@ SUREFOOT_ONCE std::string not_held_out_sentence() {
 SUREFOOT_ONCE const Effect& effect_beyond(const Hypothesis& hypothesis, const Hypothesis& other) {
   for (std::size_t e = hypothesis.effects.size(); e > 0; --e) {
     const AttachedEffect& mine = hypothesis.effects[e - 1];
-    const bool shared = std::ranges::any_of(other.effects, [&](const AttachedEffect& theirs) {
+    const bool shared = std::any_of(other.effects.begin(), other.effects.end(), [&](const AttachedEffect& theirs) {
       return theirs.effect->name == mine.effect->name && theirs.place == mine.place;
     });
     if (!shared) return *mine.effect;
@@ -145,8 +145,8 @@ SUREFOOT_ONCE std::string beyond_noise_sentence(const Diagnosis& diagnosis) {
 
 /// By how much the error on held-out recordings falls, in how many of them, and what is left of it.
 SUREFOOT_ONCE std::string gain_sentence(const Diagnosis& diagnosis) {
-  const auto better =
-      std::ranges::count_if(diagnosis.per_recording, [](const RecordingFit& one) { return one.after < one.before; });
+  const auto better = std::count_if(diagnosis.per_recording.begin(), diagnosis.per_recording.end(),
+                                    [](const RecordingFit& one) { return one.after < one.before; });
   const std::string noise = against_noise(diagnosis);
   return " With that, the error on held-out recordings falls by " +
          in_digits(100 * (1 - diagnosis.held_out_after / std::max(diagnosis.held_out_before, never_zero))) + " %" +

@@ -57,12 +57,12 @@ SUREFOOT_ONCE double corrected_error(const EstimationSetup& setup, const FittedM
                            const std::vector<std::size_t>& corrected_ones) {
     std::vector<SimulatedRun> learned;
     for (const std::size_t r : learned_from) {
-      const auto place = std::ranges::find(training, r) - training.begin();
+      const auto place = std::find(training.begin(), training.end(), r) - training.begin();
       learned.push_back(model.runs.whole_training[static_cast<std::size_t>(place)]);
     }
     const ResidualModel forest = train_residual_model(setup.bound, learned_from, learned, parallel, seed);
     for (const std::size_t r : corrected_ones) {
-      const auto place = static_cast<std::size_t>(std::ranges::find(held_out, r) - held_out.begin());
+      const auto place = static_cast<std::size_t>(std::find(held_out.begin(), held_out.end(), r) - held_out.begin());
       runs[place] = corrected(setup.bound, r, model.runs.whole_held_out[place], forest);
     }
   };
@@ -70,7 +70,7 @@ SUREFOOT_ONCE double corrected_error(const EstimationSetup& setup, const FittedM
   for (std::size_t k = 0; cross_fitted && k < folds.size(); ++k) {
     std::vector<std::size_t> others;
     for (const std::size_t r : training) {
-      if (std::ranges::find(folds[k], r) == folds[k].end()) others.push_back(r);
+      if (std::find(folds[k].begin(), folds[k].end(), r) == folds[k].end()) others.push_back(r);
     }
     correct(others, folds[k]);
   }

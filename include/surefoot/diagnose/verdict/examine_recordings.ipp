@@ -64,8 +64,8 @@ SUREFOOT_ONCE LogExamination examine_with_effects(const BindSimulator& bind, con
 }
 
 SUREFOOT_ONCE bool is_named_again(const std::vector<LogFault>& repaired, const std::vector<LogFault>& named) {
-  return std::ranges::any_of(repaired, [&](const LogFault& one) {
-    return std::ranges::any_of(named, [&](const LogFault& other) {
+  return std::any_of(repaired.begin(), repaired.end(), [&](const LogFault& one) {
+    return std::any_of(named.begin(), named.end(), [&](const LogFault& other) {
       return one.kind == other.kind && one.recording == other.recording && one.channel == other.channel;
     });
   });

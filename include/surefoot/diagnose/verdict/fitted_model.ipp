@@ -21,7 +21,7 @@ SUREFOOT_ONCE std::vector<Hypothesis> cross_fitted(const EstimationSetup& setup,
   const std::vector<Hypothesis> fits = fits_to_other_folds(setup.bound, hypothesis, setup.problem, folds, parallel);
   for (std::size_t k = 0; k < folds.size(); ++k) {
     for (const std::size_t r : folds[k]) {
-      result[static_cast<std::size_t>(std::ranges::find(held_out, r) - held_out.begin())] = fits[k];
+      result[static_cast<std::size_t>(std::find(held_out.begin(), held_out.end(), r) - held_out.begin())] = fits[k];
     }
   }
   return result;

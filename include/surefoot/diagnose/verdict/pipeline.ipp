@@ -110,7 +110,7 @@ SUREFOOT_ONCE std::vector<AttachedEffect> candidate_effects(const EstimationSetu
   const auto& names = run.options.effects;
   std::vector<Effect> effects = nameable_effects(run.options);
   std::erase_if(effects, [&](const Effect& effect) {
-    return !names.empty() && std::ranges::find(names, effect.name) == names.end();
+    return !names.empty() && std::find(names.begin(), names.end(), effect.name) == names.end();
   });
   if (setup.noise == NoiseKind::process) {  // each row starts from readings, so that a sensor's faults cannot be told
     std::erase_if(effects, [](const Effect& effect) { return effect.place == Place::output; });

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -94,51 +95,82 @@ constexpr std::size_t most_in_flight = 64;                                 // tr
 constexpr std::size_t far_nodes = (std::size_t{2} << 20U) / sizeof(Node);  // a forest of more is beyond the caches near
                                                                            // the core (0.5 to 2 MB today)
 
-/// As find_leaves, for at most most_in_flight trees that lie far from the core. Below the levels that stay near it
-/// every tree takes one step in turn, and the node it comes to is fetched until it is its turn again. So as many
-/// fetches are in flight as trees go on, and none waits for another; a vector of lanes waits for the slowest of them at
-/// every step.
-inline void find_leaves_far(const Node* nodes, std::span<const std::uint32_t> roots,
-                            std::span<const std::uint64_t> keys, std::uint32_t* payloads) {
-  constexpr std::size_t near_steps = 5;  // 25 trees have 25 kB so near their roots
-  std::array<const Node*, most_in_flight> place;
-  std::array<std::uint32_t, most_in_flight> underway;  // trees that are not in a leaf yet
-  for (const std::uint32_t root : roots) __builtin_prefetch(nodes + root);
-  const std::size_t trees = roots.size();
-  for (std::size_t tree = 0; tree < trees; tree += lanes) {
-    const std::size_t last = std::min(lanes, trees - tree) - 1;
+inline bool has_avx2_way([[maybe_unused]] std::size_t trees, [[maybe_unused]] std::size_t slots) {
+#ifdef SUREFOOT_AVX2
+  return trees > avx2_trees / 2 && slots <= avx2_slots && __builtin_cpu_supports("avx2") != 0;
+#else
+  return false;
+#endif
+}
+
+/// The indices of the nodes that one input, given by its wide keys, reaches in so many steps from each root. There is
+/// room for most_in_flight of them.
+inline void take_steps(const Node* nodes, std::span<const std::uint32_t> roots, std::span<const std::uint64_t> keys,
+                       std::size_t steps, std::uint32_t* reached) {
+#ifdef SUREFOOT_AVX2
+  if (has_avx2_way(roots.size(), keys.size())) return take_steps_avx2(nodes, roots, keys, steps, reached);
+#endif
+  for (std::size_t tree = 0; tree < roots.size(); tree += lanes) {
+    const std::size_t last = std::min(lanes, roots.size() - tree) - 1;
     descend<false>([&](std::size_t lane) { return nodes + roots[tree + std::min(lane, last)]; },
                    [&](const Node* node, std::size_t) { return node->step(keys.data()); },
                    [&](std::size_t lane, const Node* node) {
-                     const std::size_t at = tree + std::min(lane, last);
-                     __builtin_prefetch(node);
-                     place[at] = node;
-                     underway[at] = static_cast<std::uint32_t>(at);
+                     reached[tree + std::min(lane, last)] = static_cast<std::uint32_t>(node - nodes);
                    },
-                   near_steps);
+                   steps);
   }
-  for (std::size_t left = trees; left > 0;) {
-    const std::size_t count = std::exchange(left, 0);
+}
+
+/// One step from a node, without a jump, which would be guessed wrong half of the time; the node it ends at is fetched.
+inline const Node* step_and_fetch(const Node* node, std::span<const std::uint64_t> keys) {
+  std::size_t distance = node->step(keys.data());
+  asm("" : "+r"(distance));
+  __builtin_prefetch(node + distance);
+  return node + distance;
+}
+
+/// As find_leaves, for at most most_in_flight trees that lie far from the core. Down to the depth of a balanced tree
+/// all of them go side by side. From there every tree takes a step in turn, and the node it comes to is fetched until
+/// it is its turn again: as many fetches are in flight as trees go on, and none waits for another, while a vector of
+/// lanes waits for the slowest of them at every step. Trees that have come to a leaf are left out after each round.
+inline void find_leaves_far(std::span<const Node> all, std::span<const std::uint32_t> roots,
+                            std::span<const std::uint64_t> keys, std::uint32_t* payloads) {
+  constexpr std::size_t turns = 3;  // in a round; leaving a tree out costs about as much as two steps of it
+  const std::size_t leaves = all.size() / roots.size() / 2;  // of a tree
+  const auto balanced_depth = static_cast<std::size_t>(std::bit_width(leaves | 1) - 1);
+  std::array<std::uint32_t, most_in_flight> reached;
+  take_steps(all.data(), roots, keys, balanced_depth, reached.data());
+  std::array<const Node*, most_in_flight> place;
+  std::array<std::uint32_t, most_in_flight> tree;  // of each place
+  for (std::size_t i = 0; i < roots.size(); ++i) {
+    place[i] = all.data() + reached[i];
+    tree[i] = static_cast<std::uint32_t>(i);
+    __builtin_prefetch(place[i]);
+  }
+  for (std::size_t underway = roots.size(); underway > 0;) {
+    for (std::size_t turn = 1; turn < turns; ++turn) {
+      for (std::size_t i = 0; i < underway; ++i) place[i] = step_and_fetch(place[i], keys);
+    }
+    const std::size_t count = std::exchange(underway, 0);
     for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t tree = underway[i];
-      std::size_t step = place[tree]->step(keys.data());
-      asm("" : "+r"(step));  // a number, and not a jump that is guessed wrong half of the time
-      place[tree] += step;
-      __builtin_prefetch(place[tree]);
-      underway[left] = tree;
-      left += step != 0 ? 1 : 0;
+      const Node* before = place[i];
+      const Node* now = step_and_fetch(before, keys);
+      const std::uint32_t at = tree[i];
+      payloads[at] = now->payload();  // of a leaf, once it is one
+      place[underway] = now;
+      tree[underway] = at;
+      underway += now != before ? 1 : 0;
     }
   }
-  for (std::size_t tree = 0; tree < trees; ++tree) payloads[tree] = place[tree]->payload();
 }
 
 /// The payload of the leaf that one input, given by its wide keys, reaches in each tree.
 inline void find_leaves(std::span<const Node> all, std::span<const std::uint32_t> roots,
                         std::span<const std::uint64_t> keys, std::uint32_t* payloads) {
   const Node* nodes = all.data();
-  if (all.size() > far_nodes && roots.size() <= most_in_flight) return find_leaves_far(nodes, roots, keys, payloads);
+  if (all.size() > far_nodes && roots.size() <= most_in_flight) return find_leaves_far(all, roots, keys, payloads);
 #ifdef SUREFOOT_AVX2
-  if (roots.size() > avx2_trees / 2 && keys.size() <= avx2_slots && __builtin_cpu_supports("avx2")) {
+  if (has_avx2_way(roots.size(), keys.size())) {
     const std::size_t rest =
         roots.size() % avx2_trees;  // half of the lanes filled or fewer: eight at a time are faster
     const std::size_t vectorised = rest > avx2_trees / 2 ? roots.size() : roots.size() - rest;

@@ -106,17 +106,55 @@ template <bool TwoRegisters>
   }
 }
 
+template <bool TwoRegisters>
+[[gnu::target("avx2")]] inline void take_steps_avx2(const Node* nodes, std::span<const std::uint32_t> roots,
+                                                    const Avx2Keys& keys, std::size_t steps, std::uint32_t* reached) {
+  const std::size_t count = roots.size();
+  for (std::size_t tree = 0; tree < count; tree += avx2_trees) {
+    Avx2Lanes a = start(roots.data(), tree, count);
+    Avx2Lanes b = start(roots.data(), tree + 8, count);
+    Avx2Lanes c = start(roots.data(), tree + 16, count);
+    Avx2Lanes d = start(roots.data(), tree + 24, count);
+    for (std::size_t i = 0; i < steps; ++i) {
+      step<TwoRegisters>(nodes, keys, a);
+      step<TwoRegisters>(nodes, keys, b);
+      step<TwoRegisters>(nodes, keys, c);
+      step<TwoRegisters>(nodes, keys, d);
+    }
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(reached + tree), a.place);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(reached + tree + 8), b.place);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(reached + tree + 16), c.place);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(reached + tree + 24), d.place);
+  }
+}
+
+/// At most 16 wide keys in two registers.
+[[gnu::target("avx2"), gnu::always_inline]] inline Avx2Keys in_registers(std::span<const std::uint64_t> keys) {
+  alignas(32) std::array<std::uint32_t, avx2_slots> slots{};
+  for (std::size_t k = 0; k < keys.size(); ++k) slots[k] = static_cast<std::uint32_t>(keys[k] >> 32) ^ 0x80000000U;
+  return {_mm256_load_si256(reinterpret_cast<const __m256i*>(&slots[0])),
+          _mm256_load_si256(reinterpret_cast<const __m256i*>(&slots[8]))};
+}
+
 [[gnu::target("avx2")]] SUREFOOT_INLINE void find_leaves_avx2(const Node* nodes, std::span<const std::uint32_t> roots,
                                                               std::span<const std::uint64_t> keys,
                                                               std::uint32_t* payloads) {
-  alignas(32) std::array<std::uint32_t, avx2_slots> slots{};
-  for (std::size_t k = 0; k < keys.size(); ++k) slots[k] = static_cast<std::uint32_t>(keys[k] >> 32) ^ 0x80000000U;
-  const Avx2Keys registers{_mm256_load_si256(reinterpret_cast<const __m256i*>(&slots[0])),
-                           _mm256_load_si256(reinterpret_cast<const __m256i*>(&slots[8]))};
+  const Avx2Keys registers = in_registers(keys);
   if (keys.size() <= 8) {
     find_leaves_avx2<false>(nodes, roots, registers, payloads);
   } else {
     find_leaves_avx2<true>(nodes, roots, registers, payloads);
+  }
+}
+
+[[gnu::target("avx2")]] SUREFOOT_INLINE void take_steps_avx2(const Node* nodes, std::span<const std::uint32_t> roots,
+                                                             std::span<const std::uint64_t> keys, std::size_t steps,
+                                                             std::uint32_t* reached) {
+  const Avx2Keys registers = in_registers(keys);
+  if (keys.size() <= 8) {
+    take_steps_avx2<false>(nodes, roots, registers, steps, reached);
+  } else {
+    take_steps_avx2<true>(nodes, roots, registers, steps, reached);
   }
 }
 
