@@ -24,6 +24,14 @@ TEST_CASE("without noise one sample is enough") {
   CHECK(options.lookahead.refined_samples == 1);
   CHECK(options.backup_runs == 1);
   CHECK(options.backup_steps > RfpiOptions{}.backup_steps);
+  CHECK(options.replace_short_runs);
+}
+
+TEST_CASE("without noise a run is no more than ten backups, in steps of any length") {
+  CHECK(without_noise({.horizon = 20}).backup_steps == 6);
+  CHECK(without_noise({.horizon = 200}).backup_steps == 20);
+  CHECK(without_noise({.horizon = 2000}).backup_steps == 200);
+  CHECK(without_noise({.horizon = 200, .backup_steps = 30}).backup_steps == 30);
 }
 
 TEST_CASE("sizes of policies are tried in turn, and stay in bounds") {

@@ -118,10 +118,29 @@ TEST_CASE("a run ends at its terminal step, the others go on") {
   CHECK(runs == 100);
 }
 
+TEST_CASE("as many states come back as are asked for, however early runs end") {
+  const int horizon = 100;
+  for (const double longest : {1.0, 7.0, 1000.0}) {
+    const Memory problem{.shortest = 1, .longest = longest};
+    const auto some = enough_visited_states(problem, never_drawn, 2000, horizon, 0.3, Serial{}, Rng(4));
+    CHECK(some.size() >= 2000);
+    CHECK(some.size() < 2500);
+    CHECK(enough_visited_states(problem, never_drawn, 2000, horizon, 0.3, Threads(3), Rng(4)) == some);
+    CHECK(std::ranges::all_of(some, [&](const auto& state) { return state[1] >= 1 && state[1] <= longest; }));
+  }
+}
+
+TEST_CASE("runs that go to their end are those that visited_states gives") {
+  const DoubleIntegrator problem{.push = 0.1};
+  const auto whole = visited_states(problem, pull_back, 6, 20, 0.3, Serial{}, Rng(1));
+  CHECK(enough_visited_states(problem, pull_back, 101, 20, 0.3, Serial{}, Rng(1)) == whole);
+}
+
 TEST_CASE("nothing more is simulated after a stop") {
   std::stop_source stop;
   stop.request_stop();
   CHECK(visited_states(Memory{}, never_drawn, 100, 10, 0.3, Threads(2), Rng(1), stop.get_token()).empty());
+  CHECK(enough_visited_states(Memory{}, never_drawn, 100, 10, 0.3, Serial{}, Rng(1), stop.get_token()).empty());
 }
 
 }  // namespace

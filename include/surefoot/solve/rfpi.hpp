@@ -62,6 +62,7 @@ std::uint64_t rfpi_fingerprint(const P& problem, const RfpiOptions& o, std::uint
            f->model_score, f->ridge, f->clamp);
   }
   if (o.adapt || std::isfinite(o.agreement) || l.hold != 1) number(o.adapt, o.agreement, l.hold);  // not in version 0.1
+  if (o.replace_short_runs) number(o.replace_short_runs);                                          // likewise
   for (const auto& state : seed_states) all.words(std::span<const double>(state.data(), P::state_dim));
   all.list(feature_probe(problem));
   Rng rng(seed, 0);

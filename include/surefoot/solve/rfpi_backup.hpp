@@ -52,8 +52,11 @@ std::vector<typename P::State> choose_states(const P& problem, const RfpiOptions
   if (before.iteration == 0) states = random_subset(std::vector(seed_states.begin(), seed_states.end()), count, choice);
   const auto wanted = static_cast<std::size_t>(options.visited_share * static_cast<double>(count));
   const auto visit = [&](const ActOnBatch<P>& acting, double exploration) {
-    const std::size_t runs = wanted / static_cast<std::size_t>(options.horizon) + 1;
-    return visited_states(problem, acting, runs, options.horizon, exploration, executor, rng.stream(1), stop);
+    if (!options.replace_short_runs) {
+      const std::size_t runs = wanted / static_cast<std::size_t>(options.horizon) + 1;
+      return visited_states(problem, acting, runs, options.horizon, exploration, executor, rng.stream(1), stop);
+    }
+    return enough_visited_states(problem, acting, wanted, options.horizon, exploration, executor, rng.stream(1), stop);
   };
   if (!initial) {
     const ForestPolicy<P> policy(problem, before.policy, options.agreement);

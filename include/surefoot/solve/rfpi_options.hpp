@@ -62,6 +62,8 @@ struct RfpiOptions {
   int initial_iterations = 6;      // first iterations, on states from the whole state box, before there is a policy
   double box_share = 0.05;         // of the samples from the whole state box, later
   double visited_share = 0.5;      // of the samples from runs of the newest policy; the rest stays from before
+  bool replace_short_runs = false;  // more runs where runs end early, until visited_share is reached; false: as many as
+                                    // whole runs would take
   double exploration = 0.3;        // chance per step of those runs to hold a random action for 1 to 3 steps
   int backup_steps = 2;        // steps of the policy after the lookahead's action, before the last value forest counts
   int backup_runs = 4;         // simulated runs of those steps

@@ -84,4 +84,22 @@ std::vector<typename P::State> visited_states(const P& problem, const std::type_
   return all;
 }
 
+/// At least `count` states, from as many runs as that takes: where runs end early, as at a goal, more of them. First as
+/// many as whole runs would need, then by the mean length of those so far. Fewer come back if `stop` is requested.
+template <Problem P, Executor E>
+std::vector<typename P::State> enough_visited_states(const P& problem, const std::type_identity_t<ActOnBatch<P>>& act,
+                                                     std::size_t count, int horizon, double exploration,
+                                                     const E& executor, const Rng& rng, std::stop_token stop = {}) {
+  std::size_t runs = count / static_cast<std::size_t>(horizon) + 1;
+  auto all = visited_states(problem, act, runs, horizon, exploration, executor, rng, stop);
+  for (std::uint64_t round = 1; !all.empty() && all.size() < count; ++round) {
+    const std::size_t more = (count - all.size()) * runs / all.size() + 1;
+    const auto next = visited_states(problem, act, more, horizon, exploration, executor, rng.stream(round, 0), stop);
+    if (next.empty()) break;  // stopped
+    all.insert(all.end(), next.begin(), next.end());
+    runs += more;
+  }
+  return all;
+}
+
 }  // namespace surefoot
