@@ -51,7 +51,7 @@ inline RfpiOptions without_noise(RfpiOptions options) {
   constexpr int least_steps = 6;        // of backups: information comes from so many transitions away in an iteration
   constexpr int backups_of_a_run = 10;  // a run has no more of them: each adds the errors of a value forest, however
                                         // finely the simulator steps
-  constexpr double growth = 1.1;   // iterations are cheap, and values need many where runs are long
+  constexpr double growth = 1.1;        // iterations are cheap, and values need many where runs are long
   options.lookahead.samples = options.lookahead.refined_samples = options.backup_runs = 1;
   options.backup_steps = std::max({options.backup_steps, least_steps, options.horizon / backups_of_a_run});
   options.replace_short_runs = true;

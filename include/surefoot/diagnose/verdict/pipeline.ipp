@@ -351,6 +351,7 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
       log.repaired = std::move(more.repaired);
     }
     if (begins_anew) continue;
+    // found too late to begin anew: named, but not repaired in what this diagnosis is made of
     for (LogFault& fault : log.faults) fault.repaired = fault.repaired && is_named_again(considered, {fault});
     diagnosis.log_faults = std::move(log.faults);
     return diagnosis;

@@ -95,20 +95,20 @@ constexpr std::size_t most_in_flight = 64;                                 // tr
 constexpr std::size_t far_nodes = (std::size_t{2} << 20U) / sizeof(Node);  // a forest of more is beyond the caches near
                                                                            // the core (0.5 to 2 MB today)
 
-inline bool has_avx2_way([[maybe_unused]] std::size_t trees, [[maybe_unused]] std::size_t slots) {
 #ifdef SUREFOOT_AVX2
+/// Whether AVX2 can take so many trees down, and is faster: half of the lanes filled or fewer, eight at a time are.
+inline bool avx2_pays(std::size_t trees, std::size_t slots) {
   return trees > avx2_trees / 2 && slots <= avx2_slots && __builtin_cpu_supports("avx2") != 0;
-#else
-  return false;
-#endif
 }
+#endif
 
 /// The indices of the nodes that one input, given by its wide keys, reaches in so many steps from each root. There is
 /// room for most_in_flight of them.
 inline void take_steps(const Node* nodes, std::span<const std::uint32_t> roots, std::span<const std::uint64_t> keys,
                        std::size_t steps, std::uint32_t* reached) {
 #ifdef SUREFOOT_AVX2
-  if (has_avx2_way(roots.size(), keys.size())) return take_steps_avx2(nodes, roots, keys, steps, reached);
+  static_assert(most_in_flight % avx2_trees == 0);
+  if (avx2_pays(roots.size(), keys.size())) return take_steps_avx2(nodes, roots, keys, steps, reached);
 #endif
   for (std::size_t tree = 0; tree < roots.size(); tree += lanes) {
     const std::size_t last = std::min(lanes, roots.size() - tree) - 1;
@@ -170,7 +170,7 @@ inline void find_leaves(std::span<const Node> all, std::span<const std::uint32_t
   const Node* nodes = all.data();
   if (all.size() > far_nodes && roots.size() <= most_in_flight) return find_leaves_far(all, roots, keys, payloads);
 #ifdef SUREFOOT_AVX2
-  if (has_avx2_way(roots.size(), keys.size())) {
+  if (avx2_pays(roots.size(), keys.size())) {
     const std::size_t rest =
         roots.size() % avx2_trees;  // half of the lanes filled or fewer: eight at a time are faster
     const std::size_t vectorised = rest > avx2_trees / 2 ? roots.size() : roots.size() - rest;

@@ -23,8 +23,8 @@ constexpr std::size_t avx2_trees = 32;  // in flight together
 [[gnu::target("avx2")]] void find_leaves_avx2(const Node* nodes, std::span<const std::uint32_t> roots,
                                               std::span<const std::uint64_t> keys, std::uint32_t* payloads);
 
-/// The indices of the nodes that it reaches in so many steps from each root; `reached` has room for a whole number of
-/// avx2_trees, since a vector is read from at once faster when all of it was written.
+/// The indices of the nodes that it reaches in so many steps from each root. `reached` has room for a whole multiple of
+/// avx2_trees: whole vectors are stored, since what a masked store wrote is slow to read back.
 [[gnu::target("avx2")]] void take_steps_avx2(const Node* nodes, std::span<const std::uint32_t> roots,
                                              std::span<const std::uint64_t> keys, std::size_t steps,
                                              std::uint32_t* reached);
