@@ -1,11 +1,9 @@
 #include "model_file.hpp"
 
-#include <algorithm>
 #include <cstddef>
-#include <sstream>
 
-#include "../common/utf8.hpp"
 #include "model_entries.hpp"
+#include "read_toml.hpp"
 #include "surefoot/core/binary.hpp"
 #include "toml_table.hpp"
 #include "units.hpp"
@@ -111,35 +109,7 @@ ModelFile read_model(const TomlTable& root) {
 }  // namespace
 
 ModelFile parse_model_file(std::string_view text, const std::string& file) {
-  // The parser calls itself for every bracket inside another and every part of a dotted key: this many fit its stack.
-  constexpr std::ptrdiff_t most_brackets = 1000, most_points = 5000;
-  if (std::ranges::count(text, '[') + std::ranges::count(text, '{') > most_brackets ||
-      std::ranges::count(text, '.') > most_points) {
-    throw surefoot::DiagnoseError(file + ": the file has more than " + std::to_string(most_brackets) +
-                                  " opening brackets or " + std::to_string(most_points) +
-                                  " points; no model needs as many, simplify it");
-  }
-  // The parser reads past the end of strings that are no UTF-8.
-  if (const std::size_t at = example::first_not_utf8(text); at < text.size()) {
-    throw surefoot::DiagnoseError(file + ", line " + std::to_string(example::line_of(text, at)) +
-                                  ": a byte that is no UTF-8 text; save the file with the encoding UTF-8");
-  }
-  toml::value root;
-  try {
-    std::istringstream stream{std::string(text)};
-    root = toml::parse(stream, file);
-  } catch (const toml::exception& error) {
-    const std::string what = error.what();
-    std::string reason = what.substr(0, what.find('\n'));
-    if (reason.starts_with("[error] ")) reason.erase(0, std::string_view("[error] ").size());
-    throw surefoot::DiagnoseError(file + ", line " + std::to_string(error.location().line()) + ", column " +
-                                  std::to_string(error.location().column()) + ": this is not valid TOML (" +
-                                  printable(reason.substr(0, 120)) + ")");
-  } catch (const std::exception& error) {
-    const std::string what = error.what();
-    throw surefoot::DiagnoseError(file + ": this is not valid TOML (" +
-                                  printable(what.substr(0, std::min<std::size_t>(what.find('\n'), 120))) + ")");
-  }
+  const toml::value root = read_toml(text, file);
   if (!root.is_table())
     throw surefoot::DiagnoseError(file + ": the file is empty; a model has at least [states] and [outputs]");
   ModelFile model = read_model({&root, file, ""});

@@ -53,6 +53,12 @@ TEST_CASE("a setup of a robot is read with its units") {
   CHECK(setup.groups.at(0).joints.size() == 2);
 }
 
+TEST_CASE("a setup nested deeper than its reader's stack, or that is no UTF-8, is refused") {
+  const std::string nested = "a = " + std::string(300'000, '[') + std::string(300'000, ']');
+  CHECK(refusal(nested).find("robot.toml, line 1: more than 100 brackets are open") == 0);
+  CHECK(refusal("time = 't'\nname = '\260'\n").find("robot.toml, line 2: a byte that is no UTF-8") == 0);
+}
+
 TEST_CASE("what is wrong in a setup is said in one sentence with its place") {
   CHECK(refusal(replaced(good, "surefoot.robot/1", "other")).find("schema") != std::string::npos);
   CHECK(refusal(replaced(good, "kp = 20", "kpp = 20")).find("did you mean 'kp'") != std::string::npos);
@@ -60,7 +66,7 @@ TEST_CASE("what is wrong in a setup is said in one sentence with its place") {
   CHECK(refusal(replaced(good, "\"b\"]", "\"c\"]")).find("'c'") != std::string::npos);
   CHECK(refusal(replaced(good, "unit = \"deg\"", "unit = \"grad\"")).find("'grad'") != std::string::npos);
   CHECK(refusal(replaced(good, "kp = 5", "kp = \"much\"")).find("a finite number") != std::string::npos);
-  CHECK(refusal("[joints").find("no TOML") != std::string::npos);
+  CHECK(refusal("[joints").find("not valid TOML") != std::string::npos);
 }
 
 TEST_CASE("a setup that is written is read as it was") {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <functional>
 #include <regex>
@@ -38,14 +39,15 @@ std::string what_ends_it(const std::function<void()>& load) {
   constexpr unsigned longest = 60;  // [s]; meshes of a large robot take a few
   const pid_t child = fork();
   if (child == 0) {
+    for (const int fault : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(fault, SIG_DFL);  // not handled here
     alarm(longest);
     load();
     _exit(0);
   }
   int status = 0;
-  if (child < 0 || waitpid(child, &status, 0) != child || !WIFSIGNALED(status)) return "";
-  return "its reader fails on this file (" + std::string(strsignal(WTERMSIG(status))) +
-         "); look for numbers and elements that are damaged";
+  if (child < 0 || waitpid(child, &status, 0) != child || status == 0) return "";
+  const std::string reason = WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "it gave up";
+  return "its reader fails on this file (" + reason + "); look for numbers and elements that are damaged";
 }
 
 std::string name_of(const mjModel* m, int type, int id) {

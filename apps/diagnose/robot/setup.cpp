@@ -4,6 +4,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "../read_toml.hpp"
 #include "../toml_table.hpp"
 #include "../units.hpp"
 #include "surefoot/core/binary.hpp"
@@ -240,16 +241,7 @@ void write_column(std::ostringstream& text, const char* key, const ColumnOf& col
 }  // namespace
 
 RobotSetup parse_setup(const std::string& text, const std::string& file) {
-  std::istringstream stream(text);
-  toml::value value;
-  try {
-    value = toml::parse(stream, file);
-  } catch (const std::exception& error) {
-    std::string what = error.what();
-    std::ranges::replace(what, '\n', ' ');
-    throw surefoot::DiagnoseError(file + ": this is no TOML: " + diagnose_program::printable(what.substr(0, 300)));
-  }
-  return read_tables(value, file);
+  return read_tables(diagnose_program::read_toml(text, file), file);
 }
 
 RobotSetup read_setup(const std::filesystem::path& file) {
