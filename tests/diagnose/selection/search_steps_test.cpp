@@ -219,5 +219,21 @@ TEST_CASE("effects of the best structure are taken away and replaced in turn") {
   CHECK(has("sensor_bias"));
 }
 
+TEST_CASE("what an effect may be confused with is tried in its place, beside the parameters found with it") {
+  const TankBench bench({rate_in_tank});
+  const SelectionCriteria& criteria = bench.problem.criteria;
+  std::vector<EvaluatedHypothesis> pool{bench.with({"sensor_drift"})};
+  REQUIRE(names_in(pool[best_of(pool, criteria)]) == "sensor_drift");
+  try_confusable(bench.search(), pool);
+  CHECK(names_in(pool[best_of(pool, criteria)]) == "constant_rate");
+  for (const EvaluatedHypothesis& one : pool) CHECK(one.hypothesis.effects.size() <= 1);  // in its place, not beside it
+
+  Search stopped = bench.search();
+  stopped.problem.stopped = [] { return true; };
+  std::vector<EvaluatedHypothesis> same{bench.with({"sensor_drift"})};
+  try_confusable(stopped, same);
+  CHECK(same.size() == 1);
+}
+
 }  // namespace
 }  // namespace surefoot::diagnosis

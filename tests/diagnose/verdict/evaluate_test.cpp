@@ -54,6 +54,16 @@ TEST_CASE("the noise of an output that is read in every tenth row is that of the
   CHECK(diagnosis.noise_ratio == doctest::Approx(1).epsilon(0.3));
 }
 
+TEST_CASE("a coarse sensor does not hide what a fine one shows") {
+  std::vector<ChannelMismatch> outputs(2);
+  outputs[0].rmse_after = 0.07;  // of a motion that is as wide as that of the other
+  outputs[0].noise = 0.01;
+  outputs[1].rmse_after = outputs[1].noise = 0.2;
+  CHECK(noise_ratio(outputs) == doctest::Approx(5));
+  outputs[1].noise = 0;
+  CHECK(std::isnan(noise_ratio(outputs)));
+}
+
 TEST_CASE("the noise of an output is what no lag predicts, unless it is stated") {
   EstimationSetup setup = toys::tank_setup(toys::noisy_tanks({}, 0.01));
   const auto noise = [&](double share, double p) {
@@ -61,6 +71,8 @@ TEST_CASE("the noise of an output is what no lag predicts, unless it is stated")
   };
   CHECK(noise(0.75, 1e-6) == doctest::Approx(0.05));
   CHECK(noise(0.75, 0.5) == doctest::Approx(0.1));              // by chance
+  const WhitenessTest slow{.share = 0.2, .remembered = 0.75, .p_value = 1e-6, .typical = 0.1};
+  CHECK(output_noise(setup.bound, setup.split.training, 0, slow, 0.2) == doctest::Approx(0.05));
   CHECK(noise(1, 1e-6) == doctest::Approx(0.01).epsilon(0.2));  // what differs from row to row is left
   CHECK(output_noise(setup.bound, setup.split.training, 0, {.typical = 0.1}, 0.02) == 0.02);  // never more than the error
   setup.bound.info.outputs[0].noise = 0.03;

@@ -15,10 +15,11 @@ namespace surefoot::diagnosis {
 
 /// How much of the residuals of one output is not noise.
 struct WhitenessTest {
-  double share = 0;    // of the mean square that is still correlated after the noise has forgotten itself
-  double p_value = 1;  // one-sided, that there is none
-  double rms = 0;      // of the residuals, in the unit of the output
-  double typical = 0;  // the same of the median recording: what is off in a few is not everywhere
+  double share = 0;       // of the mean square that is still correlated after the noise has forgotten itself
+  double remembered = 0;  // correlation just after that: what slow errors, which fade later, make of the mean square
+  double p_value = 1;     // one-sided, that there is none
+  double rms = 0;         // of the residuals, in the unit of the output
+  double typical = 0;     // the same of the median recording: what is off in a few is not everywhere
 };
 
 /// Residuals of one output in one recording; what was not measured is 0.

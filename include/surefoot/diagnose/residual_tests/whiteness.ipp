@@ -93,6 +93,7 @@ SUREFOOT_INLINE WhitenessTest test_whiteness(const BoundSimulator& bound, const 
   if (!(squares > 0)) return result;
   Eigen::VectorXd correlation = lagged_products(all, from, to);
   correlation /= squares;
+  result.remembered = std::max(0.0, correlation[0]);
   Rng rng(1);
   double mean = 0, variance = 0;
   std::vector<double> nulls;

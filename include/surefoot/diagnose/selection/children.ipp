@@ -94,8 +94,20 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> finished(const Search& search, st
   constexpr std::uint64_t scatter_seed = 1;
   const auto& [bound, problem, candidates, parallel] = search;
   std::erase_if(fits, [](const Fit& one) { return !one.ok; });
-  sort_items(fits, [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
-  if (fits.size() > keep) fits.resize(keep);
+  const auto keep_best = [&](std::size_t count) {
+    sort_items(fits, [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
+    if (fits.size() > count) fits.resize(count);
+  };
+  if (fits.size() > problem.effort.second_look * keep) {
+    keep_best(problem.effort.second_look * keep);
+    FitProblem quick = problem.fit;
+    quick.recordings = problem.screened;
+    quick.max_iterations = problem.effort.second_iterations;
+    parallel(fits.size(), [&](std::size_t i) {
+      if (!problem.stopped()) fits[i] = fit(bound, fits[i].hypothesis, quick, serially());
+    });
+  }
+  keep_best(keep);
   parallel(fits.size(), [&](std::size_t i) {
     if (!problem.stopped()) fits[i] = fit(bound, fits[i].hypothesis, problem.fit, serially());
   });

@@ -62,6 +62,11 @@ void take_effects_away(const Search& search, std::vector<EvaluatedHypothesis>& p
 /// Takes each effect of the best structure away, and puts others in its place.
 void swap_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool);
 
+/// Puts other effects in the place of each of the best structure, beside the parameters that were found with it: those
+/// it may be confused with, its other forms, and itself elsewhere. Where the search began the parameters were so far
+/// off that a right effect may have looked like the wrong one.
+void try_confusable(const Search& search, std::vector<EvaluatedHypothesis>& pool);
+
 /// Single effects and pairs once more, from the parameters of the best structure on: these are nearest to the truth,
 /// whatever effects led there, and an early choice that only led there is left behind.
 void begin_anew(const Search& search, std::vector<EvaluatedHypothesis>& pool);

@@ -272,6 +272,36 @@ SUREFOOT_ONCE void swap_effects(const Search& search, std::vector<EvaluatedHypot
   }
 }
 
+/// Whether the catalogue says that one of two effects may be taken for the other.
+SUREFOOT_ONCE bool may_be_confused(const Effect& a, const Effect& b) {
+  const auto says = [](const Effect& one, const std::string& name) {
+    return std::find(one.confusable_with.begin(), one.confusable_with.end(), name) != one.confusable_with.end();
+  };
+  return says(a, b.name) || says(b, a.name);
+}
+
+SUREFOOT_ONCE void try_confusable(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
+  SearchProblem problem = search.problem;
+  problem.scatter = false;  // the parameters are near enough
+  const EvaluatedHypothesis best = pool[best_of(pool, problem.criteria)];
+  for (std::size_t e = problem.known; e < best.hypothesis.effects.size() && !problem.stopped(); ++e) {
+    const AttachedEffect& found = best.hypothesis.effects[e];
+    std::vector<AttachedEffect> others, same_name;  // each get their own finalists: forms would crowd the others out
+    for (const AttachedEffect& one : search.candidates) {
+      if (may_be_confused(*one.effect, *found.effect)) others.push_back(one);
+      if (one.effect->name == found.effect->name && !same_effect(one, found)) same_name.push_back(one);
+    }
+    const Fit without{without_effect(best.hypothesis, e), 0, true};
+    const EvaluatedHypothesis rest = evaluate_fit(search.bound, without, problem, search.parallel);
+    for (const std::vector<AttachedEffect>& rivals : {others, same_name}) {
+      const Search among{search.bound, problem, rivals, search.parallel};
+      const auto fitted =
+          next_effects(among, rest, proposals_for(among, rest), rivals.size(), problem.effort.compared_finalists);
+      for (const EvaluatedHypothesis& one : fitted) keep_best_form(pool, one, problem.criteria);
+    }
+  }
+}
+
 SUREFOOT_ONCE void begin_anew(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
   const SelectionCriteria& criteria = search.problem.criteria;
   const EvaluatedHypothesis best = pool[best_of(pool, criteria)];
@@ -309,6 +339,7 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
     refit_best(search, pool);
     take_effects_away(search, pool);
     swap_effects(search, pool);
+    try_confusable(search, pool);
     begin_anew(search, pool);
     if (same_structure(pool[best_of(pool, criteria)].hypothesis, best)) break;
   }

@@ -49,6 +49,10 @@ std::vector<ChannelMismatch> mismatch_by_output(const EstimationSetup& setup, co
 /// Error that noise alone leaves, in units of `scale` (by output); NaN if that of any output cannot be told.
 double noise_floor(const std::vector<ChannelMismatch>& outputs, const Eigen::VectorXd& scale);
 
+/// Error on held-out recordings, each output in units of its own noise, root mean square over outputs: a coarse sensor
+/// does not hide what a fine one shows. NaN if the noise of any output cannot be told.
+double noise_ratio(const std::vector<ChannelMismatch>& outputs);
+
 /// Fills in errors and curves.
 void evaluate_errors(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis, std::uint64_t seed,
                      const EvaluationCriteria& criteria = {});

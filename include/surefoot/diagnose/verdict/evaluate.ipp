@@ -102,7 +102,8 @@ SUREFOOT_ONCE double output_noise(const BoundSimulator& bound, const std::vector
   constexpr double significance = 0.01;  // of structure in the residuals
   const double stated = bound.info.outputs[static_cast<std::size_t>(output)].noise;
   if (stated > 0) return stated;
-  const double structured = residuals.p_value < significance ? std::min(1.0, residuals.share) : 0;
+  const double largest = std::min(1.0, std::max(residuals.share, residuals.remembered));
+  const double structured = residuals.p_value < significance ? largest : 0;
   const double unpredictable = residuals.typical * std::sqrt(1 - structured);
   return std::min(std::max(fast_noise(bound, recordings, output), unpredictable), error);
 }
@@ -158,6 +159,15 @@ SUREFOOT_ONCE double noise_floor(const std::vector<ChannelMismatch>& outputs, co
   return std::sqrt(squares);
 }
 
+SUREFOOT_ONCE double noise_ratio(const std::vector<ChannelMismatch>& outputs) {
+  double squares = 0;
+  for (const ChannelMismatch& one : outputs) {
+    const double ratio = one.noise > 0 ? one.rmse_after / one.noise : std::numeric_limits<double>::quiet_NaN();
+    squares += ratio * ratio / static_cast<double>(outputs.size());
+  }
+  return std::sqrt(squares);
+}
+
 /// Values of the held-out errors of a recording that are independent of each other.
 SUREFOOT_ONCE double independent_errors(const BoundSimulator& bound, std::size_t r, const SimulatedRun& run) {
   double count = 0;
@@ -208,7 +218,7 @@ SUREFOOT_ONCE void evaluate_errors(const EstimationSetup& setup, const FittedMod
   diagnosis.channels = mismatch_by_output(setup, models);
   diagnosis.noise_floor = noise_floor(diagnosis.channels, scale);
   if (setup.noise != NoiseKind::measurement || !(diagnosis.noise_floor > 0)) return;  // noise adds up on the way
-  diagnosis.noise_ratio = diagnosis.held_out_after / diagnosis.noise_floor;
+  diagnosis.noise_ratio = noise_ratio(diagnosis.channels);
 }
 
 SUREFOOT_ONCE void offer_forests(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
