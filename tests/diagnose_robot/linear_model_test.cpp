@@ -8,6 +8,7 @@
 #include "apps/diagnose/robot/diagnose_robot.hpp"
 #include "apps/diagnose/robot/robot_diagnosis.hpp"
 #include "apps/diagnose/robot/swapped_joints.hpp"
+#include "apps/diagnose/robot/swapped_torques.hpp"
 #include "surefoot/core/rng.hpp"
 
 using namespace diagnose_robot;
@@ -127,6 +128,14 @@ TEST_CASE("a size far beyond its prior is rare, but costs no more than evidence 
   CHECK(prior_cost(model, 0, 10 * 5) < 10);
 }
 
+TEST_CASE("a large effect is fitted whole, though what it has not yet explained looks like noise") {
+  LinearModel model = made_up(Eigen::VectorXd{{9.0}}, 12);
+  model.independent.setConstant(18);  // few, so that the prior is the stronger at first
+  model.prior.setConstant(2);
+  const LinearFit fit = fit_linear(model, {1});
+  CHECK(fit.change[0] == doctest::Approx(9).epsilon(0.02));
+}
+
 TEST_CASE("a term that is not needed any more is taken away, and its size goes to zero") {
   LinearModel model = made_up(Eigen::VectorXd::Zero(3), 5);
   const TermSet set = choose_terms(model, TermSet{1, 0, 0}, TermSet(3, 1));
@@ -157,6 +166,20 @@ TEST_CASE("columns that were swapped are told by what each is told to do") {
   CHECK(swapped_pairs(unexplained) == std::vector<std::pair<int, int>>{{1, 2}});
   unexplained.setConstant(0.05);  // all move alike: no one can tell
   CHECK(swapped_pairs(unexplained).empty());
+}
+
+TEST_CASE("angles that were swapped are told by the likelihood of all torques") {
+  const std::vector<TorqueMisfit> as_is{{0.3, 40}, {0.2, 40}, {0.02, 40}};
+  const SwappedAngles found = compare_swapped(0, 1, as_is, {{0.02, 30}, {0.03, 30}, {0.02, 40}});
+  CHECK(found.each_alone);
+  CHECK(found.evidence == doctest::Approx(30 * std::log(15) + 30 * std::log(0.2 / 0.03)));
+  const SwappedAngles other = compare_swapped(1, 2, as_is, {{0.3, 40}, {0.05, 40}, {0.1, 40}});
+  CHECK_FALSE(other.each_alone);  // the torque of joint 2 speaks against it
+  CHECK(likely_swaps({other, found}) == std::vector<std::pair<int, int>>{{0, 1}});
+  const SwappedAngles weak = compare_swapped(0, 1, as_is, {{0.25, 10}, {0.18, 10}, {0.02, 40}});
+  CHECK(weak.each_alone);
+  CHECK(likely_swaps({weak}).empty());  // odds of less than 20
+  CHECK(likely_swaps({found, {1, 2, found.evidence + 1, true}}) == std::vector<std::pair<int, int>>{{1, 2}});
 }
 
 TEST_CASE("the verdict follows the noise floor, then what was found") {

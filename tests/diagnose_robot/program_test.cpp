@@ -107,6 +107,33 @@ TEST_CASE("swapped columns are named, and repaired if asked for") {
   CHECK(result_of(folder)["verdict"] == "unexplained");
 }
 
+TEST_CASE("swapped columns of an arm that torques drive are named, though each torque is partly explained as it is") {
+  const ScratchFolder folder;
+  auto arm = robot_test::small_arm();
+  arm.torque_driven = true;
+  arm.swapped = {{0, 1}};
+  robot_test::write_files(folder, arm, 18);
+  REQUIRE(diagnose(folder).code == 0);
+  const json result = result_of(folder);
+  REQUIRE(result["log_faults"].size() == 1);
+  CHECK(result["log_faults"][0]["kind"] == "columns_swapped");
+}
+
+TEST_CASE("a recorded torque on another scale is found at its joint, and nothing else") {
+  const ScratchFolder folder;
+  auto arm = robot_test::small_arm();
+  arm.torque_driven = true;
+  arm.joints[1].hidden.weakness = 0.48;
+  robot_test::write_files(folder, arm, 17);
+  REQUIRE(diagnose(folder).code == 0);
+  const json result = result_of(folder);
+  REQUIRE(result["effects"].size() == 1);
+  CHECK(result["effects"][0]["name"] == "sensor_scale");
+  CHECK(result["effects"][0]["attached_to"] == "lower");
+  CHECK(double(result["effects"][0]["parameters"][0]["value"]) == doctest::Approx(1 / 0.52 - 1).epsilon(0.03));
+  CHECK(result["verdict"] == "parameters-only");
+}
+
 TEST_CASE("a setup is printed that the diagnosis can use") {
   const ScratchFolder folder;
   robot_test::write_files(folder, robot_test::small_arm(), 15);

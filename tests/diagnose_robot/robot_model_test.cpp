@@ -130,3 +130,39 @@ TEST_CASE("the corrected model loads in MuJoCo and moves as the simulation that 
   CHECK((evidence.recordings[0].angle - theirs).norm() == doctest::Approx(error).epsilon(0.02));
   CHECK(augmented.xml.find("frictionloss=\"0.5\"") != std::string::npos);
 }
+
+TEST_CASE("goals that arrive late are replayed as nearly as goals that do not") {
+  const ScratchFolder folder;
+  robot_test::write_files(folder, robot_test::small_arm(), 2, 1);
+  const Robot robot = robot_test::load(folder);
+  Evidence evidence(robot);
+  robot_test::add_recording(evidence, folder.file("rec_1.csv"));
+  const StartState start = start_of(evidence.motions[0]);
+  RobotPhysics physics = robot.nominal;
+  const auto distance = [&] {
+    const Eigen::MatrixXd ours = simulate_robot(robot, evidence.recordings[0], start, physics);
+    const AugmentedModel augmented =
+        augmented_model(robot, physics, simulation_step(robot, evidence.recordings[0]) / steps_of_ours, folder.path());
+    return (ours - replay(robot, augmented, physics, evidence.recordings[0], start)).norm();
+  };
+  const double in_time = distance();
+  for (JointPhysics& joint : physics) joint[Property::delay] = 0.0123;
+  CHECK(distance() < 5 * in_time);
+}
+
+TEST_CASE("friction by load under strong damping is simulated as shorter steps say") {
+  const ScratchFolder folder;
+  auto arm = robot_test::small_arm();
+  for (auto& joint : arm.joints) joint.kd *= 4;
+  robot_test::write_files(folder, arm, 2, 1);
+  Robot robot = robot_test::load(folder);
+  Evidence evidence(robot);
+  robot_test::add_recording(evidence, folder.file("rec_1.csv"));
+  const StartState start = start_of(evidence.motions[0]);
+  RobotPhysics physics = robot.nominal;
+  for (JointPhysics& joint : physics) joint[Property::load_friction] = 0.2;
+  const Eigen::MatrixXd usual = simulate_robot(robot, evidence.recordings[0], start, physics);
+  robot.setup.step = 0.0001;
+  const Eigen::MatrixXd fine = simulate_robot(robot, evidence.recordings[0], start, physics);
+  CHECK((usual - fine).norm() < 0.0006);
+}

@@ -3,6 +3,7 @@
 
 #include "diagnose_robot.hpp"
 #include "findings.hpp"
+#include "low_pass.hpp"
 #include "simulate_robot.hpp"
 #include "surefoot/core/rng.hpp"
 #include "torque_residual.hpp"
@@ -84,9 +85,10 @@ Eigen::VectorXd noise_by_joint(const Evidence& evidence, const RobotPhysics& phy
           noisy.torque(k, j) += torque[j] * rng.normal();
         }
       }
+      const Motion& motion = evidence.motions[r];
       const Eigen::MatrixXd change =
-          torque_residual(evidence.robot, smooth(noisy, {evidence.motions[r].half_window}), physics) -
-          torque_residual(evidence.robot, evidence.motions[r], physics);
+          low_passed(motion, torque_residual(evidence.robot, smooth(noisy, {motion.half_window}), physics) -
+                                 torque_residual(evidence.robot, motion, physics));
       for (Eigen::Index j = 0; j < joints; ++j) {
         double sum = 0, rows = 0;
         for (const double x : change.col(j)) {

@@ -64,9 +64,11 @@ Eigen::VectorXd pooled(const LinearModel& model, const std::vector<Sums>& joints
   return result;
 }
 
-// Errors of joints, weighted by their independent count over their size, and the prior.
+// Errors of joints, weighted by their independent count over their size, and the prior: the quadratic that lies above
+// Cauchy's density and touches it at `now`, which are values of the terms `of`.
 void normal_equations(const LinearModel& model, const std::vector<Sums>& joints, const std::vector<Eigen::Index>& of,
-                      const Eigen::VectorXd& square, Eigen::MatrixXd& q, Eigen::VectorXd& c) {
+                      const Eigen::VectorXd& square, const Eigen::VectorXd& now, Eigen::MatrixXd& q,
+                      Eigen::VectorXd& c) {
   const Eigen::VectorXd size = pooled(model, joints, square);
   const auto terms = static_cast<Eigen::Index>(of.size());
   q = Eigen::MatrixXd::Zero(terms, terms);
@@ -79,8 +81,8 @@ void normal_equations(const LinearModel& model, const std::vector<Sums>& joints,
   }
   for (Eigen::Index i = 0; i < terms; ++i) {
     const Eigen::Index t = of[static_cast<std::size_t>(i)];
-    const double share = model.theta[t] / model.prior[t];
-    const double precision = 2 / (model.prior[t] * model.prior[t] * (1 + share * share));  // of Cauchy's density, here
+    const double share = now[i] / model.prior[t];
+    const double precision = 2 / (model.prior[t] * model.prior[t] * (1 + share * share));
     q(i, i) += precision;
     c[i] += precision * model.theta[t];
   }
@@ -209,12 +211,16 @@ LinearFit fit_linear(const LinearModel& model, const TermSet& set, int without_b
   }
   const Eigen::VectorXd theta = picked(model.theta, of);
   const Eigen::VectorXd low = picked(model.low, of) - theta, high = picked(model.high, of) - theta;
-  Eigen::VectorXd change;
-  constexpr int reweightings = 3;  // weights follow what is left; they hardly change after that
-  for (int again = 0; again < reweightings; ++again) {
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(theta.size());
+  // Weights follow what is left, and priors the sizes, until errors hardly change: a large effect begins small, since
+  // what it has not yet explained counts as noise.
+  constexpr int most_reweightings = 20;
+  constexpr double settled = 0.01;  // of a mean square error: far less than any criterion sees
+  for (int again = 0; again < most_reweightings; ++again) {
+    const Eigen::VectorXd before = fit.square;
     Eigen::MatrixXd q;
     Eigen::VectorXd c;
-    normal_equations(model, by_joint, of, fit.square, q, c);
+    normal_equations(model, by_joint, of, fit.square, theta + change, q, c);
     change = -theta;
     put(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(in.size())), in, change);
     if (!in.empty()) {
@@ -224,6 +230,7 @@ LinearFit fit_linear(const LinearModel& model, const TermSet& set, int without_b
     for (std::size_t j = 0; j < joints; ++j) {
       fit.square[static_cast<Eigen::Index>(j)] = std::max(smallest_square, square_after(by_joint[j], change));
     }
+    if (again > 0 && ((fit.square - before).array().abs() <= settled * before.array()).all()) break;
   }
   fit.change = Eigen::VectorXd::Zero(model.theta.size());
   put(change, of, fit.change);
@@ -247,7 +254,7 @@ Eigen::VectorXd standard_errors(const LinearModel& model, const TermSet& set) {
   }
   Eigen::MatrixXd q;
   Eigen::VectorXd c;
-  normal_equations(model, by_joint, in, square, q, c);
+  normal_equations(model, by_joint, in, square, picked(model.theta, in), q, c);
   const Eigen::VectorXd scale = q.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * q * scale.asDiagonal();
   const Eigen::MatrixXd inverse = scaled.ldlt().solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));

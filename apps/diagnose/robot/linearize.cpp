@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "low_pass.hpp"
 #include "simulate_robot.hpp"
 #include "surefoot/core/error.hpp"
 #include "term_priors.hpp"
@@ -103,7 +104,7 @@ Eigen::MatrixXd errors_of(const Evidence& evidence, const RobotPhysics& physics)
     const Eigen::Index rows = recording.time.size();
     errors.middleRows(at, rows) =
         evidence.robot.setup.drive == DriveKind::torque
-            ? torque_residual(evidence.robot, evidence.motions[r], physics)
+            ? low_passed(evidence.motions[r], torque_residual(evidence.robot, evidence.motions[r], physics))
             : Eigen::MatrixXd(recording.angle -
                               simulate_robot(evidence.robot, recording, start_of(evidence.motions[r]), physics));
     leave_out_start(evidence.robot, recording, errors.middleRows(at, rows));
@@ -128,6 +129,20 @@ bool same_rigid_bodies(const RobotPhysics& a, const RobotPhysics& b) {
   return true;
 }
 
+// Through the filter of the torques that are left.
+std::vector<JointDerivatives> filtered_derivatives(const Evidence& evidence, std::size_t recording,
+                                                   const RobotPhysics& physics,
+                                                   const std::vector<JointDerivatives>& rigid) {
+  const Motion& motion = evidence.motions[recording];
+  std::vector<JointDerivatives> result = torque_derivatives(evidence.robot, motion, physics, evidence.entries, rigid);
+  const Eigen::MatrixXd residual = torque_residual(evidence.robot, motion, physics);
+  for (std::size_t j = 0; j < result.size(); ++j) {
+    const auto c = static_cast<Eigen::Index>(j);
+    result[j].by = low_pass(motion.time, motion.low_pass[c], residual.col(c)) * result[j].by;
+  }
+  return result;
+}
+
 // By recording, then joint.
 std::vector<std::vector<JointDerivatives>> derivatives_at(const Evidence& evidence, const RobotPhysics& physics,
                                                           RigidCache& cache) {
@@ -145,9 +160,7 @@ std::vector<std::vector<JointDerivatives>> derivatives_at(const Evidence& eviden
   return surefoot::map(
       evidence.threads, count,
       [&](std::size_t r) {
-        if (torque)
-          return torque_derivatives(evidence.robot, evidence.motions[r], physics, evidence.entries,
-                                    cache.by_recording[r]);
+        if (torque) return filtered_derivatives(evidence, r, physics, cache.by_recording[r]);
         std::vector<JointDerivatives> result = simulation_derivatives(
             evidence.robot, evidence.recordings[r], start_of(evidence.motions[r]), physics, evidence.entries);
         for (JointDerivatives& one : result) one.by = -one.by;  // errors: measured less simulated

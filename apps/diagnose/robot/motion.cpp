@@ -7,6 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "low_pass.hpp"
+#include "surefoot/core/rng.hpp"
+
 namespace diagnose_robot {
 namespace {
 
@@ -32,7 +35,6 @@ void smooth_row(const RobotRecording& r, Eigen::Index k, double reach, Eigen::In
   motion.q.row(k) = filter.row(0) * block;
   motion.v.row(k) = filter.row(1) * block / scale;
   motion.a.row(k) = 2 * filter.row(2) * block / (scale * scale);
-  motion.acceleration_noise += 2 * filter.row(2).norm() / (scale * scale) / static_cast<double>(rows);
   if (r.goal.size() > 0) motion.goal.row(k) = filter.row(0) * r.goal.middleRows(first, count);
   if (r.torque.size() > 0) motion.torque.row(k) = filter.row(0) * r.torque.middleRows(first, count);
 }
@@ -46,16 +48,53 @@ Motion smooth_with(const RobotRecording& recording, double half_window, Eigen::I
   const double reach = std::max(half_window, static_cast<double>(fewest) * recording.row_period());
   for (Eigen::Index k = 0; k < rows; ++k) smooth_row(recording, k, reach, fewest, motion);
   motion.half_window = half_window;
+  motion.reach = reach;
+  motion.time = recording.time;
+  while (motion.edge < std::min(rows / 4, fewest) ||
+         (motion.edge < rows / 4 && recording.time[motion.edge] - recording.time[0] < reach))
+    ++motion.edge;
   return motion;
 }
 
-// Whether a wider filter changes accelerations by no more than the noise that the narrower one leaves in them (Lepski's
-// rule), in every joint.
-bool differ_by_noise(const Motion& narrow, const Motion& wide, const Eigen::VectorXd& noise) {
+// Root mean square behind the low-pass filter, of rows that windows lie around.
+double low_passed_rms(const Motion& motion, double width, const Eigen::Ref<const Eigen::VectorXd>& x) {
+  const Eigen::Index rows = x.size() - 2 * motion.edge;
+  const Eigen::VectorXd filtered =
+      low_passed(motion.time.segment(motion.edge, rows), width, x.segment(motion.edge, rows));
+  return std::sqrt(filtered.squaredNorm() / static_cast<double>(rows));
+}
+
+// White noise of size 1 through the filter of angles.
+Motion smooth_noise(const RobotRecording& recording, double half_window, Eigen::Index fewest) {
+  RobotRecording noise;
+  noise.time = recording.time;
+  noise.angle.resize(recording.time.size(), 1);
+  surefoot::Rng rng(1);
+  for (double& reading : noise.angle.reshaped()) reading = rng.normal();
+  return smooth_with(noise, half_window, fewest);
+}
+
+// [s] by joint, of the filters of torques; 0 where torques are not recorded.
+Eigen::VectorXd low_pass_widths(const RobotRecording& recording, const Motion& motion, const Motion& white,
+                                const Eigen::VectorXd& noise) {
+  Eigen::VectorXd widths = Eigen::VectorXd::Zero(noise.size());
+  for (Eigen::Index j = 0; j < recording.torque.cols(); ++j) {
+    const double acceleration = low_passed_rms(motion, 0, motion.a.col(j));
+    widths[j] = low_pass_width(recording.time, recording.torque.col(j), [&](double width) {
+      return noise[j] * low_passed_rms(white, width, white.a.col(0)) / std::max(1e-300, acceleration);
+    });
+  }
+  return widths;
+}
+
+// Whether a wider filter changes accelerations, as far as the low-pass filter lets them pass, by no more than the noise
+// that the narrower one leaves in them (Lepski's rule), in every joint.
+bool differ_by_noise(const Motion& narrow, const Motion& wide, const Motion& white, const Eigen::VectorXd& widths,
+                     const Eigen::VectorXd& noise) {
   constexpr double more = 1.1;  // estimates of noise are off by some percent
   for (Eigen::Index j = 0; j < noise.size(); ++j) {
-    const double square = (wide.a.col(j) - narrow.a.col(j)).squaredNorm() / static_cast<double>(wide.a.rows());
-    if (!(std::sqrt(square) <= more * noise[j] * narrow.acceleration_noise)) return false;
+    const double usual = noise[j] * low_passed_rms(white, widths[j], white.a.col(0));
+    if (!(low_passed_rms(wide, widths[j], wide.a.col(j) - narrow.a.col(j)) <= more * usual)) return false;
   }
   return true;
 }
@@ -84,16 +123,21 @@ Motion smooth(const RobotRecording& recording, const MotionCriteria& criteria) {
   constexpr double narrowest = 0.02;  // [s]: motors and links of robots move at up to some 10 Hz
   constexpr double widest = 0.2;      // [s]
   constexpr double wider = 1.4;       // accelerations have less than half of the noise then
-  if (criteria.half_window > 0) return smooth_with(recording, criteria.half_window, criteria.fewest_rows);
   Eigen::VectorXd noise(recording.angle.cols());
   for (Eigen::Index j = 0; j < noise.size(); ++j) noise[j] = noise_of(recording.angle.col(j));
-  Motion motion = smooth_with(recording, narrowest, criteria.fewest_rows), accepted = motion;
+  const auto at = [&](double half_window) { return smooth_with(recording, half_window, criteria.fewest_rows); };
+  if (criteria.half_window > 0) return at(criteria.half_window);
+  Motion motion = at(narrowest), accepted = motion;
+  Motion white = smooth_noise(recording, narrowest, criteria.fewest_rows);
+  const Eigen::VectorXd widths = low_pass_widths(recording, motion, white, noise);
   for (double half_window = narrowest * wider; half_window < widest; half_window *= wider) {
-    Motion next = smooth_with(recording, half_window, criteria.fewest_rows);
-    if (!differ_by_noise(accepted, next, noise)) break;
+    Motion next = at(half_window);
+    if (!differ_by_noise(accepted, next, white, widths, noise)) break;
     motion = std::move(accepted);  // one step less, so that what goes unnoticed is small beside the noise
     accepted = std::move(next);
+    white = smooth_noise(recording, half_window, criteria.fewest_rows);
   }
+  motion.low_pass = widths;
   return motion;
 }
 

@@ -6,10 +6,13 @@
 namespace diagnose_robot {
 
 struct Motion {
+  Eigen::VectorXd time;           // [s], as recorded
   Eigen::MatrixXd q, v, a;        // row x joint
   Eigen::MatrixXd goal, torque;   // through the same filter; empty where there are none
   double half_window = 0;         // [s] of the filter
-  double acceleration_noise = 0;  // [1/s^2], standard deviation of accelerations for one of the angles' noise
+  Eigen::VectorXd low_pass;       // [s] by joint, to either side, of the filter of torques; see low_pass.hpp
+  double reach = 0;               // [s] of the window to either side, which has some rows at least
+  Eigen::Index edge = 0;          // rows at either end whose window lies to one side: many times the noise of others
 };
 
 struct MotionCriteria {

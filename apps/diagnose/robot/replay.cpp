@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "augmented_xml.hpp"
+#include "robot_step.hpp"
 #include "surefoot/core/error.hpp"
 #include "xml_text.hpp"
 
@@ -19,9 +20,11 @@ struct Replay {
   std::vector<double> seen, lagging;
   bool begun = false;
 
-  double goal(Eigen::Index joint, double t) const {
+  // A late goal changes within a step: its mean over the step, not what it is at the beginning, which would be later.
+  double goal(Eigen::Index joint, double t, double late) const {
     const auto next = std::upper_bound(recording.time.begin(), recording.time.end(), t + 1e-9) - recording.time.begin();
-    return recording.goal(std::max<Eigen::Index>(0, next - 1), joint);
+    const Eigen::Index row = std::max<Eigen::Index>(0, next - 1);
+    return late > 0 ? mean_goal(recording, joint, row, t - late, model->opt.timestep) : recording.goal(row, joint);
   }
 
   void before_step(double t) {
@@ -33,7 +36,7 @@ struct Replay {
       const int a = static_cast<int>(j);
       if (!begun) seen[j] = q;
       seen[j] = std::clamp(seen[j], q - p[Property::backlash], q + p[Property::backlash]);
-      d->ctrl[a] = goal(a, t - p[Property::delay]) + q - seen[j];
+      d->ctrl[a] = goal(a, t, p[Property::delay]) + q - seen[j];
       const mjtNum* bias = m->actuator_biasprm + a * mjNBIAS;
       double torque = m->actuator_gainprm[a * mjNGAIN] * d->ctrl[a] + bias[0] + bias[1] * q + bias[2] * v;
       if (m->actuator_forcelimited[a] != 0)

@@ -194,6 +194,17 @@ void RobotStep::advance(Eigen::Index row, double t, double h) {
                        p[Property::load_friction] * std::abs(torque.constant - torque.damping * middle[i]));
   }
   surefoot::solve_coupled_dry_friction(mass, momentum, friction, work, next_);
+  // Friction by load follows the torque, and that the speed, which turns where goals jump: not as it was extrapolated.
+  bool by_load = false;
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const DriveTorque& torque = drives[static_cast<std::size_t>(i)];
+    const double share = joint(i)[Property::load_friction], mean = (v[i] + next_[i]) / 2;
+    friction[i] +=
+        h * share *
+        (std::abs(torque.constant - torque.damping * mean) - std::abs(torque.constant - torque.damping * middle[i]));
+    by_load = by_load || share > 0;
+  }
+  if (by_load) surefoot::solve_coupled_dry_friction(mass, momentum, friction, work, next_);
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     const DriveTorque& torque = drives[static_cast<std::size_t>(i)];
     if (joint(i)[Property::lag] > 0) lagging[i] = torque.constant - torque.damping * next_[i];

@@ -15,6 +15,7 @@
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/error.hpp"
 #include "swapped_joints.hpp"
+#include "swapped_torques.hpp"
 #include "xml_text.hpp"
 
 namespace diagnose_robot {
@@ -67,7 +68,8 @@ void evaluate_test(const diagnose_program::CommandLine& line, const Evidence& ev
 // Swapped columns, repaired in place if asked for.
 std::vector<surefoot::LogFault> swapped_columns(bool repair, Evidence& evidence) {
   std::vector<surefoot::LogFault> faults;
-  for (const auto& [a, b] : swapped_pairs(unexplained_commands(evidence))) {
+  const bool torque = evidence.robot.setup.drive == DriveKind::torque;
+  for (const auto& [a, b] : torque ? swapped_torques(evidence) : swapped_pairs(unexplained_commands(evidence))) {
     const JointSetup &one = evidence.robot.joints[static_cast<std::size_t>(a)].setup,
                      &other = evidence.robot.joints[static_cast<std::size_t>(b)].setup;
     surefoot::LogFault fault;

@@ -8,14 +8,8 @@
 
 namespace diagnose_robot {
 
-/// Fraction of the variance of each command (row: goal or torque of a joint) that the motion of each joint (column)
-/// leaves unexplained.
+/// Fraction of the variance of each goal (row) that the motion of each joint (column) leaves unexplained.
 Eigen::MatrixXd unexplained_commands(const Evidence& evidence);
-
-/// The same where torques drive, if the columns of each pair of joints were swapped, since what moves the bodies
-/// depends on all angles: entries (a, b) and (b, a) are those of the two commands then. The diagonal: as the columns
-/// are.
-Eigen::MatrixXd unexplained_torques(const Evidence& evidence);
 
 struct SwapCriteria {
   /// Of the variance left by the columns as they are: where swapping leaves less than a quarter, errors are halved.

@@ -9,8 +9,9 @@
 namespace diagnose_robot {
 namespace {
 
-// How much more torque is needed at a joint if it has a bit more of its own property; `read`: what is recorded then.
-double needed_by(Property property, const JointPhysics& p, double rigid, double read, double v, double a) {
+// How much more torque is needed at a joint, friction by load apart, if it has a bit more of its own property; `given`:
+// by the drive.
+double needed_by(Property property, const JointPhysics& p, double given, double v, double a) {
   switch (property) {
     case Property::coulomb:
       return sign_of(v);
@@ -19,7 +20,7 @@ double needed_by(Property property, const JointPhysics& p, double rigid, double 
     case Property::breakaway:
       return sign_of(v) * stribeck_share(v);
     case Property::load_friction:
-      return sign_of(v) * std::abs(rigid);
+      return sign_of(v) * std::abs(given);
     case Property::drag:
       return v * std::abs(v);
     case Property::armature:
@@ -27,7 +28,7 @@ double needed_by(Property property, const JointPhysics& p, double rigid, double 
     case Property::constant_torque:
       return -1;
     case Property::reading_scale:
-      return read / ((1 + p[Property::reading_scale]) * (1 + p[Property::reading_scale]));
+      return given / (load_factor(p, v, given) * (1 + p[Property::reading_scale]));
     default:
       return 0;
   }
@@ -79,7 +80,6 @@ std::vector<JointDerivatives> rigid_derivatives(const Robot& robot, const Motion
 std::vector<JointDerivatives> torque_derivatives(const Robot& robot, const Motion& motion, const RobotPhysics& physics,
                                                  const std::vector<PhysicsEntry>& entries,
                                                  const std::vector<JointDerivatives>& rigid) {
-  const Eigen::MatrixXd bodies = rigid_body_torque(robot, motion, physics);
   const Eigen::MatrixXd read = drive_torque(robot, motion) - torque_residual(robot, motion, physics);
   std::vector<JointDerivatives> result = rigid;
   for (std::size_t j = 0; j < result.size(); ++j) {
@@ -94,17 +94,18 @@ std::vector<JointDerivatives> torque_derivatives(const Robot& robot, const Motio
       auto by = result[j].by.col(static_cast<Eigen::Index>(e));
       for (Eigen::Index k = 0; k < by.size(); ++k) {
         const double v = motion.v(k, c), a = motion.a(k, c);
+        const double given = read(k, c) / (1 + p[Property::reading_scale]);
         double more = 0;
         if (whole) {
-          more = by[k] * (1 + p[Property::load_friction] * sign_of(v) * sign_of(bodies(k, c)));
+          more = by[k];
         } else if (pair && here) {
           const Eigen::Index other = robot.joints[joint].before;
           more = needed_by_pair(entry.property, motion.v(k, entry.joint) + motion.v(k, other),
                                 motion.a(k, entry.joint) + motion.a(k, other));
         } else if (here) {
-          more = needed_by(entry.property, p, bodies(k, c), read(k, c), v, a);
+          more = needed_by(entry.property, p, given, v, a);
         }
-        by[k] = -(1 + p[Property::reading_scale]) * more;
+        by[k] = -(1 + p[Property::reading_scale]) * load_factor(p, v, given) * more;
       }
     }
   }

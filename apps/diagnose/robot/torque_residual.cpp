@@ -16,6 +16,19 @@ double rms(const Eigen::Ref<const Eigen::VectorXd>& x) {
   return std::sqrt(x.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, x.size())));
 }
 
+// Whether the joint reverses within the window of a row: its smoothed friction and acceleration are mixtures of both
+// sides.
+bool reverses_about(const Motion& motion, Eigen::Index row, Eigen::Index joint) {
+  const auto reverses = [&](Eigen::Index k) { return motion.v(k, joint) * motion.v(row, joint) < 0; };
+  for (Eigen::Index k = row; k-- > 0 && motion.time[row] - motion.time[k] < motion.reach;) {
+    if (reverses(k)) return true;
+  }
+  for (Eigen::Index k = row + 1; k < motion.v.rows() && motion.time[k] - motion.time[row] < motion.reach; ++k) {
+    if (reverses(k)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Eigen::MatrixXd rigid_body_torque(const Robot& robot, const Motion& motion, const RobotPhysics& physics) {
@@ -52,20 +65,23 @@ Eigen::MatrixXd drive_torque(const Robot& robot, const Motion& motion) {
   return torque;
 }
 
+double load_factor(const JointPhysics& physics, double speed, double torque) {
+  constexpr double most = 0.95;  // a drive that loses all of its torque to friction does not move
+  return 1 / (1 - std::min(most, physics[Property::load_friction]) * sign_of(speed) * sign_of(torque));
+}
+
 // Recorded less expected reading: no scale makes this small by itself.
-// Friction by load goes with the torque of the rigid bodies, not with the measured one, of which friction is a part.
+// Friction by load goes with the torque that the drive gives, of which it is itself a part; see load_factor().
 Eigen::MatrixXd torque_residual(const Robot& robot, const Motion& motion, const RobotPhysics& physics) {
   Eigen::MatrixXd needed = rigid_body_torque(robot, motion, physics);
   const Eigen::VectorXd rest = resting_speed(motion);
-  const Eigen::MatrixXd load = needed.cwiseAbs();
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const auto c = static_cast<Eigen::Index>(j);
     const JointPhysics& p = physics[j];
     const int before = robot.joints[j].before;
     for (Eigen::Index k = 0; k < needed.rows(); ++k) {
       const double v = motion.v(k, c);
-      const double dry =
-          p[Property::coulomb] + p[Property::breakaway] * stribeck_share(v) + p[Property::load_friction] * load(k, c);
+      const double dry = p[Property::coulomb] + p[Property::breakaway] * stribeck_share(v);
       needed(k, c) += dry * sign_of(v) + p[Property::viscous] * v + p[Property::drag] * v * std::abs(v) +
                       p[Property::armature] * motion.a(k, c) - p[Property::constant_torque];
       if (before < 0) continue;
@@ -76,12 +92,16 @@ Eigen::MatrixXd torque_residual(const Robot& robot, const Motion& motion, const 
       needed(k, before) += pair;
     }
   }
-  for (std::size_t j = 0; j < robot.joints.size(); ++j)
-    needed.col(static_cast<Eigen::Index>(j)) *= 1 + physics[j][Property::reading_scale];
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    const auto c = static_cast<Eigen::Index>(j);
+    for (Eigen::Index k = 0; k < needed.rows(); ++k)
+      needed(k, c) *= (1 + physics[j][Property::reading_scale]) * load_factor(physics[j], motion.v(k, c), needed(k, c));
+  }
   Eigen::MatrixXd residual = drive_torque(robot, motion) - needed;
   for (Eigen::Index c = 0; c < residual.cols(); ++c) {
     for (Eigen::Index k = 0; k < residual.rows(); ++k) {
-      if (std::abs(motion.v(k, c)) < rest[c]) residual(k, c) = std::nan("");
+      const bool inside = k >= motion.edge && k < residual.rows() - motion.edge;
+      if (!inside || std::abs(motion.v(k, c)) < rest[c] || reverses_about(motion, k, c)) residual(k, c) = std::nan("");
     }
   }
   return residual;
