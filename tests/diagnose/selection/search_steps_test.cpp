@@ -29,6 +29,21 @@ TEST_CASE("the pool keeps the better of two forms of a structure") {
   CHECK(pool[1].errors.rms() == good.errors.rms());
 }
 
+TEST_CASE("a form with fewer parameters that leaves no more is kept, whatever the odds") {
+  const TankBench bench({});
+  EvaluatedHypothesis plain = bench.with({"constant_rate"}), vague = plain;
+  vague.hypothesis.values[0] = Eigen::VectorXd::Ones(2);
+  vague.log_prior += 100;
+  REQUIRE(vague.parameter_count() > plain.parameter_count());
+  const SelectionCriteria& criteria = bench.problem.criteria;
+  std::vector<EvaluatedHypothesis> pool{plain};
+  CHECK_FALSE(keep_best_form(pool, vague, criteria));
+  pool = {vague};
+  CHECK(keep_best_form(pool, plain, criteria));
+  vague.errors.mean_squares *= 0.9;  // it leaves less: the odds decide
+  CHECK(keep_best_form(pool, vague, criteria));
+}
+
 TEST_CASE("weights follow what the best structure leaves, but no further than errors of the integration") {
   const TankBench bench({rate_in_tank});
   Search search = bench.search();

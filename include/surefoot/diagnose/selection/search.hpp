@@ -16,7 +16,8 @@
 
 namespace surefoot::diagnosis {
 
-/// Puts a hypothesis into the pool, in the place of one of the same structure if it is better; true if it went in.
+/// Puts a hypothesis into the pool, in the place of another form of the same structure if it is better or leaves no more
+/// with fewer parameters; true if it went in.
 bool keep_best_form(std::vector<EvaluatedHypothesis>& pool, const EvaluatedHypothesis& one,
                     const SelectionCriteria& criteria);
 

@@ -23,11 +23,17 @@
 
 namespace surefoot::diagnosis {
 
+/// Whether a form leaves no more with fewer parameters. Odds alone may still prefer the other one, whose parameters are
+/// hardly known: much of their prior fits.
+SUREFOOT_ONCE bool dominates(const EvaluatedHypothesis& one, const EvaluatedHypothesis& other) {
+  return one.parameter_count() < other.parameter_count() && one.errors.rms() <= other.errors.rms();
+}
+
 SUREFOOT_ONCE bool keep_best_form(std::vector<EvaluatedHypothesis>& pool, const EvaluatedHypothesis& one,
                                   const SelectionCriteria& criteria) {
   for (EvaluatedHypothesis& other : pool) {
     if (!same_structure(other.hypothesis, one.hypothesis)) continue;
-    const bool better = log_odds(one, other, criteria) > 0;
+    const bool better = dominates(one, other) || (!dominates(other, one) && log_odds(one, other, criteria) > 0);
     if (better) other = one;
     return better;
   }
