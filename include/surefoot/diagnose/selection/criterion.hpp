@@ -67,8 +67,8 @@ struct SearchEffort {
   std::size_t screening = 5;           // recordings that proposals are made from
   std::size_t screening_final_poses = 1000;  // the same where each has a pose only
   int first_iterations = 4;                  // of a fit, before the weakest are given up
-  std::size_t second_look = 2;               // times as many as are finished go on for
-  int second_iterations = 8;                 // more
+  std::size_t second_look = 2;               // times as many fits as are finished are continued before that choice,
+  int second_iterations = 8;                 // for so long
   double weak_start = 0.3;                   // of the strength that the linear guess says, if that was too bold:
   double bold_loss = 0.97;                   // it was, if the loss is still above this
   std::size_t more_starts = 2;               // for effects that have no strength
