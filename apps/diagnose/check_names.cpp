@@ -29,6 +29,9 @@ Table all_names(const ModelFile& model) {
   Table known;
   for (const auto& input : model.inputs) add(known, model.file, input.name, "inputs");
   for (const auto& state : model.states) add(known, model.file, state.name, "states");
+  for (const auto& state : model.states) {
+    if (!state.force.empty()) add(known, model.file, state.force, "states." + state.name + ".force");
+  }
   for (const auto& constant : model.constants) add(known, model.file, constant.name, "constants");
   for (const auto& parameter : model.parameters) add(known, model.file, parameter.name, "parameters");
   for (const auto& let : model.lets) add(known, model.file, let.name, "let");
@@ -78,6 +81,25 @@ void check_lets(const ModelFile& model, const Table& known) {
   }
 }
 
+// Every force moves something.
+void check_forces(const ModelFile& model) {
+  std::vector<Formula> formulas;
+  for (const ModelState& state : model.states) formulas.push_back(state.change);
+  for (const ModelLet& let : model.lets) formulas.push_back(let.value);
+  for (const ModelState& state : model.states) {
+    if (state.force.empty()) continue;
+    const bool used = std::ranges::any_of(formulas, [&](const Formula& formula) {
+      const std::vector<std::string> names = used_names(formula);
+      return std::ranges::find(names, state.force) != names.end();
+    });
+    if (!used) {
+      fail(state.force_place, "no rate uses " + in_quotes(state.force) +
+                                  "; add it, as a force that is 0, to the rates that a force on " +
+                                  in_quotes(state.name) + " changes");
+    }
+  }
+}
+
 void check_state_name(const ModelFile& model, const std::string& name, const std::string& key) {
   std::vector<std::string> names;
   for (const ModelState& state : model.states) names.push_back(state.name);
@@ -122,6 +144,7 @@ void check_names(const ModelFile& model) {
     }
   }
   for (const ModelOutput& output : model.outputs) check_formula(output.value, known);
+  check_forces(model);
   check_planar(model, known);
 }
 

@@ -8,6 +8,8 @@
 
 #include "expression.hpp"
 #include "known_operations.hpp"
+#include "names.hpp"
+#include "surefoot/diagnose/recording.hpp"
 
 namespace diagnose_program {
 namespace {
@@ -30,6 +32,9 @@ class Planner {
       if (!constant.meta.empty()) plan_.meta.emplace_back(constant.meta, slot);
     }
     plan_.zero = number_slot(0);
+    for (const auto& state : model_.states) {
+      if (!state.force.empty()) slot_of_[state.force] = plan_.zero;
+    }
     for (const auto& let : model_.lets) add_let(let);
 
     std::vector<Formula> changes, outputs, efforts;
@@ -42,6 +47,7 @@ class Planner {
     name_signals();
     plan_.outputs = part(outputs);
     plan_.efforts = part(efforts);
+    plan_.responses = responses(changes);
     plan_.prepare = std::move(prepare_.operations);
     return std::move(plan_);
   }
@@ -158,15 +164,23 @@ class Planner {
   }
 
   PlanPart part(const std::vector<Formula>& formulas) {
-    PlanPart result;
+    std::vector<int> results;
     Block block;
-    std::vector<bool> needed(plan_.slots.size(), false);
     for (const Formula& formula : formulas) {
       const Expression e = parse_expression(formula.text);
-      for (const int slot : slots_in(e)) needed[static_cast<std::size_t>(slot)] = true;
-      result.results.push_back(compile(e, e.root, block));
+      results.push_back(compile(e, e.root, block));
     }
-    result.operations = std::move(block.operations);
+    return part(std::move(block), std::move(results));
+  }
+
+  // The operations with the lets that they need.
+  PlanPart part(Block block, std::vector<int> results) {
+    PlanPart result{{}, {}, std::move(results), std::move(block.operations)};
+    std::vector<bool> needed(plan_.slots.size(), false);
+    for (const int slot : result.results) needed[static_cast<std::size_t>(slot)] = true;
+    for (const Operation& one : result.operations) {
+      for (const int slot : {one.a, one.b, one.c}) needed[static_cast<std::size_t>(slot)] = true;
+    }
     for (std::size_t i = lets_.size(); i-- > 0;) {
       if (!needed[static_cast<std::size_t>(lets_[i].step.slot)]) continue;
       for (const int slot : lets_[i].needs) needed[static_cast<std::size_t>(slot)] = true;
@@ -177,6 +191,68 @@ class Planner {
       result.signals.push_back(-1);
     }
     return result;
+  }
+
+  // What each force adds to each rate, per unit: the derivative, since rates are linear in forces.
+  PlanPart responses(const std::vector<Formula>& changes) {
+    Block block;
+    std::vector<int> results;
+    for (std::size_t i = 0; i < model_.states.size(); ++i) {
+      const std::string& force = model_.states[i].force;
+      if (force.empty()) continue;
+      plan_.pushed.push_back(static_cast<int>(i));
+      Slopes slopes{{force, number_slot(1)}};
+      for (const ModelLet& let : model_.lets) slopes[let.name] = slope(let.value, force, slopes, block);
+      for (const Formula& change : changes) results.push_back(slope(change, force, slopes, block));
+    }
+    return part(std::move(block), std::move(results));
+  }
+
+  using Slopes = std::map<std::string, int>;  // by name: the slot of its derivative by a force
+
+  int slope(const Formula& formula, const std::string& force, const Slopes& slopes, Block& block) {
+    const Expression e = parse_expression(formula.text);
+    const int result = slope(e, e.root, slopes, block);
+    if (result >= 0) return result;
+    throw surefoot::DiagnoseError(
+        formula.place + ": the force " + in_quotes(force) +
+        " must enter as a plain sum or product, since rates are linear in forces; take it out "
+        "of the function, power or quotient that it stands in");
+  }
+
+  // The slot of the derivative of a node by the force whose slopes those are; -1: it is not linear in it.
+  int slope(const Expression& e, int i, const Slopes& slopes, Block& block) {
+    const Node& node = e[i];
+    if (node.kind == Node::Kind::number) return plan_.zero;
+    if (node.kind == Node::Kind::name) {
+      const auto at = slopes.find(node.text);
+      return at == slopes.end() ? plan_.zero : at->second;
+    }
+    std::vector<int> of;
+    for (const int argument : node.arguments) of.push_back(slope(e, argument, slopes, block));
+    if (std::ranges::find(of, -1) != of.end()) return -1;
+    if (std::ranges::all_of(of, [this](int slot) { return slot == plan_.zero; })) return plan_.zero;
+    if (node.kind == Node::Kind::negate) return apply(Operation::Code::negate, of[0], of[0], block);
+    if (node.kind == Node::Kind::choice && of[0] == plan_.zero) {
+      const int condition = compile(e, node.arguments[0], block);
+      return result_of({Operation::Code::choice, 0, condition, of[1], of[2]}, block);
+    }
+    if (node.kind != Node::Kind::binary) return -1;
+    if (node.text == "+" && of[0] == plan_.zero) return of[1];
+    if ((node.text == "+" || node.text == "-") && of[1] == plan_.zero) return of[0];
+    if (node.text == "+" || node.text == "-") return apply(code_of_operator(node.text), of[0], of[1], block);
+    if (node.text == "*" && of[0] == plan_.zero) return times(compile(e, node.arguments[0], block), of[1], block);
+    if (node.text == "*" && of[1] == plan_.zero) return times(of[0], compile(e, node.arguments[1], block), block);
+    if (node.text == "/" && of[1] == plan_.zero) {
+      return apply(Operation::Code::divide, of[0], compile(e, node.arguments[1], block), block);
+    }
+    return -1;
+  }
+
+  int times(int a, int b, Block& block) {
+    const int one = number_slot(1);
+    if (a == one) return b;
+    return b == one ? a : apply(Operation::Code::multiply, a, b, block);
   }
 
   // Effects may act on the lets that rates need, unless that would be to act on an input under another name.

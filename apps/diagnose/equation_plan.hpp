@@ -64,6 +64,8 @@ struct EquationPlan {
   std::vector<std::pair<std::string, int>> meta;  // keys of the recording's first lines, and their slots
   Operations prepare;                             // once per set of parameters
   PlanPart change, outputs, efforts;              // rates or next values; sensors; what makes forces of rates
+  PlanPart responses;                             // by force, by state: what it adds to each rate, per unit
+  std::vector<int> pushed;                        // by force: the state that it acts on
   std::vector<std::string> signals;               // names of those lets that effects may act on
 };
 

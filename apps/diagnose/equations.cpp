@@ -108,6 +108,7 @@ void Equations::build() {
   change_ = part_of(together(plan_->change), plan_->change.results);
   outputs_ = part_of(together(plan_->outputs), plan_->outputs.results);
   efforts_ = part_of(together(plan_->efforts), plan_->efforts.results);
+  responses_ = part_of(together(plan_->responses), plan_->responses.results);
   lets_ = one_by_one(plan_->change.lets, slots_);
   after_lets_ = Formulas(plan_->change.operations, plan_->change.results, slots_);
 }

@@ -58,6 +58,23 @@ class Equations {
   State efforts(const State& x, const Channels& u) {
     return computed<State>(efforts_, x, u);
   }
+  /// What forces on the states add to the rates; 0 for forces that no rate uses.
+  template <class State>
+  State response(const State& x, const Channels& u, const State& forces) {
+    if (!responses_.steady) {
+      put(x, u);
+      responses_.formulas.evaluate();
+    }
+    State added = forces;
+    const double* const* per_force = responses_.results.data();
+    set_one_by_one(added, [](Eigen::Index) { return 0.0; });
+    for (const int state : plan_->pushed) {
+      const double force = forces[state];
+      set_one_by_one(added, [&](Eigen::Index i) { return added[i] + force * *per_force[i]; });
+      per_force += added.size();
+    }
+    return added;
+  }
   template <class State>
   Channels outputs(const State& x, const Channels& u) {
     return computed<Channels>(outputs_, x, u);
@@ -112,7 +129,7 @@ class Equations {
   std::shared_ptr<const EquationPlan> plan_;
   std::vector<double> slots_;
   Formulas prepare_;
-  Part change_, outputs_, efforts_;
+  Part change_, outputs_, efforts_, responses_;
   std::vector<Formulas> lets_;       // those that rates need, one by one, so that a tap can come between,
   Formulas after_lets_;              // and the formulas after them
   std::vector<Part> rates_without_;  // by state, without the signals that are held
@@ -150,6 +167,9 @@ class OdeModelOf {
   }
   State effort(const State& x, const Input& u, const Eigen::VectorXd& /*prepared*/) const {
     return equations_.efforts(x, u);
+  }
+  State response(const State& x, const Input& u, const Eigen::VectorXd& /*prepared*/, const State& forces) const {
+    return equations_.response(x, u, forces);
   }
   Output observe(const State& x, const Input& u, const Eigen::VectorXd& /*prepared*/) const {
     return equations_.outputs(x, u);

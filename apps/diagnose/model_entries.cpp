@@ -57,7 +57,7 @@ ModelState read_state(const TomlTable& table, const TomlEntry& entry, bool ode) 
     fail(place(own, *own.value), ode ? "'next' belongs to kind = \"map\"; an ode has 'rate'"
                                      : "'rate' belongs to kind = \"ode\"; a map has 'next'");
   }
-  allow_keys(own, {change, "initial", "unit", "effort", "effort_unit"});
+  allow_keys(own, {change, "initial", "unit", "effort", "effort_unit", "force"});
   ModelState state;
   state.name = entry.key;
   const auto formula = [&own](const toml::value& value, const std::string& key) {
@@ -79,7 +79,14 @@ ModelState read_state(const TomlTable& table, const TomlEntry& entry, bool ode) 
   const toml::value* unit = find(own, "effort_unit");
   if (effort != nullptr) state.effort = formula(*effort, "effort");
   if (unit != nullptr) state.effort_unit = to_text(*unit, place(own, *unit, "effort_unit"));
-  if ((effort == nullptr) != (unit == nullptr)) {
+  if (const toml::value* force = find(own, "force")) {
+    state.force_place = place(own, *force, "force");
+    state.force = to_text(*force, state.force_place);
+    check_new_name(state.force, state.force_place);
+    if (!ode) fail(state.force_place, "forces act on the velocities of kind = \"ode\"; leave it out of a map");
+    if (effort != nullptr) fail(state.force_place, "the rates say what a force does; leave 'effort' out");
+    if (unit == nullptr) fail(state.force_place, "'effort_unit', its unit, is missing; say \"N\" or \"N m\"");
+  } else if ((effort == nullptr) != (unit == nullptr)) {
     fail(place(own, *own.value), std::string("'effort' and 'effort_unit' belong together; '") +
                                      (effort == nullptr ? "effort" : "effort_unit") + "' is missing");
   }

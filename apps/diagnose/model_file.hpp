@@ -39,7 +39,8 @@ struct ModelState {
   Initial initial = Initial::formula;
   Formula start;  // expression over constants, or the name of a column
   std::optional<Formula> effort;
-  std::string effort_unit;
+  std::string force, force_place;  // the name by which rates use the force on it; empty: none does
+  std::string effort_unit;         // of effort times rate, or of the force
 };
 
 struct ModelOutput {

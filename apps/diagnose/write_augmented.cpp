@@ -61,6 +61,9 @@ void write_states(std::ostream& out, const ModelFile& model) {
     if (state.effort) {
       out << ", effort = " << toml_string(state.effort->text) << ", effort_unit = " << toml_string(state.effort_unit);
     }
+    if (!state.force.empty()) {
+      out << ", force = " << toml_string(state.force) << ", effort_unit = " << toml_string(state.effort_unit);
+    }
     out << " }\n";
   }
 }

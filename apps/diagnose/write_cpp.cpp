@@ -97,9 +97,10 @@ std::set<std::string> used_by(const ModelFile& model, const std::vector<Formula>
   return used;
 }
 
-// The body of a function that gives these formulas; signals go through a tap where `signals` is not empty.
+// The body of a function that gives these formulas; signals go through a tap where `signals` is not empty, and forces
+// act where it is `pushed`.
 void write_body(std::ostream& out, const ModelFile& model, const std::vector<Formula>& formulas,
-                const std::string& type, const std::vector<std::string>& signals) {
+                const std::string& type, const std::vector<std::string>& signals, bool pushed = false) {
   const std::set<std::string> used = used_by(model, formulas);
   const auto read = [&](const auto& items, const char* from) {
     for (std::size_t i = 0; i < items.size(); ++i) {
@@ -110,6 +111,11 @@ void write_body(std::ostream& out, const ModelFile& model, const std::vector<For
   read(model.states, "x");
   read(model.inputs, "u");
   read(model.parameters, "p");
+  for (std::size_t i = 0; i < model.states.size(); ++i) {
+    const std::string& force = model.states[i].force;
+    if (!used.contains(force)) continue;
+    out << "    const double q_" << force << " = " << (pushed ? "forces[" + std::to_string(i) + "]" : "0") << ";\n";
+  }
   for (const ModelLet& let : model.lets) {
     if (!used.contains(let.name)) continue;
     const std::string value = cpp_expression(parse_expression(let.value.text));
@@ -139,8 +145,19 @@ void write_equations(std::ostream& out, const ModelFile& model, const EquationPl
     efforts.push_back(state.effort ? *state.effort : Formula{"1", ""});
   }
   for (const ModelOutput& output : model.outputs) outputs.push_back(output.value);
-  out << "  template <class Tap>\n  State " << change << "(" << arguments << ", [[maybe_unused]] Tap&& tap) const {\n";
-  write_body(out, model, changes, "State", plan.signals);
+  const bool pushed = std::ranges::any_of(model.states, [](const ModelState& state) { return !state.force.empty(); });
+  const std::string with_tap = "  template <class Tap>\n  State " + change + "(" + arguments + ", ";
+  if (pushed) {
+    out << "  /// Rates under forces on the states.\n  template <class Tap>\n  State pushed(" << arguments
+        << ", const State& forces, [[maybe_unused]] Tap&& tap) const {\n";
+    write_body(out, model, changes, "State", plan.signals, pushed);
+    out << with_tap << "Tap&& tap) const {\n    return pushed(x, u, p, State::Zero(), tap);\n  }\n"
+        << "  State response(" << arguments << ", const State& forces) const {\n"
+        << "    return pushed(x, u, p, forces, surefoot::NoTap{}) - derivative(x, u, p);\n  }\n";
+  } else {
+    out << with_tap << "[[maybe_unused]] Tap&& tap) const {\n";
+    write_body(out, model, changes, "State", plan.signals);
+  }
   out << "  State " << change << "(const State& x, const Input& u, const Eigen::VectorXd& p) const {\n    return "
       << change << "(x, u, p, surefoot::NoTap{});\n  }\n\n";
   if (ode) {

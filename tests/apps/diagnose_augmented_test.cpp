@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "apps/diagnose/equations.hpp"
 #include "apps/diagnose/known_effects.hpp"
@@ -46,6 +48,42 @@ constexpr const char* printer = R"CPP(#include <cstdio>
                                       }
 )CPP";
 
+// What the program prints that simulates with this header.
+std::vector<double> printed_by(const std::string& header, const std::string& program) {
+  const approach_program::ScratchFolder folder;
+  std::ofstream(folder.file("augmented.hpp")) << header;
+  std::ofstream(folder.file("print.cpp")) << program;
+  const auto built = approach_program::run_command("c++ -std=c++20 -O0 -w -I" SUREFOOT_SOURCE_DIR
+                                                   "/include $(pkg-config --cflags eigen3) " +
+                                                   folder.file("print.cpp") + " -o " + folder.file("print"));
+  CAPTURE(built.output);
+  REQUIRE(built.code == 0);
+  std::istringstream numbers(approach_program::run_command(folder.file("print")).output);
+  return {std::istream_iterator<double>(numbers), std::istream_iterator<double>()};
+}
+
+// Asks a header's model for its response to forces, at one point.
+constexpr const char* response_printer = R"CPP(#include <cstdio>
+#include "augmented.hpp"
+                                               int main() {
+                                                 const Eigen::VectorXd p = Eigen::Vector2d(1.3, 0.4);
+                                                 const augmented::Model::State x(1, 0.3, 0.7, -2), f(0, 0.6, 0, -1.1);
+                                                 const augmented::Model::Input u(0.4);
+                                                 const augmented::Model model;
+                                                 for (const double one : model.response(x, u, p, f))
+                                                   std::printf(
+                                                       "%."
+                                                       "17g"
+                                                       "\n",
+                                                       one);
+                                                 for (const double one : model.derivative(x, u, p))
+                                                   std::printf(
+                                                       "%."
+                                                       "17g\n",
+                                                       one);
+                                               }
+)CPP";
+
 }  // namespace
 
 TEST_CASE("the augmented header compiles and simulates like the model file" * doctest::skip(!compiler_exists())) {
@@ -62,19 +100,34 @@ TEST_CASE("the augmented header compiles and simulates like the model file" * do
   augmented.integration.step = 0.002;
   const auto expected = surefoot::simulate_augmented(OdeModel(model), augmented, bench());
 
-  const approach_program::ScratchFolder folder;
-  std::ofstream(folder.file("augmented.hpp")) << model_header(model, diagnosis);
-  std::ofstream(folder.file("print.cpp")) << printer;
-  const auto built = approach_program::run_command("c++ -std=c++20 -O0 -w -I" SUREFOOT_SOURCE_DIR
-                                                   "/include $(pkg-config --cflags eigen3) " +
-                                                   folder.file("print.cpp") + " -o " + folder.file("print"));
-  CAPTURE(built.output);
-  REQUIRE(built.code == 0);
-  std::istringstream numbers(approach_program::run_command(folder.file("print")).output);
+  const std::vector<double> printed = printed_by(model_header(model, diagnosis), printer);
+  REQUIRE(printed.size() == static_cast<std::size_t>(expected.outputs.cols()));
   for (Eigen::Index row = 0; row < expected.outputs.cols(); ++row) {
-    double value = std::nan("");
-    REQUIRE(static_cast<bool>(numbers >> value));
-    CHECK(std::abs(value - expected.outputs(0, row)) < 1e-9);
+    CHECK(std::abs(printed[static_cast<std::size_t>(row)] - expected.outputs(0, row)) < 1e-9);
   }
   CHECK(expected.outputs.cwiseAbs().maxCoeff() > 0.1);
+}
+
+TEST_CASE("in the augmented header, too, a force moves all velocities" * doctest::skip(!compiler_exists())) {
+  using namespace diagnose_program;
+  const surefoot::Diagnosis diagnosis;
+  const ModelFile read = parse_model_file(diagnose_test::crane_model, "crane.toml");
+  const ModelFile model = parse_model_file(model_text(augmented_model(read, diagnosis)), "augmented.toml");
+  CHECK(model.states[1].force == "rub");
+  CHECK(model.states[3].effort_unit == "N m");
+  const std::vector<double> printed = printed_by(model_header(model, diagnosis), response_printer);
+  OdeModel own(model);
+  const Eigen::VectorXd p = Eigen::Vector2d(1.3, 0.4);
+  own.prepare(p);
+  Channels x(4), f(4), u(1);
+  x << 1, 0.3, 0.7, -2;
+  f << 0, 0.6, 0, -1.1;
+  u << 0.4;
+  const Channels response = own.response(x, u, p, f), rates = own.derivative(x, u, p);
+  REQUIRE(printed.size() == 8);
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    CHECK(printed[static_cast<std::size_t>(i)] == doctest::Approx(response[i]).epsilon(1e-12));
+    CHECK(printed[static_cast<std::size_t>(4 + i)] == doctest::Approx(rates[i]).epsilon(1e-12));
+  }
+  CHECK(response[1] != 0);
 }

@@ -1,6 +1,7 @@
 // The equations of a model file against the same in C++.
 #include <doctest/doctest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -75,6 +76,27 @@ TEST_CASE("a tap sees and changes the lets that depend on states or inputs and t
   CHECK(same == model.derivative(x, u, p));
   const Channels changed = model.derivative(x, u, p, [](int i, double signal) { return i == 0 ? 0.0 : signal; });
   CHECK(changed[1] == doctest::Approx(-0.5 * 9.81 * 0.1 * std::sin(0.3) / 0.017).epsilon(1e-12));
+}
+
+TEST_CASE("a force by its name in the rates moves all velocities as the mass matrix says") {
+  OdeModel model = OdeModel(parse_model_file(diagnose_test::crane_model, "crane.toml"));
+  const Eigen::VectorXd p = Eigen::Vector2d(1.3, 0.4);
+  model.prepare(p);
+  surefoot::Rng rng(2);
+  for (int round = 0; round < 100; ++round) {
+    const double a = 4 * rng.uniform() - 2, f = rng.uniform(), c = rng.uniform() - 2;
+    const Channels x = vector({1, rng.uniform(), a, rng.uniform()}), u = vector({rng.uniform()});
+    Eigen::Matrix2d mass;  // of trolley and load
+    mass << p[0] + p[1], p[1] * 0.5 * std::cos(a), p[1] * 0.5 * std::cos(a), p[1] * 0.25;
+    const Eigen::Vector2d expected = mass.inverse() * Eigen::Vector2d(f, c);
+    const Channels added = model.response(x, u, p, vector({7, f, 7, c}));  // nothing pushes positions
+    CHECK(added[0] == 0);
+    CHECK(added[1] == doctest::Approx(expected[0]).epsilon(1e-12));
+    CHECK(added[2] == 0);
+    CHECK(added[3] == doctest::Approx(expected[1]).epsilon(1e-12));
+    CHECK(model.derivative(x, u, p)[1] * (p[0] + p[1] * std::pow(std::sin(a), 2)) ==
+          doctest::Approx(u[0] + p[1] * std::sin(a) * (0.5 * x[3] * x[3] + 9.81 * std::cos(a))));
+  }
 }
 
 TEST_CASE("copies of a model do not disturb each other") {

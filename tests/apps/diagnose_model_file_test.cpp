@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "apps/diagnose/equation_plan.hpp"
 #include "apps/diagnose/known_effects.hpp"
 #include "apps/diagnose/model_file.hpp"
 #include "apps/diagnose/write_augmented.hpp"
@@ -214,6 +215,25 @@ TEST_CASE("an effort needs its unit") {
   check_model_refused(with(servo_model, ", effort_unit = \"N m\"", ""),
                       "'effort' and 'effort_unit' belong together; 'effort_unit' is missing");
   check_model_refused(with(servo_model, "effort = \"inertia\", ", ""), "'effort' is missing");
+}
+
+TEST_CASE("a force has a name of its own, a unit, and rates that use it in a sum") {
+  using diagnose_test::crane_model;
+  CHECK(parse_model_file(crane_model, "servo.toml").states[1].force == "rub");
+  const auto refused = [](const std::string& from, const std::string& to, const std::string& words) {
+    check_model_refused(with(crane_model, from, to), words);
+  };
+  refused("drive + rub", "drive", "[states] v force: no rate uses 'rub'; add it");
+  refused(R"(force = "rub", effort_unit = "N" })", R"(force = "rub" })", "'effort_unit', its unit, is missing");
+  refused(R"(force = "rub",)", R"(effort = "M", force = "rub",)", "leave 'effort' out");
+  refused(R"(force = "rub",)", R"(force = "push",)", "the name 'push' is used twice");
+  refused(R"(force = "rub",)", R"(force = "2 r",)", "cannot be used in expressions");
+  check_model_refused(
+      with(walk_model, "next = \"th + turn\"", "force = \"f\", effort_unit = \"N\", next = \"th + turn\""),
+      "leave it out of a map");
+  const auto curved = parse_model_file(with(crane_model, "drive + rub", "drive + tanh(rub)"), "servo.toml");
+  CHECK_THROWS_WITH_AS(diagnose_program::plan_equations(curved), doctest::Contains("rates are linear in forces"),
+                       surefoot::DiagnoseError);
 }
 
 TEST_CASE("planar keys must be states and lets") {

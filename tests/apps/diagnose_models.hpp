@@ -38,6 +38,32 @@ R = { value = 3.6, min = 0.5, max = 15.0, unit = "ohm" }
 armature = { value = 0.012, min = 0.0005, max = 0.1, unit = "kg m^2" }
 )TOML";
 
+/// Forces on either velocity move both.
+inline const std::string crane_model = R"TOML(schema = "surefoot.model/1"
+name = "crane"
+kind = "ode"
+time = "t_s"
+[inputs]
+drive = "drive_N"
+[let]
+push = "drive + rub"
+inertia = "M + m*sin(a)^2"
+[states]
+x = { rate = "v", initial = "column:x_m", unit = "m" }
+v = { rate = "(push + m*sin(a)*(L*w^2 + g*cos(a)) - pivot*cos(a)/L)/inertia", initial = "0", unit = "m/s", force = "rub", effort_unit = "N" }
+a = { rate = "w", initial = "column:a_rad", unit = "rad" }
+w = { rate = "(-(push + m*L*w^2*sin(a))*cos(a) - (M + m)*g*sin(a) + pivot*(M + m)/(m*L))/(L*inertia)", initial = "0", unit = "rad/s", force = "pivot", effort_unit = "N m" }
+[outputs]
+x_m = { value = "x", unit = "m" }
+a_rad = { value = "a", unit = "rad" }
+[constants]
+g = 9.81
+L = 0.5
+[parameters]
+M = { value = 1.0, min = 0.5, max = 2.0, unit = "kg" }
+m = { value = 0.5, min = 0.2, max = 1.0, unit = "kg" }
+)TOML";
+
 inline const std::string servo_csv =
     "# mass_kg: 0.5\n# length_m: 0.1\n# kp: 5\n# vin_V: 7.4\n# remark: test bench\n"
     "t_s,goal_rad,theta_rad\n"

@@ -96,6 +96,8 @@ struct NoTap {
 ///   };
 ///
 /// Optional: `State effort(x, u, p)`, what turns each rate into a force or torque (an inertia), 1 without it;
+/// `State response(x, u, p, forces)`, where a force moves several velocities: what generalized forces on the states add
+/// to the rates of all, M^-1 forces with the mass matrix M (0 for states that only have an effort);
 /// `S for_recording(const Recording&)`, the simulator with the constants of that recording;
 /// `void prepare(p)`, called before a run with these parameters;
 /// `derivative(x, u, p, tap)` or `next(x, u, p, tap)`, which pass quantities inside through tap(i, value), named in

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "surefoot/diagnose/simulation/input_signal.hpp"
 #include "surefoot/diagnose/simulation/rates.hpp"
@@ -13,6 +14,39 @@
 namespace surefoot::diagnosis {
 
 inline bool rests(const EffectSlot& slot, double velocity) { return !(std::abs(velocity) > 1e-12 * slot.size); }
+
+/// The same for velocities that rest and are coupled by the mass matrix: what holds one of them pushes the others. `f`
+/// are the rates without dry friction, `limit_at` gives how much of it there can be at a velocity.
+template <Simulator S, class LimitAt>
+void decide_together(AugmentedSimulator<S>& m, const Point<S>& at, typename S::State f,
+                     const ForceResponse<S>& response, LimitAt&& limit_at, const typename S::Input& u, double t,
+                     double h, std::span<Mode> modes) {
+  const auto& dry = m.slots.dry;
+  const auto model = copied(f);
+  std::vector<int> resting;
+  for (std::size_t i = 0; i < dry.size(); ++i) {
+    if (number_of_pushed(m.structure, dry[i].at) < 0) continue;
+    if (modes[i] != Mode::stuck) {
+      push(m, response, dry[i].at, -static_cast<double>(modes[i]) * level(m, dry[i], at.x, model, response, u, t, h),
+           f);
+    } else if (std::find(resting.begin(), resting.end(), dry[i].at) == resting.end()) {
+      resting.push_back(dry[i].at);
+    }
+  }
+  const auto n = static_cast<Eigen::Index>(resting.size());
+  Eigen::VectorXd rate(n), limit(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    rate[k] = f[resting[static_cast<std::size_t>(k)]];
+    limit[k] = limit_at(resting[static_cast<std::size_t>(k)]);
+  }
+  const Eigen::VectorXd force = holding_forces(responses_among(m, response, resting), rate, limit);
+  for (std::size_t i = 0; i < dry.size(); ++i) {
+    for (Eigen::Index k = 0; k < n; ++k) {
+      if (dry[i].at != resting[static_cast<std::size_t>(k)] || std::abs(force[k]) < limit[k]) continue;
+      modes[i] = force[k] < 0 ? Mode::forth : Mode::back;
+    }
+  }
+}
 
 /// Sliding or stuck, by dry friction, from the beginning of a step on. Those of one velocity add up.
 template <Simulator S>
@@ -29,15 +63,21 @@ void decide_modes(AugmentedSimulator<S>& m, const Point<S>& at, const InputSigna
   const auto u = inputs.between(t, h, 0);
   Hidden dz = Hidden::Zero(m.slots.hidden);
   const auto f = rates(m, at.x, at.z, u, dz, t, h, {});  // without dry friction
-  const auto e = effort(m, at.x, u);
-  for (std::size_t i = 0; i < dry.size(); ++i) {
-    if (!rests(dry[i], at.x[dry[i].at])) continue;
+  const ForceResponse<S> response = force_response(m, at.x, u);
+  const auto limit_at = [&](int velocity) {
     double limit = 0;
     for (const EffectSlot& other : dry) {
-      if (other.at == dry[i].at && rests(other, at.x[other.at])) limit += level(m, other, at.x, f, e, u, t, h);
+      if (other.at == velocity && rests(other, at.x[other.at])) limit += level(m, other, at.x, f, response, u, t, h);
     }
-    const double force = f[dry[i].at] * e[dry[i].at];
-    if (std::abs(force) > limit) modes[i] = force > 0 ? Mode::forth : Mode::back;
+    return limit;
+  };
+  if constexpr (has_response<S>) {
+    if (!m.structure.pushed.empty()) decide_together(m, at, f, response, limit_at, u, t, h, modes);
+  }
+  for (std::size_t i = 0; i < dry.size(); ++i) {
+    if (!rests(dry[i], at.x[dry[i].at]) || number_of_pushed(m.structure, dry[i].at) >= 0) continue;
+    const double force = f[dry[i].at] * response.effort[dry[i].at];
+    if (std::abs(force) > limit_at(dry[i].at)) modes[i] = force > 0 ? Mode::forth : Mode::back;
   }
 }
 

@@ -5,15 +5,28 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
-#include "surefoot/diagnose/simulation/augmented_simulator.hpp"
+#include "surefoot/diagnose/simulation/generalized_forces.hpp"
 
 namespace surefoot::diagnosis {
 
 /// What a dry friction does during a step.
 enum class Mode : std::int8_t { back = -1, stuck = 0, forth = 1 };
 
-/// The rate of a state as it would be without inputs.
+/// The rates as they would be without inputs.
+template <Simulator S>
+typename S::State undriven_rates(const AugmentedSimulator<S>& m, const typename S::State& x,
+                                 const typename S::Input& u) {
+  auto undriven = copied(u);
+  if (!m.driven_signals) undriven.setZero();
+  const auto no_drive = [&m](int i, double value) {
+    return m.structure.driven_signal[static_cast<std::size_t>(i)] ? 0.0 : value;
+  };
+  return evaluate(m.simulator, x, undriven, m.p, no_drive);
+}
+
+/// That of one state alone.
 template <Simulator S>
 double undriven_rate(const AugmentedSimulator<S>& m, const EffectSlot& slot, const typename S::State& x,
                      const typename S::Input& u) {
@@ -22,45 +35,66 @@ double undriven_rate(const AugmentedSimulator<S>& m, const EffectSlot& slot, con
   if constexpr (requires { m.simulator.rate_without(m.structure.driven_signal, slot.at, x, undriven); }) {
     return m.simulator.rate_without(m.structure.driven_signal, slot.at, x, undriven);
   } else {
-    const auto no_drive = [&m](int i, double value) {
-      return m.structure.driven_signal[static_cast<std::size_t>(i)] ? 0.0 : value;
-    };
-    return evaluate(m.simulator, x, undriven, m.p, no_drive)[slot.at];
+    return undriven_rates(m, x, u)[slot.at];
   }
+}
+
+/// The force on a state of which the rates are f, beyond what it would be without inputs.
+template <Simulator S>
+double driven_force(const AugmentedSimulator<S>& m, const ForceResponse<S>& response, const EffectSlot& slot,
+                    const typename S::State& x, const typename S::State& f, const typename S::Input& u) {
+  if (number_of_pushed(m.structure, slot.at) < 0) {
+    return response.effort[slot.at] * (f[slot.at] - undriven_rate(m, slot, x, u));
+  }
+  auto driven = undriven_rates(m, x, u);
+  for (Eigen::Index i = 0; i < driven.size(); ++i) driven[i] = f[i] - driven[i];
+  return force_on(m, response, slot.at, driven);
+}
+
+/// The force on a state that remains without inputs.
+template <Simulator S>
+double undriven_force(const AugmentedSimulator<S>& m, const ForceResponse<S>& response, const EffectSlot& slot,
+                      const typename S::State& x, const typename S::Input& u) {
+  if (number_of_pushed(m.structure, slot.at) < 0) return response.effort[slot.at] * undriven_rate(m, slot, x, u);
+  return force_on(m, response, slot.at, undriven_rates(m, x, u));
 }
 
 /// By how much the force on a state falls as the state grows, by a difference over a tenth of its size.
 template <Simulator S>
-double damping_of(const AugmentedSimulator<S>& m, const EffectContext& now, const EffectSlot& slot,
-                  const typename S::State& x, const typename S::Input& u) {
+double damping_of(const AugmentedSimulator<S>& m, const ForceResponse<S>& response, const EffectSlot& slot,
+                  const typename S::State& x, const typename S::State& f, const typename S::Input& u) {
   const double by = 0.1 * slot.size;
   if (!(by > 0)) return 0;
   auto faster = copied(x);
   faster[slot.at] += by;
   const bool as_it_is = m.slots.taps.empty() && m.slots.seen.empty();  // then it has been evaluated already
-  const double slow = as_it_is ? now.rate : evaluate(m.simulator, x, u, m.p, NoTap{})[slot.at];
-  return now.effort * (slow - evaluate(m.simulator, faster, u, m.p, NoTap{})[slot.at]) / by;
+  auto change = as_it_is ? copied(f) : evaluate(m.simulator, x, u, m.p, NoTap{});
+  const auto fast = evaluate(m.simulator, faster, u, m.p, NoTap{});
+  for (Eigen::Index i = 0; i < change.size(); ++i) change[i] -= fast[i];
+  return force_on(m, response, slot.at, change) / by;
 }
 
-/// Fills in what an effect asks for of the parts of the force on a state.
+/// Fills in what an effect asks for of the parts of the force on a state; f are the rates there.
 template <Simulator S>
-void split_force(const AugmentedSimulator<S>& m, EffectContext& now, const EffectSlot& slot, const typename S::State& x,
+void split_force(const AugmentedSimulator<S>& m, const ForceResponse<S>& response, EffectContext& now,
+                 const EffectSlot& slot, const typename S::State& x, const typename S::State& f,
                  const typename S::Input& u) {
   const Effect& effect = *slot.effect;
   if (!effect.needs_drive && !effect.needs_damping) return;
-  if (effect.needs_drive) now.drive = now.effort * (now.rate - undriven_rate(m, slot, x, u));
-  if (effect.needs_damping) now.damping = damping_of(m, now, slot, x, u);
+  if (effect.needs_drive) now.drive = driven_force(m, response, slot, x, f, u);
+  if (effect.needs_damping) now.damping = damping_of(m, response, slot, x, f, u);
   auto rest = copied(x);
   rest[slot.at] = 0;
-  now.load = now.effort * undriven_rate(m, slot, rest, u);
+  now.load = undriven_force(m, response, slot, rest, u);
 }
 
 /// Level of a dry friction.
 template <Simulator S>
 double level(const AugmentedSimulator<S>& m, const EffectSlot& slot, const typename S::State& x,
-             const typename S::State& f, const typename S::State& e, const typename S::Input& u, double t, double h) {
-  EffectContext now = context_at_state(m, slot, x, f, e, t, h);
-  split_force(m, now, slot, x, u);
+             const typename S::State& f, const ForceResponse<S>& response, const typename S::Input& u, double t,
+             double h) {
+  EffectContext now = context_at_state(m, slot, x, f, response.effort, t, h);
+  split_force(m, response, now, slot, x, f, u);
   return std::max(0.0, slot.effect->dry(now, slot.p));
 }
 
@@ -78,6 +112,29 @@ inline typename S::State seen_states(const AugmentedSimulator<S>& m, const typen
   return seen;
 }
 
+/// Adds dry friction in a given mode of each to the rates; `model` are those of the simulator alone.
+template <Simulator S>
+void rub(AugmentedSimulator<S>& m, const ForceResponse<S>& response, const typename S::State& x,
+         const typename S::State& model, const typename S::Input& u, double t, double h, std::span<const Mode> modes,
+         typename S::State& rate) {
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    const EffectSlot& slot = m.slots.dry[i];
+    if (modes[i] == Mode::stuck) continue;
+    push(m, response, slot.at, -static_cast<double>(modes[i]) * level(m, slot, x, model, response, u, t, h), rate);
+  }
+  if constexpr (has_response<S>) {
+    std::vector<int> stuck;
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      const int at = m.slots.dry[i].at;
+      if (modes[i] == Mode::stuck && std::find(stuck.begin(), stuck.end(), at) == stuck.end()) stuck.push_back(at);
+    }
+    if (!m.structure.pushed.empty() && !stuck.empty()) return hold(m, response, stuck, rate);
+  }
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    if (modes[i] == Mode::stuck) rate[m.slots.dry[i].at] = 0;
+  }
+}
+
 /// Rates at a point for a given mode of each dry friction; without modes, as if there were none. Those of hidden states
 /// are put into dz where they have any.
 template <Simulator S>
@@ -87,27 +144,24 @@ typename S::State rates(AugmentedSimulator<S>& m, const typename S::State& x, co
   const auto model = equations(m, seen_states(m, x, z, t, h), u, z, dz, t, h);
   auto rate = copied(model);
   if (m.slots.forces.empty() && modes.empty()) return rate;
-  const auto e = effort(m, x, u);
+  const ForceResponse<S> response = force_response(m, x, u);
   for (const EffectSlot& slot : m.slots.forces) {
-    EffectContext now = context_at_state(m, slot, x, model, e, t, h);
-    split_force(m, now, slot, x, u);
+    EffectContext now = context_at_state(m, slot, x, model, response.effort, t, h);
+    split_force(m, response, now, slot, x, model, u);
     if (slot.effect->hidden_rate) slot.effect->hidden_rate(now, slot.p, slot.hidden(z), slot.hidden(dz));
     if (slot.effect->position_rate && slot.position >= 0) {
       add_at(rate, slot.position, slot.effect->position_rate(now, slot.p, slot.hidden(z)));
     }
     if (slot.effect->force) {
       const double force = slot.effect->force(now, slot.p, slot.hidden(z));
-      add_at(rate, slot.at, slot.effect->place == Place::velocity ? force * (1 / e[slot.at]) : force);
+      if (slot.effect->place == Place::velocity) {
+        push(m, response, slot.at, force, rate);
+      } else {
+        add_at(rate, slot.at, force);
+      }
     }
   }
-  for (std::size_t i = 0; i < modes.size(); ++i) {
-    const EffectSlot& slot = m.slots.dry[i];
-    if (modes[i] == Mode::stuck) continue;
-    add_at(rate, slot.at, -static_cast<double>(modes[i]) / e[slot.at] * level(m, slot, x, model, e, u, t, h));
-  }
-  for (std::size_t i = 0; i < modes.size(); ++i) {
-    if (modes[i] == Mode::stuck) rate[m.slots.dry[i].at] = 0;
-  }
+  rub(m, response, x, model, u, t, h, modes, rate);
   return rate;
 }
 

@@ -93,8 +93,8 @@ class SimulationRun {
     });
     efforts = converted<Eigen::VectorXd>(f);
     if constexpr (is_ode<S>) {
-      const State e = effort(m_, x, u);
-      for (Eigen::Index i = 0; i < efforts.size(); ++i) efforts[i] *= e[i];
+      const ForceResponse<S> response = force_response(m_, x, u);
+      for (Eigen::Index i = 0; i < efforts.size(); ++i) efforts[i] = force_on(m_, response, static_cast<int>(i), f);
     }
   }
 
@@ -138,13 +138,13 @@ class SimulationRun {
       }
     } else {
       next_values(m_, u_.between(from, 1, 0), now, from, info_.planar);
-      apply_step_updates(m_, now, from, 1);
+      apply_step_updates(m_, now, u_.now(), from, 1);
     }
   }
 
   void advance(Point<S>& now, double t, double h) {
     step(m_, u_, integration_.order, now, t, h, std::span<Mode>(modes_));
-    apply_step_updates(m_, now, t, h);
+    apply_step_updates(m_, now, u_.now(), t, h);
   }
 
   int steps_in(double length) const {

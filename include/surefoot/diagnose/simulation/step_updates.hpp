@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "surefoot/diagnose/simulation/augmented_simulator.hpp"
+#include "surefoot/diagnose/simulation/generalized_forces.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -19,16 +19,30 @@ EffectContext update_context(const AugmentedSimulator<S>& m, const EffectSlot& s
   return result;
 }
 
+/// After a jump of a velocity by a limit: the impulse behind it moves all velocities that the mass matrix couples to
+/// it.
 template <Simulator S>
-void apply_step_updates(const AugmentedSimulator<S>& m, Point<S>& now, double t, double h) {
+void share_impulse(const AugmentedSimulator<S>& m, Point<S>& now, const typename S::Input& u, int at, double jump) {
+  const int number = number_of_pushed(m.structure, at);
+  if (number < 0 || jump == 0) return;
+  const auto response = force_response(m, now.x, u);
+  const double own = now.x[at];
+  push(m, response, at, jump * response.effort[at], now.x);
+  now.x[at] = own;
+}
+
+template <Simulator S>
+void apply_step_updates(const AugmentedSimulator<S>& m, Point<S>& now, const typename S::Input& u, double t, double h) {
   for (const EffectSlot& slot : m.slots.updates) {
     if (!slot.effect->advance) continue;
     slot.effect->advance(update_context(m, slot, now, t, h), slot.p, slot.hidden(now.z));
   }
   for (const EffectSlot& slot : m.slots.limits) {
     double no_position = 0, no_other = 0;
+    const double before = now.x[slot.at];
     slot.effect->limit(slot.p, now.x[slot.at], slot.position >= 0 ? now.x[slot.position] : no_position,
                        slot.other >= 0 ? now.x[slot.other] : no_other);
+    if constexpr (has_response<S>) share_impulse(m, now, u, slot.at, now.x[slot.at] - before);
   }
 }
 

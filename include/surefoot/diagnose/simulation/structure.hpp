@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <concepts>
 #include <cstddef>
 #include <functional>
 #include <vector>
@@ -15,6 +16,8 @@ namespace surefoot::diagnosis {
 struct SimulatorStructure {
   std::vector<int> position_of;     // by state: the state whose rate it is, or -1
   std::vector<bool> velocity;       // by state: forces may act on it
+  std::vector<int> pushed;          // states that a force changes by way of the simulator's response
+  std::vector<int> moved_together;  // velocities that one input moves at once, without such a response
   std::vector<bool> affects_rates;  // by state: some rate depends on it (maps are not asked: always)
   std::vector<bool> remembers;      // by state of a map: only keeps inputs, of this step or of earlier ones
   std::vector<int> output_of;       // by state: the output that reads it directly, or -1
@@ -47,6 +50,12 @@ inline constexpr bool has_tap = requires(const S& s, const typename S::State& x,
 }
 || requires(const S& s, const typename S::State& x, const typename S::Input& u, const Eigen::VectorXd& p) {
   s.next(x, u, p, NoTap{});
+};
+
+template <class S>
+inline constexpr bool has_response = requires(const S& s, const typename S::State& x, const typename S::Input& u,
+                                              const Eigen::VectorXd& p) {
+  { s.response(x, u, p, x) } -> std::convertible_to<typename S::State>;
 };
 
 /// Rates or next values, with a tap where the simulator has one.
@@ -107,6 +116,9 @@ struct SimulatorAnswers {
   std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::vector<double>* signals)>
       rates;
   std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u)> outputs;
+  /// What generalized forces add to the rates; empty: the simulator has no response to them.
+  std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u, const Eigen::VectorXd& forces)>
+      response;
 };
 
 /// Asks at random points around a recording. Costs some hundred evaluations.
@@ -138,6 +150,12 @@ SimulatorStructure find_structure(const S& simulator, const SimulatorInfo& info,
     const typename S::Output y = s.observe(converted<State>(x), converted<Input>(u), parameters);
     return converted<Eigen::VectorXd>(y);
   };
+  if constexpr (has_response<S>) {
+    answers.response = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& u, const Eigen::VectorXd& forces) {
+      return converted<Eigen::VectorXd>(
+          State(s.response(converted<State>(x), converted<Input>(u), parameters, converted<State>(forces))));
+    };
+  }
   return find_structure(answers, info, example);
 }
 

@@ -13,6 +13,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/simulation/structure.hpp"
 #include "surefoot/diagnose/simulator.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -128,6 +129,56 @@ SUREFOOT_ONCE void conclude_structure(const StructureSearch& search, const Simul
   }
 }
 
+/// States on which a force does anything by way of the simulator's response. Throws a DiagnoseError where the response
+/// is none of forces: not in proportion to them, or against them.
+SUREFOOT_ONCE std::vector<int> pushed_states(const SimulatorAnswers& answers, const SimulatorInfo& info,
+                                             const Eigen::VectorXd& x, const Eigen::VectorXd& u) {
+  std::vector<int> pushed;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(x.size());
+    force[i] = 1;
+    const Eigen::VectorXd once = answers.response(x, u, force);
+    force[i] = 2;
+    const Eigen::VectorXd twice = answers.response(x, u, force);
+    bool any = false, linear = true;
+    for (Eigen::Index k = 0; k < x.size(); ++k) {
+      any = any || once[k] != 0;
+      linear = linear && std::abs(twice[k] - 2 * once[k]) <= 1e-6 * std::abs(once[i]);
+    }
+    if (!any) continue;
+    const std::string& name = info.states[static_cast<std::size_t>(i)].name;
+    if (!linear) {
+      throw DiagnoseError("simulator '" + info.name + "': twice the force on " + name +
+                          " does not change the rates twice as much; rates must be linear in it");
+    }
+    if (!(once[i] > 0)) {
+      throw DiagnoseError("simulator '" + info.name + "': a force on " + name + " does not make " + name +
+                          " grow; add it to the rate of " + name + " with a positive sign");
+    }
+    pushed.push_back(static_cast<int>(i));
+  }
+  return pushed;
+}
+
+/// By state: some input changes its rate and that of another velocity.
+SUREFOOT_ONCE std::vector<bool> driven_with_others(const SimulatorAnswers& answers, const std::vector<bool>& velocity,
+                                                   const Eigen::VectorXd& x, const Eigen::VectorXd& u) {
+  std::vector<bool> result(velocity.size(), false);
+  const Eigen::VectorXd rate = answers.rates(x, u, nullptr);
+  for (Eigen::Index k = 0; k < u.size(); ++k) {
+    Eigen::VectorXd moved = u;
+    moved[k] += 1e-3;  // within the limits of what it drives
+    const Eigen::VectorXd changed = answers.rates(x, moved, nullptr);
+    std::vector<std::size_t> driven;
+    for (std::size_t i = 0; i < velocity.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      if (velocity[i] && !nearly_equal(rate[row], changed[row])) driven.push_back(i);
+    }
+    for (const std::size_t i : driven) result[i] = result[i] || driven.size() > 1;
+  }
+  return result;
+}
+
 SUREFOOT_ONCE SimulatorStructure find_structure(const SimulatorAnswers& answers, const SimulatorInfo& info,
                                                 const Recording& example) {
   const auto n = info.states.size(), m = info.inputs.size(), k = info.outputs.size();
@@ -149,6 +200,7 @@ SUREFOOT_ONCE SimulatorStructure find_structure(const SimulatorAnswers& answers,
     }
     const Eigen::VectorXd rate = answers.rates(x, u, &signals);
     const std::vector<double> first = signals;
+    if (round == 0 && answers.response) structure.pushed = pushed_states(answers, info, x, u);
     refute(search, x, rate, answers.outputs(x, u));
     find_dependencies(search, answers, x, u, rate, scale, rng);
     const double reach = (round % 2 == 0 ? 10 : -10) * scale;
@@ -159,6 +211,13 @@ SUREFOOT_ONCE SimulatorStructure find_structure(const SimulatorAnswers& answers,
     }
   }
   conclude_structure(search, info, structure);
+  const Eigen::VectorXd first = example.inputs.cols() > 0 && m > 0
+                                    ? surefoot::detail::column_of(example.inputs, 0)
+                                    : Eigen::VectorXd::Zero(static_cast<Eigen::Index>(m));
+  const std::vector<bool> together = driven_with_others(answers, structure.velocity, example.initial, first);
+  for (std::size_t i = 0; i < n && structure.pushed.empty(); ++i) {
+    if (together[i]) structure.moved_together.push_back(static_cast<int>(i));
+  }
   return structure;
 }
 

@@ -36,6 +36,9 @@ std::string rejection_sentence();
 /// For held-out recordings that nothing was fitted without.
 std::string not_held_out_sentence();
 
+/// That friction at one of these velocities may have to move the others too.
+std::string moved_together_sentence(const SimulatorInfo& info, const std::vector<int>& velocities);
+
 /// How to tell the last of the chosen effects from the last of another choice.
 std::string next_experiment(const Hypothesis& chosen, const Hypothesis& other);
 

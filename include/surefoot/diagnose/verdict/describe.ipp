@@ -99,6 +99,18 @@ SUREFOOT_ONCE std::string rejection_sentence() {
          "dropped";
 }
 
+SUREFOOT_ONCE std::string moved_together_sentence(const SimulatorInfo& info, const std::vector<int>& velocities) {
+  std::string names;
+  for (std::size_t i = 0; i < velocities.size(); ++i) {
+    if (i > 0) names += i + 1 < velocities.size() ? ", " : " and ";
+    names += info.states[static_cast<std::size_t>(velocities[i])].name;
+  }
+  return "one input moves " + names +
+         " at once: if a force on one of them does, too, say so in the model (a model file "
+         "by force = \"NAME\" and NAME in the rates, C++ by response()); friction at one then moves the others, as it "
+         "does not now";
+}
+
 SUREFOOT_ONCE std::string not_held_out_sentence() {
   return "the time was over before parameters were fitted without the held-out recordings: errors on these are those "
          "of recordings that were fitted, and too small";

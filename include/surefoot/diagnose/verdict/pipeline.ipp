@@ -261,7 +261,11 @@ SUREFOOT_ONCE void evaluate_selection(const EstimationSetup& setup, const Calibr
   offer_forests(setup, models, diagnosis, run.parallel, run.seed);
   describe_limits(setup, models, problem, candidates, run, diagnosis);
   diagnosis.sentence = verdict_sentence(diagnosis, ties);
-  if (diagnosis.verdict == Verdict::unexplained) return;  // what is left of it would pass for noise
+  if (diagnosis.verdict == Verdict::unexplained) {
+    const std::vector<int>& together = setup.bound.structure.moved_together;
+    if (!together.empty()) diagnosis.remarks.push_back({"", moved_together_sentence(setup.bound.info, together)});
+    return;  // what is left of it would pass for noise
+  }
   diagnosis.noise_findings = find_noise(setup.bound, choice.chosen.hypothesis, training, setup.noise, run.parallel);
 }
 
