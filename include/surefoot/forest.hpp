@@ -14,6 +14,7 @@
 #include "surefoot/forest/permutation_importance.hpp"
 #include "surefoot/forest/prune.hpp"
 #include "surefoot/forest/serialize.hpp"
+#include "surefoot/forest/short_floats.hpp"
 #include "surefoot/forest/shrink.hpp"
 #include "surefoot/forest/training_report.hpp"
 #include "surefoot/forest/trees.hpp"

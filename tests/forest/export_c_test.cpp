@@ -16,6 +16,7 @@
 #include "surefoot/forest/c/c_fixed_point.hpp"
 #include "surefoot/forest/c/c_tables.hpp"
 #include "surefoot/forest/extra_trees.hpp"
+#include "surefoot/forest/short_floats.hpp"
 #include "surefoot/solve/agreement.hpp"
 #include "tests/forest/samples.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -93,6 +94,20 @@ TEST_CASE("the C file of a forest gives the library's bits") {
     check_same(train_extra_trees(toy::sample(toy::ClippedLaws{}, 600, 1), {.trees = 3}, Serial{}, 1), options);
     check_same(train_extra_trees<LinearLeaf>(toy::sample(toy::ClippedLaws{}, 600, 1), {.trees = 1}, Serial{}, 1),
                options);
+  }
+}
+
+TEST_CASE("a forest of short floats takes less text in C and gives the bits of the library") {
+  const auto check_short = [](const auto& forest, const ExportCOptions& options) {
+    const auto short_forest = with_short_floats(forest);
+    check_same(short_forest, options);
+    CHECK(export_c(short_forest, options).size() < export_c(forest, options).size());
+  };
+  for (const CDescent descent : {CDescent::tables, CDescent::branches}) {
+    const ExportCOptions options{.table = CTable::text, .descent = descent};
+    check_short(train_extra_trees(toy::sample(toy::ClippedLaws{}, 3000, 1), {.trees = 40}, Serial{}, 1), options);
+    check_short(train_extra_trees<LinearLeaf>(toy::sample(toy::ClippedLaws{}, 3000, 1), {.trees = 40}, Serial{}, 1),
+                options);
   }
 }
 

@@ -12,6 +12,7 @@
 #include "motion.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rollout.hpp"
+#include "surefoot/forest/short_floats.hpp"
 #include "surefoot/solve/export_policy.hpp"
 #include "surefoot/solve/forest_policy.hpp"
 
@@ -128,9 +129,10 @@ surefoot::ForestPolicy<Problem> shrink(const surefoot::ForestPolicy<Problem>& po
                                        const surefoot::Threads& threads) {
   const DistillOptions distill{.runs = options.runs, .horizon = Problem::horizon};
   const auto data = demonstrations(policy, distill, threads, options.seed);
-  int leaves = static_cast<int>(1000 * options.max_kb / 240);  // about what a leaf takes in the file [bytes]
+  int leaves = static_cast<int>(1000 * options.max_kb / 143);  // about what a leaf takes in the file [bytes]
   for (;;) {
-    surefoot::ForestPolicy<Problem> small = imitate(policy.problem(), data, leaves, distill, threads, options.seed);
+    const auto exact = imitate(policy.problem(), data, leaves, distill, threads, options.seed);
+    const surefoot::ForestPolicy<Problem> small{policy.problem(), surefoot::with_short_floats(exact.forest())};
     const double share = kilobytes(c_file(small)) / static_cast<double>(options.max_kb);
     if (share <= 1 || leaves == 1) return small;
     leaves = std::max(1, static_cast<int>(0.99 * leaves / share));

@@ -11,7 +11,7 @@ namespace surefoot {
 /// How a C file spells its tables of numbers.
 enum class CTable {
   integers,  // hexadecimal integers: no decoding, fastest
-  text,      // five characters per number in string literals: half the source, decoded at every use
+  text,      // five characters per number in string literals (short ones: three): half the source, decoded at every use
 };
 
 /// In what kind of numbers a C file compares inputs with thresholds.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "surefoot/forest/export_c_options.hpp"
+#include "surefoot/forest/short_floats.hpp"
 #include "surefoot/forest/trees.hpp"
 
 namespace surefoot::detail {
@@ -83,9 +84,9 @@ std::string c_list(std::span<const Number> items, const char* format) {
 }
 
 /// The table of numbers, given by their bits, and to read it `static uint32_t NAME_bits(uint32_t i)` and
-/// `static TYPE NAME_number(uint32_t i)`.
+/// `static TYPE NAME_number(uint32_t i)`. As text, short floats (see short_floats.hpp) take three characters each.
 inline std::string c_numbers(const std::vector<std::uint32_t>& numbers, CTable table, const std::string& name,
-                             const std::string& type = "float") {
+                             const std::string& type = "float", bool short_floats = false) {
   const std::string head = "static uint32_t " + name + "_bits(uint32_t i) {\n";
   const std::string tail = "}\n\nstatic " + type + " " + name + "_number(uint32_t i) {\n  union { uint32_t bits; " +
                            type + " value; } n;\n  n.bits = " + name + "_bits(i);\n  return n.value;\n}\n";
@@ -95,27 +96,31 @@ inline std::string c_numbers(const std::vector<std::uint32_t>& numbers, CTable t
   }
   // Base 85, most significant digit first; '"', '\' and '?' are left out. C99 promises 4095 characters per literal.
   constexpr std::size_t row = 800;
+  const std::size_t length = short_floats ? 3 : 5;
+  const std::string digits_each = std::to_string(length);
   std::string rows;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (i % row == 0) rows += i == 0 ? "\"" : "\",\n\"";
-    std::uint32_t rest = numbers[i];
+    std::uint32_t rest = short_floats ? numbers[i] >> dropped_bits : numbers[i];
     char digits[5];
-    for (std::size_t k = 5; k-- > 0; rest /= 85) {
+    for (std::size_t k = length; k-- > 0; rest /= 85) {
       char digit = static_cast<char>('#' + rest % 85);
       if (digit >= '?') ++digit;
       if (digit >= '\\') ++digit;
       digits[k] = digit;
     }
-    rows.append(digits, 5);
+    rows.append(digits, length);
   }
-  return "static const char " + name + "_numbers[][" + std::to_string(5 * row + 1) + "] = {\n" + rows + "\"};\n\n" +
-         head + "  const char *text = " + name + "_numbers[i / " + std::to_string(row) + "] + i % " +
-         std::to_string(row) +
-         " * 5;\n  uint32_t bits = 0;\n  int k;\n"
-         "  for (k = 0; k < 5; ++k) bits = bits * 85 + (uint32_t)(text[k] - '#' - (text[k] > '?') - (text[k] > "
+  return "static const char " + name + "_numbers[][" + std::to_string(length * row + 1) + "] = {\n" + rows +
+         "\"};\n\n" + head + "  const char *text = " + name + "_numbers[i / " + std::to_string(row) + "] + i % " +
+         std::to_string(row) + " * " + digits_each +
+         ";\n  uint32_t bits = 0;\n  int k;\n"
+         "  for (k = 0; k < " +
+         digits_each +
+         "; ++k) bits = bits * 85 + (uint32_t)(text[k] - '#' - (text[k] > '?') - (text[k] > "
          "'\\\\'));\n"
-         "  return bits;\n" +
-         tail;
+         "  return bits" +
+         (short_floats ? " << " + std::to_string(dropped_bits) : std::string()) + ";\n" + tail;
 }
 
 }  // namespace surefoot::detail

@@ -56,6 +56,10 @@ class CWriter {
       scales_ = c_scales(tables_, trees.inputs, options.thresholds, options.largest_inputs);
       fixed_ = c_fixed_thresholds(tables_, scales_);
     }
+    short_ = options.table == CTable::text && !options.whole_outputs && trees.leaves < (1U << (32 - dropped_bits)) &&
+             std::all_of(tables_.numbers.begin(), tables_.numbers.end(), is_short) &&
+             std::all_of(tables_.thresholds.begin(), tables_.thresholds.end(),
+                         [](float threshold) { return is_short(std::bit_cast<std::uint32_t>(threshold)); });
     if (options.whole_outputs) whole_leaves_ = c_whole_leaves(trees, nodes_, leaf_tag, options.thresholds, scales_);
   }
 
@@ -115,7 +119,7 @@ class CWriter {
                   ? "/* floats: the threshold of each node, then the numbers of each leaf; a leaf has its only number "
                     "in place of a\n   threshold, or the bits of its row */\n"
                   : "/* floats: the numbers of each leaf */\n";
-      code += c_numbers(float_numbers(), options_.table, name_);
+      code += c_numbers(float_numbers(), options_.table, name_, "float", short_);
     }
     return code + "\n" +
            nodes_.descent(name_, whole_.empty() ? "float" : whole_, from_.inputs,
@@ -128,7 +132,9 @@ class CWriter {
     for (std::size_t i = 0; numbers_hold_thresholds() && i < nodes_.words.size(); ++i) {
       const bool inner = nodes_.input(i) < width_;
       numbers.push_back(inner ? std::bit_cast<std::uint32_t>(nodes_.thresholds[i])
-                              : (from_.inline_leaves() ? nodes_.payloads[leaf] : leaf));
+                              : (from_.inline_leaves() ? nodes_.payloads[leaf]
+                                 : short_              ? leaf << dropped_bits
+                                                       : leaf));
       leaf += inner ? 0 : 1;
     }
     for (const std::uint32_t payload : nodes_.payloads) {
@@ -142,8 +148,9 @@ class CWriter {
 
   std::string branches() const {
     const std::string type = whole_.empty() ? "float" : whole_;
-    std::string code = "/* floats: the numbers of each leaf */\n" + c_numbers(tables_.numbers, options_.table, name_) +
-                       "\n" + CBranches(tables_, fixed_).code(name_, type) + "static uint32_t (*const " + name_ +
+    std::string code = "/* floats: the numbers of each leaf */\n" +
+                       c_numbers(tables_.numbers, options_.table, name_, "float", short_) + "\n" +
+                       CBranches(tables_, fixed_).code(name_, type) + "static uint32_t (*const " + name_ +
                        "_trees[])(const " + type + " *) = {";
     for (std::size_t tree = 0; tree < tables_.trees.size(); ++tree) {
       code += (tree == 0 ? "" : tree % 8 == 0 ? ",\n" : ", ") + name_ + "_tree" + std::to_string(tree);
@@ -238,14 +245,15 @@ class CWriter {
 
   std::string table_descent() const {
     const std::string lanes = std::to_string(nodes_.lanes()), end = "at[tree % " + lanes + "]";
-    const std::string leaf = nodes_.words_name_leaves ? "(uint32_t)(" + name_ + "_nodes[" + end + "] >> " +
-                                                            std::to_string(nodes_.input_bits) + ")"
-                                                      : name_ + "_bits(" + end + ")";
+    const std::string leaf =
+        nodes_.words_name_leaves
+            ? "(uint32_t)(" + name_ + "_nodes[" + end + "] >> " + std::to_string(nodes_.input_bits) + ")"
+            : name_ + "_bits(" + end + ")" + (short_ ? " >> " + std::to_string(dropped_bits) : "");
     return "    uint32_t p;\n    if (tree % " + lanes + " == 0) " + name_ + "_leaves(" +
            (whole_.empty() ? "x" : "keys") + ", tree, " + trees_ + " - tree, at);\n    p = " +
-           (!numbers_hold_thresholds() ? leaf + " * " + leaf_parameters_
+           (!numbers_hold_thresholds() ? "(" + leaf + ") * " + leaf_parameters_
             : from_.inline_leaves()    ? end
-                                    : std::to_string(nodes_.words.size()) + " + " + leaf + " * " + leaf_parameters_) +
+                                    : std::to_string(nodes_.words.size()) + " + (" + leaf + ") * " + leaf_parameters_) +
            ";\n";
   }
 
@@ -260,6 +268,7 @@ class CWriter {
   const Trees& from_;
   CNodes nodes_;
   CTables tables_;
+  bool short_ = false;  // numbers are short and spelled as such
   std::string whole_;  // the C type of inputs that are whole numbers, or empty
   std::vector<double> scales_;
   std::vector<std::int32_t> fixed_;
