@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <memory>
@@ -61,10 +62,7 @@ class Equations {
   /// What forces on the states add to the rates; 0 for forces that no rate uses.
   template <class State>
   State response(const State& x, const Channels& u, const State& forces) {
-    if (!responses_.steady) {
-      put(x, u);
-      responses_.formulas.evaluate();
-    }
+    evaluate_responses(x, u);
     State added = forces;
     const double* const* per_force = responses_.results.data();
     set_one_by_one(added, [](Eigen::Index) { return 0.0; });
@@ -74,6 +72,18 @@ class Equations {
       per_force += added.size();
     }
     return added;
+  }
+  /// The same for a unit of force on each of these states, all named in plan.pushed.
+  template <class State>
+  std::vector<State> unit_responses(const State& x, const Channels& u, const std::vector<int>& states) {
+    evaluate_responses(x, u);
+    std::vector<State> responses(states.size(), x);
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      const auto number = std::find(plan_->pushed.begin(), plan_->pushed.end(), states[k]) - plan_->pushed.begin();
+      const double* const* per_force = responses_.results.data() + number * x.size();
+      set_one_by_one(responses[k], [&](Eigen::Index i) { return *per_force[i]; });
+    }
+    return responses;
   }
   template <class State>
   Channels outputs(const State& x, const Channels& u) {
@@ -108,6 +118,12 @@ class Equations {
       std::atomic_signal_fence(std::memory_order_seq_cst);
     }
     for (const double value : u) *to++ = value;
+  }
+  template <class State>
+  void evaluate_responses(const State& x, const Channels& u) {
+    if (responses_.steady) return;
+    put(x, u);
+    responses_.formulas.evaluate();
   }
   template <class Values>
   static Values results(const Part& part) {
@@ -170,6 +186,9 @@ class OdeModelOf {
   }
   State response(const State& x, const Input& u, const Eigen::VectorXd& /*prepared*/, const State& forces) const {
     return equations_.response(x, u, forces);
+  }
+  std::vector<State> unit_responses(const State& x, const Input& u, const std::vector<int>& states) const {
+    return equations_.unit_responses(x, u, states);
   }
   Output observe(const State& x, const Input& u, const Eigen::VectorXd& /*prepared*/) const {
     return equations_.outputs(x, u);

@@ -94,6 +94,9 @@ TEST_CASE("a force by its name in the rates moves all velocities as the mass mat
     CHECK(added[1] == doctest::Approx(expected[0]).epsilon(1e-12));
     CHECK(added[2] == 0);
     CHECK(added[3] == doctest::Approx(expected[1]).epsilon(1e-12));
+    const auto units = model.unit_responses(x, u, {3, 1});
+    CHECK(units[0] == model.response(x, u, p, vector({0, 0, 0, 1})));
+    CHECK(units[1] == model.response(x, u, p, vector({0, 1, 0, 0})));
     CHECK(model.derivative(x, u, p)[1] * (p[0] + p[1] * std::pow(std::sin(a), 2)) ==
           doctest::Approx(u[0] + p[1] * std::sin(a) * (0.5 * x[3] * x[3] + 9.81 * std::cos(a))));
   }

@@ -1,6 +1,8 @@
 // Where effects enter a simulation: inputs, signals, steps in the plane, parameters and sensors.
 #include <doctest/doctest.h>
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -11,6 +13,7 @@
 namespace surefoot::diagnosis {
 namespace {
 
+using toys::blank_recording;
 using toys::LeakyTank;
 using toys::machine;
 using toys::SlidingBlock;
@@ -71,6 +74,45 @@ struct RowTank {
   Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return x; }
 };
 static_assert(Simulator<RowTank>);
+
+// Falls [m] at 2 m/s^2 from rest onto a stop at 1 m, in rows of `period`, and comes back with half its speed.
+Eigen::VectorXd bouncing(double period, double level = 1) {
+  Recording recording =
+      blank_recording(SlidingBlock{}.info(), static_cast<Eigen::Index>(std::lround(1.8 / period)) + 1, period);
+  recording.inputs.setConstant(4);  // [N], on 2 kg
+  const Augmented block =
+      machine({2, 0, 0}, {{.name = "end_stop", .attached_to = "v", .form = "upper", .values = {level, 0.5}}});
+  return simulate_augmented(SlidingBlock{}, block, recording).outputs.row(0);
+}
+
+TEST_CASE("a stop is hit at its time within a step, whatever the length of rows") {
+  for (const double period : {0.3, 0.09, 0.01}) {
+    const Eigen::VectorXd x = bouncing(period);
+    for (Eigen::Index row = 0; row < x.size(); ++row) {
+      const double t = period * static_cast<double>(row), after = t - 1;  // hit at 1 s, with 2 m/s
+      CHECK(x[row] == doctest::Approx(t < 1 ? t * t : 1 - after + after * after).epsilon(1e-8));
+    }
+  }
+}
+
+TEST_CASE("what follows a hit is a smooth function of where the stop is") {
+  double largest = 0;
+  for (int k = 0; k < 100; ++k) {
+    const double level = 0.9 + 1e-3 * k;
+    const auto last = [](double at) { return bouncing(0.03, at)[60]; };
+    largest = std::max(largest, std::abs(last(level + 1e-3) - 2 * last(level) + last(level - 1e-3)));
+  }
+  CHECK(largest < 1e-5);
+}
+
+TEST_CASE("what lies on a stop stays there") {
+  Recording recording = blank_recording(SlidingBlock{}.info(), 50, 0.1);
+  recording.initial[0] = 1;
+  recording.inputs.setConstant(4);
+  const Augmented block =
+      machine({2, 0, 0}, {{.name = "end_stop", .attached_to = "v", .form = "upper", .values = {1, 0.0}}});
+  CHECK((simulate_augmented(SlidingBlock{}, block, recording).outputs.row(0).array() == 1).all());
+}
 
 TEST_CASE("on a map an effect on a state adds to the next value, and sees the change of this row") {
   const Effect half_more{.name = "half_more",

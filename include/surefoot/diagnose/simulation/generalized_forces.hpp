@@ -39,12 +39,17 @@ ForceResponse<S> force_response(const AugmentedSimulator<S>& m, const typename S
                                 const typename S::Input& u) {
   ForceResponse<S> result{effort(m, x, u), {}};
   if constexpr (has_response<S>) {
-    for (const int state : m.structure.pushed) {
-      auto unit = unset<typename S::State>(x.size());
-      set_each(unit, [state](Eigen::Index i) { return i == state ? 1.0 : 0.0; });
-      result.by_pushed.push_back(m.simulator.response(x, u, m.p, unit));
-      result.effort[state] = 1 / result.by_pushed.back()[state];
+    const std::vector<int>& pushed = m.structure.pushed;
+    if constexpr (requires { m.simulator.unit_responses(x, u, pushed); }) {  // all by one evaluation
+      if (!pushed.empty()) result.by_pushed = m.simulator.unit_responses(x, u, pushed);
+    } else {
+      for (const int state : pushed) {
+        auto unit = unset<typename S::State>(x.size());
+        set_each(unit, [state](Eigen::Index i) { return i == state ? 1.0 : 0.0; });
+        result.by_pushed.push_back(m.simulator.response(x, u, m.p, unit));
+      }
     }
+    for (std::size_t k = 0; k < pushed.size(); ++k) result.effort[pushed[k]] = 1 / result.by_pushed[k][pushed[k]];
   }
   return result;
 }

@@ -2,8 +2,9 @@
 //
 // ODEs: Runge-Kutta of order 4 or 2 (midpoint) between rows, one or more steps each. Dry friction is neither smoothed
 // nor stiff: within a step each velocity either slides in one direction or sticks (its force is then the one that holds
-// it), and a step in which it would reverse is cut where it stops. Steps are also cut where a late input changes, so
-// that the result is a smooth function of the delay. Maps: one step per row. Cost: rows * steps * stages evaluations.
+// it), and a step in which it would reverse is cut where it stops. Steps are also cut where an end stop is hit and
+// where a late input changes, so that the result is a smooth function of level and delay. Maps: one step per row. Cost:
+// rows * steps * stages evaluations.
 #pragma once
 
 #include <Eigen/Core>
@@ -142,7 +143,27 @@ class SimulationRun {
     }
   }
 
-  void advance(Point<S>& now, double t, double h) {
+  void advance(Point<S>& now, double t, double h, int hits = 0) {
+    if (m_.slots.limits.empty()) return advance_through(now, t, h);
+    const Point<S> before = now;
+    step(m_, u_, integration_.order, now, t, h, std::span<Mode>(modes_));
+    constexpr int most_hits = 4;  // in a step; what bounces more often rests
+    const StopHit hit = hits < most_hits ? first_hit(m_.slots, before, now) : StopHit{};
+    if (!(hit.beyond > 0 && hit.beyond < h)) return apply_step_updates(m_, now, u_.now(), t, h);
+    double length = h - hit.beyond;
+    for (int round = 0; round < 3; ++round) {  // of Newton's method, which doubles the right digits in each
+      assign(now, before);
+      step(m_, u_, integration_.order, now, t, length, std::span<Mode>(modes_));
+      const double later = hit.until(now.x);
+      if (round == 2 || !(std::abs(later) > 1e-12 * h)) break;
+      length = std::clamp(length + later, 0.0, h);
+    }
+    now.x[hit.position] = std::nextafter(hit.level, hit.level + now.x[hit.velocity]);  // so that the limit acts
+    apply_step_updates(m_, now, u_.now(), t, length);
+    advance(now, t + length, h - length, hits + 1);
+  }
+
+  void advance_through(Point<S>& now, double t, double h) {
     step(m_, u_, integration_.order, now, t, h, std::span<Mode>(modes_));
     apply_step_updates(m_, now, u_.now(), t, h);
   }

@@ -46,6 +46,35 @@ void apply_step_updates(const AugmentedSimulator<S>& m, Point<S>& now, const typ
   }
 }
 
+/// An end stop that a step went beyond.
+struct StopHit {
+  int velocity = -1, position = -1;  // states; none
+  double level = 0;                  // of the position
+  double beyond = 0;                 // for how long the step went on, as far as its last speed tells
+
+  /// How much later the state is at the stop.
+  template <class State>
+  double until(const State& x) const {
+    return (level - x[position]) / x[velocity];
+  }
+};
+
+/// The stop that was hit first in a step; none for those that were rested on from its beginning.
+template <Simulator S>
+StopHit first_hit(const EffectSlots& slots, const Point<S>& before, const Point<S>& after) {
+  StopHit first;
+  for (const EffectSlot& slot : slots.limits) {
+    if (slot.position < 0) continue;
+    double value = after.x[slot.at], position = after.x[slot.position], no_other = 0;
+    slot.effect->limit(slot.p, value, position, no_other);
+    if (position == after.x[slot.position] || position == before.x[slot.position]) continue;
+    StopHit hit{slot.at, slot.position, position};
+    hit.beyond = -hit.until(after.x);
+    if (hit.beyond > first.beyond) first = hit;
+  }
+  return first;
+}
+
 /// Effects on the displacement from one pose to the next.
 template <class State>
 void move_in_plane(const EffectSlots& slots, const PlanarInfo& at, const State& before, State& after) {
