@@ -181,7 +181,7 @@ TEST_CASE("a stop that one joint hits takes momentum of the other") {
   Augmented arm = machine({1.5}, {{.name = "end_stop", .attached_to = "v2", .form = "upper", .values = {0.5, 0.0}}});
   const SimulatedRun run = simulate_augmented(Arm{}, arm, recording);
   const auto [a, b, c] = TwoLinks{}.mass({0, 0.5});
-  CHECK(run.states(3, 1) == 0);
+  CHECK(std::abs(run.states(3, 1)) < 0.01);  // gravity begins to pull it back
   CHECK(run.states(2, 1) == doctest::Approx(b / a).epsilon(1e-2));  // a v1 + b v2 does not change
   (void)c;
 }
