@@ -53,25 +53,12 @@ double held_out_ratio(const Json& found, const Json& again) {
   return worst;
 }
 
-/// Mean ratio of the noise that errors are given in units of: each diagnosis estimates it by itself.
-double noise_ratio(const Json& found, const Json& again) {
-  double sum = 0, count = 0;
-  const Json &before = found.at("mismatch").at("channels"), &after = again.at("mismatch").at("channels");
-  for (std::size_t k = 0; k < std::min(before.size(), after.size()); ++k) {
-    const double ratio = number(after[k].at("noise")) / number(before[k].at("noise"));
-    if (!std::isfinite(ratio) || !(ratio > 0)) continue;
-    sum += std::log(ratio);
-    ++count;
-  }
-  return count > 0 ? std::exp(sum / count) : 1;
-}
-
 Comparison compare(const std::string& name, const Json& found, const Json& again) {
   const Json &before = found.at("fit").at("train"), &after = again.at("fit").at("train");
   Comparison one{name};
   one.effects = found.at("effects").size();
   one.complete = found.at("complete").get<bool>() && again.at("complete").get<bool>();
-  one.fitted = number(after.at("rmse_before")) / number(before.at("rmse_after")) * noise_ratio(found, again);
+  one.fitted = number(after.at("rmse_before")) / number(before.at("rmse_after"));
   one.held_out = held_out_ratio(found, again);
   one.own_start = number(before.at("rmse_after")) / number(before.at("rmse_before"));
   return one;
