@@ -36,11 +36,23 @@ SUREFOOT_ONCE void add_squares(const LogFit& fit, const Recording& recording, co
   }
 }
 
+SUREFOOT_ONCE void with_column(Eigen::MatrixXd& all, Eigen::Index at, const Eigen::MatrixXd& column) {
+  Eigen::MatrixXd wider;
+  wider.setZero(column.rows(), all.cols() + 1);
+  for (Eigen::Index c = 0; c < wider.cols(); ++c) {
+    for (Eigen::Index b = 0; b < wider.rows(); ++b) {
+      wider(b, c) = c < at ? all(b, c) : c == at ? column(b, 0) : all(b, c - 1);
+    }
+  }
+  all.swap(wider);
+}
+
 /// Tries one more amount, in its place among the others.
 SUREFOOT_ONCE void add_amount(const LogFit& fit, std::size_t r, LogFaultKind kind, double amount,
                               ClockProfile& profile) {
   const Recording& recording = fit.bound.recordings[r];
-  ClockProfile one{{amount}, Eigen::MatrixXd::Zero(profile.squares.rows(), 1), {}};
+  ClockProfile one{{amount}, {}, {}};
+  one.squares.setZero(profile.squares.rows(), 1);
   one.counts = one.squares;
   Eigen::VectorXd times = recording.time;
   if (kind == LogFaultKind::time_skew) {
@@ -55,13 +67,8 @@ SUREFOOT_ONCE void add_amount(const LogFit& fit, std::size_t r, LogFaultKind kin
   const auto place = std::upper_bound(profile.amounts.begin(), profile.amounts.end(), amount);
   const auto at = static_cast<Eigen::Index>(place - profile.amounts.begin());
   profile.amounts.insert(place, amount);
-  for (const auto part : {&ClockProfile::squares, &ClockProfile::counts}) {
-    Eigen::MatrixXd& all = profile.*part;
-    const Eigen::Index after = all.cols() - at;
-    all.conservativeResize(Eigen::NoChange, all.cols() + 1);
-    for (Eigen::Index c = all.cols() - 1; c > all.cols() - 1 - after; --c) all.col(c) = all.col(c - 1).eval();
-    all.col(at) = (one.*part).col(0);
-  }
+  with_column(profile.squares, at, one.squares);
+  with_column(profile.counts, at, one.counts);
 }
 
 /// Mean square errors by amount, without one block (or none: -1).
