@@ -25,6 +25,25 @@ TEST_SUITE("log_doctor") {
     CHECK(fast.value == doctest::Approx(0.017).epsilon(0.2));
   }
 
+  TEST_CASE("the better the model fits, the closer amounts are tried: no error is made up between them") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    auto log = toys::servo_log();
+    for (auto& recording : log) {  // without noise, one percent off is a great deal
+      surefoot::Augmented machine;
+      machine.parameters = {90, 8};
+      recording.outputs = simulate_augmented(toys::Servo{}, machine, recording).outputs;
+    }
+    const LogFit fit = fit_log(inputs, log);
+    for (std::size_t r = 0; r < log.size(); ++r) {
+      const ClockProfile profile = clock_profile(fit, r, LogFaultKind::time_skew, inputs.criteria);
+      const ClockEstimate exact = clock_estimate(profile);
+      REQUIRE(exact.usable);
+      CHECK(exact.error >= 0);
+      CHECK(std::abs(exact.value) < 1e-4);
+    }
+  }
+
   TEST_CASE("an error without a minimum within the range tells nothing") {
     ClockProfile profile{{-1, 0, 1}, Eigen::MatrixXd::Ones(4, 3), Eigen::MatrixXd::Ones(4, 3)};
     profile.squares.col(2).setConstant(0.5);

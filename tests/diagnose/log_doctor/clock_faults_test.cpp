@@ -27,6 +27,22 @@ TEST_SUITE("log_doctor") {
     CHECK(outlier_by_chance(estimates({0, 0, 0, 0, 0, 3}, 1), 5, {}) > 0.01);
   }
 
+  TEST_CASE("a recording that the model misses says little about clocks") {
+    auto clocks = estimates({0.001, 0, -0.001, 0.001, -0.001, 0, 0.017, 0.025}, 1e-6);
+    CHECK(outlier_by_chance(clocks, 7, {}) > 1e-3);  // another clock is as far off
+    clocks[6].error = 200;
+    CHECK(outlier_by_chance(clocks, 7, {}) < 1e-5);
+  }
+
+  TEST_CASE("a clock that leaves its recording far worse than all others is not what is wrong with it") {
+    auto clocks = estimates({0, 0.1, -0.1, 5}, 0.01);
+    CHECK(is_like_others(clocks, 3, {}));
+    clocks[3].error = 5;
+    CHECK_FALSE(is_like_others(clocks, 3, {}));
+    clocks[0].error = 2;
+    CHECK(is_like_others(clocks, 3, {}));
+  }
+
   TEST_CASE("clocks of a map or of too few recordings are not compared") {
     const Parallel parallel = serially();
     const LogDoctorInputs inputs = toys::servo_doctor(parallel);

@@ -21,6 +21,16 @@ TEST_SUITE("log_doctor") {
     CHECK(odd->ratio > 2);
   }
 
+  TEST_CASE("recordings that happen to be hit well do not excuse one that is missed") {
+    std::vector<double> errors;
+    for (int r = 0; r < 60; ++r) errors.push_back(r % 3 == 0 ? 1e-6 : r % 3 == 1 ? 1e-3 : 2e-3 + 5e-5 * r);
+    errors.push_back(1);
+    CHECK(error_by_chance(errors, errors.size() - 1) < 1e-4);
+    errors.back() = 0.006;
+    CHECK(error_by_chance(errors, errors.size() - 1) > 0.01);
+    CHECK(error_by_chance({1e-3, 1, 30, 1e-2, 300}, 4) > 1e-3);
+  }
+
   TEST_CASE("three recordings do not say what most are like") {
     const Parallel parallel = serially();
     const LogDoctorInputs inputs = toys::servo_doctor(parallel);

@@ -13,7 +13,7 @@ namespace surefoot::diagnosis {
 
 /// Mean square residual of one recording, in units of what is typically left, by what its clock might be off.
 struct ClockProfile {
-  std::vector<double> amounts;  // ascending, evenly spaced
+  std::vector<double> amounts;  // ascending; evenly spaced where no more than reading at other times is needed
   Eigen::MatrixXd squares;      // block of rows x amount: sums; physics that is missing lags differently in each block
   Eigen::MatrixXd counts;
 };

@@ -36,34 +36,39 @@ SUREFOOT_ONCE void add_squares(const LogFit& fit, const Recording& recording, co
   }
 }
 
-SUREFOOT_ONCE ClockProfile clock_profile(const LogFit& fit, std::size_t r, LogFaultKind kind,
-                                         const LogDoctorCriteria& criteria) {
-  const Recording& recording = fit.bound.recordings[r];
-  const bool offset = kind == LogFaultKind::offset, simulated_again = kind == LogFaultKind::time_skew;
-  const double count = offset            ? 2 * criteria.most_shift + 1
-                       : simulated_again ? criteria.simulated_skews
-                                         : criteria.read_skews;
-  const auto steps = static_cast<Eigen::Index>(count);
-  const double most = offset ? criteria.most_shift * median_interval(recording) : criteria.most_skew;
-  ClockProfile profile;
-  profile.squares.setZero(static_cast<Eigen::Index>(criteria.blocks), steps);
-  profile.counts = profile.squares;
-  const double start = recording.time[0];
-  for (Eigen::Index a = 0; a < steps; ++a) {
-    const double amount = most * (2 * static_cast<double>(a) / static_cast<double>(steps - 1) - 1);
-    profile.amounts.push_back(amount);
-    Eigen::VectorXd times = recording.time;
-    if (simulated_again) {
-      const Recording other =
-          repaired(fit.bound, recording, {.kind = kind, .amount = amount});
-      const Resimulation resimulation = resimulate(fit, r, other);
-      if (resimulation.run.finite) add_squares(fit, recording, resimulation.run, times, a, profile);
-      continue;
+SUREFOOT_ONCE void with_column(Eigen::MatrixXd& all, Eigen::Index at, const Eigen::MatrixXd& column) {
+  Eigen::MatrixXd wider;
+  wider.setZero(column.rows(), all.cols() + 1);
+  for (Eigen::Index c = 0; c < wider.cols(); ++c) {
+    for (Eigen::Index b = 0; b < wider.rows(); ++b) {
+      wider(b, c) = c < at ? all(b, c) : c == at ? column(b, 0) : all(b, c - 1);
     }
-    for (double& t : times) t = offset ? t - amount : start + (t - start) / (1 + amount);
-    if (fit.runs[r].finite) add_squares(fit, recording, fit.runs[r], times, a, profile);
   }
-  return profile;
+  all.swap(wider);
+}
+
+/// Tries one more amount, in its place among the others.
+SUREFOOT_ONCE void add_amount(const LogFit& fit, std::size_t r, LogFaultKind kind, double amount,
+                              ClockProfile& profile) {
+  const Recording& recording = fit.bound.recordings[r];
+  ClockProfile one{{amount}, {}, {}};
+  one.squares.setZero(profile.squares.rows(), 1);
+  one.counts = one.squares;
+  Eigen::VectorXd times = recording.time;
+  if (kind == LogFaultKind::time_skew) {
+    const Recording other = repaired(fit.bound, recording, {.kind = kind, .amount = amount});
+    const Resimulation resimulation = resimulate(fit, r, other);
+    if (resimulation.run.finite) add_squares(fit, recording, resimulation.run, times, 0, one);
+  } else {
+    const double start = recording.time[0];
+    for (double& t : times) t = kind == LogFaultKind::offset ? t - amount : start + (t - start) / (1 + amount);
+    if (fit.runs[r].finite) add_squares(fit, recording, fit.runs[r], times, 0, one);
+  }
+  const auto place = std::upper_bound(profile.amounts.begin(), profile.amounts.end(), amount);
+  const auto at = static_cast<Eigen::Index>(place - profile.amounts.begin());
+  profile.amounts.insert(place, amount);
+  with_column(profile.squares, at, one.squares);
+  with_column(profile.counts, at, one.counts);
 }
 
 /// Mean square errors by amount, without one block (or none: -1).
@@ -81,18 +86,65 @@ SUREFOOT_ONCE std::vector<double> errors_without(const ClockProfile& profile, Ei
   return errors;
 }
 
+/// Tries amounts halfway to the neighbours of the best, until the error changes so little between them that a parabola
+/// describes it: the better the model fits, the narrower is the valley.
+SUREFOOT_ONCE void try_between(const LogFit& fit, std::size_t r, LogFaultKind kind, ClockProfile& profile) {
+  constexpr int rounds = 10;      // each halves what lies between two amounts
+  constexpr double wide = 2;      // times the least error: the neighbours', where the parabola holds
+  for (int round = 0; round < rounds; ++round) {
+    const std::vector<double> errors = errors_without(profile, -1);
+    const auto at = static_cast<std::size_t>(std::min_element(errors.begin(), errors.end()) - errors.begin());
+    if (at == 0 || at + 1 == errors.size() || std::max(errors[at - 1], errors[at + 1]) < wide * errors[at]) return;
+    const double left = (profile.amounts[at - 1] + profile.amounts[at]) / 2;
+    const double right = (profile.amounts[at] + profile.amounts[at + 1]) / 2;
+    add_amount(fit, r, kind, left, profile);
+    add_amount(fit, r, kind, right, profile);
+  }
+}
+
+SUREFOOT_ONCE ClockProfile clock_profile(const LogFit& fit, std::size_t r, LogFaultKind kind,
+                                         const LogDoctorCriteria& criteria) {
+  const bool offset = kind == LogFaultKind::offset, simulated_again = kind == LogFaultKind::time_skew;
+  const double count = offset            ? 2 * criteria.most_shift + 1
+                       : simulated_again ? criteria.simulated_skews
+                                         : criteria.read_skews;
+  const auto steps = static_cast<Eigen::Index>(count);
+  const double most =
+      offset ? criteria.most_shift * median_interval(fit.bound.recordings[r]) : criteria.most_skew;
+  ClockProfile profile;
+  profile.squares.setZero(static_cast<Eigen::Index>(criteria.blocks), 0);
+  profile.counts = profile.squares;
+  for (Eigen::Index a = 0; a < steps; ++a) {
+    add_amount(fit, r, kind, most * (2 * static_cast<double>(a) / static_cast<double>(steps - 1) - 1), profile);
+  }
+  if (simulated_again) try_between(fit, r, kind, profile);
+  return profile;
+}
+
+/// A parabola through three errors, about the middle one.
+struct Parabola {
+  double rise = 0, bend = 0;  // error = middle + x (rise + x bend)
+};
+
+SUREFOOT_ONCE Parabola parabola_at(const std::vector<double>& amounts, const std::vector<double>& errors,
+                                   std::size_t middle) {
+  const double left = amounts[middle] - amounts[middle - 1], right = amounts[middle + 1] - amounts[middle];
+  const double below = (errors[middle] - errors[middle - 1]) / left;
+  const double above = (errors[middle + 1] - errors[middle]) / right;
+  return {(below * right + above * left) / (left + right), (above - below) / (left + right)};
+}
+
 /// Place of the least error, by the parabola through it and its neighbours; NaN at the edge of the range.
 SUREFOOT_ONCE double least_error_at(const std::vector<double>& amounts, const std::vector<double>& errors,
                                     double& least) {
   const auto at = static_cast<std::size_t>(std::min_element(errors.begin(), errors.end()) - errors.begin());
   least = errors[at];
   if (at == 0 || at + 1 == errors.size()) return std::numeric_limits<double>::quiet_NaN();
-  const double left = errors[at - 1], right = errors[at + 1], step = amounts[1] - amounts[0];
-  const double bend = left - 2 * errors[at] + right;
-  if (!(bend > 0)) return amounts[at];
-  const double share = 0.5 * (left - right) / bend;
-  least -= (left - right) * share / (2 * 2);  // the parabola's lowest point
-  return amounts[at] + share * step;
+  const Parabola parabola = parabola_at(amounts, errors, at);
+  if (!(parabola.bend > 0) || !std::isfinite(parabola.bend)) return amounts[at];
+  const double x = -parabola.rise / (2 * parabola.bend);
+  least += x * (parabola.rise + x * parabola.bend);
+  return amounts[at] + x;
 }
 
 SUREFOOT_ONCE ClockEstimate clock_estimate(const ClockProfile& profile) {
@@ -117,14 +169,14 @@ SUREFOOT_ONCE ClockEstimate clock_estimate(const ClockProfile& profile) {
 }
 
 SUREFOOT_ONCE double error_at(const ClockProfile& profile, double amount) {
+  const std::vector<double>& amounts = profile.amounts;
   const std::vector<double> errors = errors_without(profile, -1);
-  const double step = profile.amounts[1] - profile.amounts[0];
-  const double place = std::clamp((amount - profile.amounts[0]) / step, 0.0, static_cast<double>(errors.size() - 1));
-  const auto middle = std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(place)), 1, errors.size() - 2);
-  const double x = place - static_cast<double>(middle);  // on the parabola through the three nearest
-  const double rise = 0.5 * (errors[middle + 1] - errors[middle - 1]);
-  const double bend = 0.5 * (errors[middle + 1] + errors[middle - 1]) - errors[middle];
-  return errors[middle] + x * (rise + x * bend);
+  const double within = std::clamp(amount, amounts.front(), amounts.back());
+  std::size_t middle = 1;  // of the three that are nearest
+  while (middle + 2 < amounts.size() && within > (amounts[middle] + amounts[middle + 1]) / 2) ++middle;
+  const Parabola parabola = parabola_at(amounts, errors, middle);
+  const double x = within - amounts[middle];
+  return errors[middle] + x * (parabola.rise + x * parabola.bend);
 }
 
 }  // namespace surefoot::diagnosis

@@ -24,8 +24,12 @@ bool has_clocks(const LogFit& fit, const LogDoctorCriteria& criteria);
 double scatter_by_chance(const std::vector<ClockEstimate>& estimates, const LogDoctorCriteria& criteria);
 
 /// Probability that estimate r lies so far from the others by chance: a t test, on its own standard error and on how
-/// much further the others scatter than theirs explain.
+/// much further the others scatter than theirs explain, where recordings that the model misses by more scatter more.
 double outlier_by_chance(const std::vector<ClockEstimate>& estimates, std::size_t r, const LogDoctorCriteria& criteria);
+
+/// Whether a recording is one of the others at its best clock, or still missed by far more than any: then it is another
+/// thing that is wrong with it, or physics that it alone shows.
+bool is_like_others(const std::vector<ClockEstimate>& estimates, std::size_t r, const LogDoctorCriteria& criteria);
 
 std::optional<ClockFault> find_clock_fault(const LogDoctorInputs& inputs, const LogFit& fit);
 

@@ -51,23 +51,40 @@ SUREFOOT_ONCE double scatter_by_chance(const std::vector<ClockEstimate>& estimat
   return f_tail(sum / (count - 1), count - 1, count * static_cast<double>(criteria.blocks - 1));
 }
 
+/// What is left of recordings at their best clocks, relative to the median one and at least 1: what the model misses in a
+/// recording shifts its clock, the more the more it is.
+SUREFOOT_ONCE std::vector<double> misfits(const std::vector<ClockEstimate>& estimates) {
+  std::vector<double> errors;
+  for (const ClockEstimate& one : estimates) {
+    if (one.usable) errors.push_back(one.error);
+  }
+  const double middle = median_of(errors);
+  std::vector<double> relative;
+  for (const ClockEstimate& one : estimates) relative.push_back(middle > 0 ? std::max(one.error / middle, 1.0) : 1.0);
+  return relative;
+}
+
 SUREFOOT_ONCE double outlier_by_chance(const std::vector<ClockEstimate>& estimates, std::size_t r,
                                        const LogDoctorCriteria& criteria) {
-  const std::vector<double> variances = pooled_variances(estimates);
-  double mean = 0, squares = 0, within = 0, count = 0;
+  const std::vector<double> variances = pooled_variances(estimates), misfit = misfits(estimates);
+  double weights = 0, mean = 0, squares = 0, within = 0, of_mean = 0, count = 0;
   for (std::size_t o = 0; o < estimates.size(); ++o) {
     if (o == r || !estimates[o].usable) continue;
-    mean += estimates[o].value;
-    squares += estimates[o].value * estimates[o].value;
-    within += variances[o];
+    const double weight = 1 / misfit[o];
+    weights += weight;
+    mean += weight * estimates[o].value;
+    squares += weight * estimates[o].value * estimates[o].value;
+    within += weight * variances[o];
+    of_mean += weight * weight * variances[o];
     ++count;
   }
   if (!estimates[r].usable || count < 2) return 1;
-  mean /= count;
+  mean /= weights;
   within /= count;
-  const double scatter = std::max(squares / count - mean * mean, 0.0) * count / (count - 1);
+  const double scatter = std::max(squares - weights * mean * mean, 0.0) / (count - 1);
   const double between = std::max(scatter - within, 0.0);  // recordings differ by more than each is known to
-  const double own = variances[r] + within / count, others = between * (1 + 1 / count), variance = own + others;
+  const double own = variances[r] + of_mean / (weights * weights);
+  const double others = between * (misfit[r] + 1 / weights), variance = own + others;
   if (!(variance > 0)) return 1;
   // degrees of freedom of a sum of two estimated variances (Welch and Satterthwaite)
   const double blocks = static_cast<double>(criteria.blocks) - 1;
@@ -99,6 +116,15 @@ SUREFOOT_ONCE Clocks measure_clocks(const LogFit& fit, LogFaultKind kind, const 
   return clocks;
 }
 
+SUREFOOT_ONCE bool is_like_others(const std::vector<ClockEstimate>& estimates, std::size_t r,
+                                  const LogDoctorCriteria& criteria) {
+  double worst = 0;
+  for (std::size_t o = 0; o < estimates.size(); ++o) {
+    if (o != r && estimates[o].usable) worst = std::max(worst, estimates[o].error);
+  }
+  return estimates[r].error <= criteria.decisive * worst;
+}
+
 /// The one recording whose clock is off, and by how much its error falls.
 struct SingleClock {
   LogFaultKind kind = LogFaultKind::offset;
@@ -112,7 +138,7 @@ SUREFOOT_ONCE void compare_single(const Clocks& clocks, LogFaultKind kind, const
   const double common = median_value(clocks.estimates);
   for (std::size_t r = 0; r < clocks.estimates.size(); ++r) {
     const ClockEstimate& one = clocks.estimates[r];
-    if (!one.usable) continue;
+    if (!one.usable || !is_like_others(clocks.estimates, r, criteria)) continue;
     const double chance =
         outlier_by_chance(clocks.estimates, r, criteria) * static_cast<double>(clocks.estimates.size()) * kinds;
     const double ratio = error_at(clocks.profiles[r], common) / one.error;

@@ -15,22 +15,33 @@
 
 namespace surefoot::diagnosis {
 
-/// Probability that the logarithm of an error lies so far from those of the others by chance (a t test).
+/// Tail of a t test: an offset from a middle that is known as well as this sum of squares with its degrees of freedom.
+SUREFOOT_ONCE double chance_beyond(double offset, double squares, double degrees) {
+  if (!(squares > 0) || !(degrees > 0)) return 1;
+  return t_tail(offset / std::sqrt(squares / degrees * (1 + 1 / (degrees + 1))), degrees);
+}
+
 SUREFOOT_ONCE double error_by_chance(const std::vector<double>& errors, std::size_t r) {
-  double mean = 0, squares = 0, count = 0;
+  constexpr double tests = 2, smallest = 1e-300;
+  std::vector<double> others;
   for (std::size_t o = 0; o < errors.size(); ++o) {
-    if (o == r) continue;
-    const double logarithm = std::log(std::max(errors[o], 1e-300));
-    mean += logarithm;
-    squares += logarithm * logarithm;
-    ++count;
+    if (o != r) others.push_back(std::log(std::max(errors[o], smallest)));
   }
+  const auto count = static_cast<double>(others.size());
   if (count < 2) return 1;
-  mean /= count;
-  const double variance = std::max(squares / count - mean * mean, 0.0) * count / (count - 1) * (1 + 1 / count);
-  const double off = std::log(std::max(errors[r], 1e-300)) - mean;
+  const double off = std::log(std::max(errors[r], smallest)), middle = median_of(others);
   if (std::isinf(off)) return 0;
-  return variance > 0 ? t_tail(off / std::sqrt(variance), count - 1) : 1;
+  double mean = 0, squares = 0, reach = 0, above = 0;
+  for (const double other : others) {
+    mean += other / count;
+    squares += other * other;
+    if (other <= middle) continue;
+    reach += (other - middle) * (other - middle);
+    ++above;
+  }
+  const double chance_of_scatter = chance_beyond(off - mean, std::max(squares - count * mean * mean, 0.0), count - 1);
+  const double chance_of_reach = chance_beyond(off - middle, reach, above);
+  return std::min(tests * std::min(chance_of_scatter, chance_of_reach), 1.0);
 }
 
 /// Mean square residual of a recording relative to how much its own outputs move: large motions are missed by more.

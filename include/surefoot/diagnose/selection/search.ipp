@@ -329,6 +329,16 @@ SUREFOOT_ONCE std::vector<std::size_t> informative(const BoundSimulator& bound, 
   return some_by_error(bound, all, runs, std::max(std::min(problem.screened.size(), all.size()), count));
 }
 
+/// Weights by what the chosen effects leave, and the fit with these, in turn: as a model without effects is calibrated,
+/// so that the augmented model, read back, is fitted to the same.
+SUREFOOT_ONCE void settle(Search& search, EvaluatedHypothesis& chosen) {
+  constexpr int reweightings = 2;  // as many as of a calibration
+  for (int round = 0; round < reweightings && search.effects(chosen) > 0 && !search.problem.stopped(); ++round) {
+    reweight(search, chosen);
+    chosen = refitted(search, chosen);
+  }
+}
+
 SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& calibrated, SearchProblem problem,
                                        const std::vector<AttachedEffect>& candidates, const Parallel& parallel) {
   problem.candidates = candidates.size();
@@ -366,6 +376,7 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
     selection.evidence.push_back(
         gain_of(rest.errors, selection.chosen.errors, log_odds(selection.chosen, rest, criteria)));
   }
+  settle(search, selection.chosen);
   selection.fit = search.problem.fit;
   return selection;
 }
