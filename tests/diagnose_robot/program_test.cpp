@@ -83,6 +83,24 @@ TEST_CASE("the inertia of a rotor is found, and said to be like that of its link
   CHECK(tied);
 }
 
+TEST_CASE("what no recording could show of an arm on a vertical axis is said to be invisible, and what shows is not") {
+  const ScratchFolder folder;
+  auto arm = robot_test::small_arm();
+  arm.torque_driven = true;
+  arm.joints[0].axis = 'z';
+  arm.joints[0].hidden.bias = 0.1;
+  robot_test::write_files(folder, arm, 19);
+  REQUIRE(diagnose(folder).code == 0);
+  const json result = result_of(folder);
+  CHECK(result["effects"].empty());
+  bool upper = false;
+  for (const json& one : result["robot"]["invisible"]) {
+    upper = upper || (one["effect"] == "sensor_bias" && one["joint"] == "upper");
+    CHECK(one["joint"] != "lower");
+  }
+  CHECK(upper);
+}
+
 TEST_CASE("the same seed gives the same result for any number of threads") {
   const ScratchFolder folder;
   auto arm = robot_test::small_arm();

@@ -41,6 +41,12 @@ TEST_CASE("a model that MuJoCo cannot load is refused in one sentence") {
   }
   write_text(folder.file("robot.xml"), "<mujoco><worldbody/></mujoco>");
   CHECK(contains(refusal_of([&] { load_robot(folder.file("robot.xml")); }), "no hinge"));
+  write_text(folder.file("robot.xml"), "");
+  CHECK(contains(refusal_of([&] { load_robot(folder.file("robot.xml")); }), "empty"));
+  write_text(folder.file("log.csv"), "t_s,a_rad\n0,1\n");
+  CHECK(contains(refusal_of([&] { load_robot(folder.file("log.csv")); }), "the robot's model first, then the log"));
+  write_text(folder.file("robot.xml"), "<mujoco>\n<worldbody>\n<body name=\"a\n</mujoco>");
+  CHECK(contains(refusal_of([&] { load_robot(folder.file("robot.xml")); }), "the XML breaks off in line"));
 }
 
 TEST_CASE("a model that MuJoCo's own reader fails on is refused in one sentence") {
@@ -91,6 +97,12 @@ TEST_CASE("a floating base, joints without columns, degrees and contacts are sai
   const Robot robot = bind_robot(load_robot(folder.file("range.xml")), all);
   RobotRecording recording = read_recording(diagnose_program::read_csv(folder.file("rec_1.csv")), all, 500);
   CHECK(check_recording(robot, recording).empty());
+  std::string narrow = range;
+  narrow.replace(narrow.find("-90 90"), 6, "-1.5 1.5");  // radians, in a file of degrees
+  write_text(folder.file("narrow.xml"), narrow);
+  CHECK(
+      contains(refusal_of([&] { check_recording(bind_robot(load_robot(folder.file("narrow.xml")), all), recording); }),
+               "is at a stop or beyond"));
   recording.angle *= 57.3;
   CHECK(contains(refusal_of([&] { check_recording(robot, recording); }), "unit = \"deg\""));
 

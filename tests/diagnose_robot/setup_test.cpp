@@ -93,12 +93,42 @@ TEST_CASE("columns, groups and units are guessed from names and readings") {
   CHECK(guess.setup.joints[0].goal.name == "FL_hip_target");
   CHECK(guess.setup.joints[0].angle.name == "FL_hip");
   CHECK(guess.setup.joints[0].angle.factor == doctest::Approx(0.0174533));
-  CHECK(guess.setup.joints[1].angle.factor == 1);
+  CHECK(guess.setup.joints[1].angle.factor == doctest::Approx(0.0174533));  // a log has one unit
   CHECK(guess.setup.joints[0].kp == 12);
   CHECK(guess.setup.held == std::vector<std::string>{"head"});
   REQUIRE(guess.setup.groups.size() == 1);
   CHECK(guess.setup.groups[0].name == "hip");
   CHECK(parse_setup(setup_text(guess.setup, guess.remarks), "robot.toml").joints.size() == 2);
+}
+
+TEST_CASE("a setup cannot be guessed of a log that lacks one goal, and says which") {
+  const robot_test::ScratchFolder folder;
+  robot_test::write_files(folder, robot_test::small_arm(), 3, 0);
+  const auto csv =
+      diagnose_program::parse_csv("t_s,goal_upper_rad,upper_rad,lower_rad\n0,0,0,0\n0.01,0,0,0\n", "log.csv");
+  try {
+    guess_setup(load_robot(folder.file("robot.xml")), csv);
+    FAIL("guessed");
+  } catch (const surefoot::DiagnoseError& error) {
+    CHECK(std::string(error.what()).find("no column of a goal for lower; add it, named like goal_lower_rad") !=
+          std::string::npos);
+  }
+}
+
+TEST_CASE(
+    "columns named radians that go far beyond the range are asked about, and ball joints said to be none of ours") {
+  const robot_test::ScratchFolder folder;
+  robot_test::write_text(folder.file("robot.xml"),
+                         R"(<mujoco><worldbody><body><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+    <joint name="hip" limited="true" range="-60 60"/><body><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+    <joint name="ankle" type="ball"/></body></body></worldbody></mujoco>)");
+  const auto csv = diagnose_program::parse_csv("t_s,goal_hip_rad,hip_rad\n0,30,29\n0.01,-55,-54\n", "log.csv");
+  std::string remarks;
+  for (const std::string& remark : guess_setup(load_robot(folder.file("robot.xml")), csv).remarks)
+    remarks += remark + '\n';
+  CAPTURE(remarks);
+  CHECK(remarks.find("SET the unit") != std::string::npos);
+  CHECK(remarks.find("ball joint ankle") != std::string::npos);
 }
 
 TEST_CASE("elements are taken out of an XML text with what is in them, but not in comments") {

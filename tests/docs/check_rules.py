@@ -31,6 +31,11 @@ def commands_of(block):
     return [line for line in lines if line]
 
 
+def compiled_by_pages(blocks):
+    """Files that commands of the pages compile."""
+    return {word for block in blocks if block.language == "sh" for word in block.text.split() if word.endswith(".cpp")}
+
+
 def faults_of(block, cases, compiled):
     if block.quoted:
         path = ROOT / block.quoted
@@ -70,6 +75,8 @@ def main():
     options = parser.parse_args()
     blocks = all_blocks()
     cases, compiled = ctest_cases(options.build), compiled_files(options.compile_commands)
+    if compiled is not None:
+        compiled |= {str((ROOT / name).resolve()) for name in compiled_by_pages(blocks)}
     faults = [fault for block in blocks for fault in faults_of(block, cases, compiled)] + list(lost_paths())
     counts = {language: sum(block.language == language for block in blocks) for language in KEYS}
     print(", ".join(f"{count} {language}" for language, count in counts.items()))

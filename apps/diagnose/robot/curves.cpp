@@ -11,6 +11,27 @@
 namespace diagnose_robot {
 namespace {
 
+// Goals as the drives had them: held from row to row, half a row late on average, and as late as was found.
+Motion with_late_goals(Motion motion, const RobotPhysics& physics) {
+  if (motion.goal.size() == 0) return motion;
+  const Eigen::MatrixXd goal = motion.goal;
+  const Eigen::VectorXd& t = motion.time;
+  const Eigen::Index rows = t.size();
+  const double row = (t[rows - 1] - t[0]) / static_cast<double>(rows - 1);
+  for (Eigen::Index j = 0; j < goal.cols(); ++j) {
+    const JointPhysics& joint = physics[static_cast<std::size_t>(j)];
+    const double late = row / 2 + joint[Property::delay] + joint[Property::lag];
+    for (Eigen::Index k = rows - 1, before = k; k >= 0; --k) {
+      while (before > 0 && t[before] > t[k] - late) --before;
+      const Eigen::Index next = std::min(before + 1, rows - 1);
+      const double share =
+          next > before ? std::clamp((t[k] - late - t[before]) / (t[next] - t[before]), 0.0, 1.0) : 0.0;
+      motion.goal(k, j) = goal(before, j) + share * (goal(next, j) - goal(before, j));
+    }
+  }
+  return motion;
+}
+
 TorquePicture torque_picture(const Evidence& evidence, Eigen::Index joint, const RobotPhysics& physics) {
   constexpr Eigen::Index bins = 41;
   TorquePicture picture;
@@ -21,8 +42,9 @@ TorquePicture torque_picture(const Evidence& evidence, Eigen::Index joint, const
   double fastest = 1e-9;
   for (const Motion& motion : evidence.motions) fastest = std::max(fastest, motion.v.col(joint).cwiseAbs().maxCoeff());
   for (const Motion& motion : evidence.motions) {
-    const Eigen::MatrixXd rigid = torque_residual(evidence.robot, motion, RobotPhysics(physics.size()));
-    const Eigen::MatrixXd after = torque_residual(evidence.robot, motion, physics);
+    const RobotPhysics none(physics.size());
+    const Eigen::MatrixXd rigid = torque_residual(evidence.robot, with_late_goals(motion, none), none);
+    const Eigen::MatrixXd after = torque_residual(evidence.robot, with_late_goals(motion, physics), physics);
     for (Eigen::Index k = 0; k < rigid.rows(); ++k) {
       if (!std::isfinite(rigid(k, joint)) || !std::isfinite(after(k, joint))) continue;
       const auto bin = static_cast<Eigen::Index>((motion.v(k, joint) / fastest + 1) / 2 * (bins - 1e-6));
@@ -43,7 +65,7 @@ void draw_worst(const Evidence& evidence, RobotDiagnosis& d) {
   for (std::size_t j = 0; j < by_error.size(); ++j) by_error[j] = j;
   std::ranges::sort(by_error, [&](std::size_t a, std::size_t b) {
     const auto size = [&](std::size_t j) {
-      return d.torque_driven ? d.joints[j].after / std::max(1e-9, d.joints[j].torque) : d.joints[j].after;
+      return d.torque_driven ? d.joints[j].nominal / std::max(1e-9, d.joints[j].torque) : d.joints[j].nominal;
     };
     return size(a) > size(b);
   });

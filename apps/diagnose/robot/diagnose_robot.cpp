@@ -152,6 +152,7 @@ RobotDiagnosis diagnose_robot(const Evidence& evidence, const Progress& progress
   for (const std::string& dropped : found.dropped) common.remarks.push_back({"", dropped});
   name_effects(evidence, found, d);
   name_alternatives(evidence, found, d);
+  name_invisible(evidence, found, d);
   compare_with_groups(evidence, found, d);
   share_errors(evidence, found, d);
   name_sign_faults(evidence, d);

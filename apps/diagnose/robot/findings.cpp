@@ -43,6 +43,19 @@ void name_links(const Evidence& evidence, const std::vector<Eigen::Index>& like_
   }
 }
 
+// Where every other joint of the group has a difference of its own, what the group has is what this joint has.
+bool stands_for_group(const Evidence& evidence, const TermSet& set, const Term& single, const Term& tied) {
+  return std::ranges::all_of(tied.joints, [&](int joint) {
+    if (joint == single.joints.front()) return true;
+    for (std::size_t t = 0; t < set.size(); ++t) {
+      const Term& term = evidence.terms[t];
+      if (set[t] != 0 && term.group == single_joint && term.property == single.property && term.joints.front() == joint)
+        return true;
+    }
+    return false;
+  });
+}
+
 }  // namespace
 
 double overall(const Evidence& evidence, const Eigen::VectorXd& rms) {
@@ -118,6 +131,7 @@ void compare_with_groups(const Evidence& evidence, const SearchResult& found, Ro
       const Term& tied = evidence.terms[t];
       if (tied.group < 0 || tied.property != single.property || tied.joints.size() < 2 || found.set[t] == 0) continue;
       if (std::ranges::find(tied.joints, single.joints.front()) == tied.joints.end()) continue;
+      if (stands_for_group(evidence, found.set, single, tied)) continue;
       TermSet set = found.set;
       set[s] = 1;
       const auto at = static_cast<Eigen::Index>(s);

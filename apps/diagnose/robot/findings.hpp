@@ -19,6 +19,9 @@ Eigen::VectorXd noise_by_joint(const Evidence& evidence, const RobotPhysics& phy
 void name_effects(const Evidence& evidence, const SearchResult& found, RobotDiagnosis& diagnosis);
 void name_alternatives(const Evidence& evidence, const SearchResult& found, RobotDiagnosis& diagnosis);
 
+/// Remarks of what no size of would show.
+void name_invisible(const Evidence& evidence, const SearchResult& found, RobotDiagnosis& diagnosis);
+
 /// Single joints against what their group has: named, or ruled out.
 void compare_with_groups(const Evidence& evidence, const SearchResult& found, RobotDiagnosis& diagnosis);
 

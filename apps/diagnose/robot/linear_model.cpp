@@ -130,7 +130,18 @@ Eigen::VectorXd pooled_squares(const LinearModel& model, const Eigen::VectorXd& 
 }
 
 double square_after(const Sums& sums, const Eigen::VectorXd& change) {
-  return sums.square + 2 * sums.slope.dot(change) + change.dot(sums.gram * change);
+  // Of some hundred terms few are there: the others cost nothing.
+  std::vector<Eigen::Index> there;
+  for (Eigen::Index t = 0; t < change.size(); ++t) {
+    if (change[t] != 0) there.push_back(t);
+  }
+  double sum = sums.square;
+  for (const Eigen::Index t : there) {
+    double row = 2 * sums.slope[t];
+    for (const Eigen::Index other : there) row += sums.gram(other, t) * change[other];
+    sum += change[t] * row;
+  }
+  return sum;
 }
 
 Eigen::VectorXd bounded_minimum(const Eigen::MatrixXd& q, const Eigen::VectorXd& c, const Eigen::VectorXd& low,

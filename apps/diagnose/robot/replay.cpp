@@ -67,6 +67,7 @@ Eigen::MatrixXd replay(const Robot& robot, const AugmentedModel& augmented, cons
   if (!r.model) throw surefoot::DiagnoseError("augmented.xml: MuJoCo cannot load it: " + complaint);
   mjModel* m = r.model.get();
   m->opt.disableflags |= mjDSBL_CONTACT;
+  if (robot.setup.ignore_contacts) m->opt.disableflags |= mjDSBL_LIMIT;  // as those, no part of the diagnosis
   r.data.reset(mj_makeData(m));
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const int id = mj_name2id(m, mjOBJ_JOINT, robot.joints[j].setup.name.c_str());

@@ -23,6 +23,10 @@ void place_joints(const RobotSetup& setup, Robot& robot) {
   for (const JointSetup& joint : setup.joints) {
     const auto found = std::ranges::find(robot.model.joints, joint.name, &ModelJoint::name);
     if (found == robot.model.joints.end()) {
+      if (mj_name2id(robot.model.model.get(), mjOBJ_JOINT, joint.name.c_str()) >= 0) {
+        throw DiagnoseError(setup.file + ", [joints]: " + in_quotes(joint.name) + " of " + robot.model.file +
+                            " is a ball or a free joint; only hinges and slides can be diagnosed: take its table out");
+      }
       throw DiagnoseError(setup.file + ", [joints]: " + robot.model.file + " has no joint " + in_quotes(joint.name) +
                           diagnose_program::suggestion(joint.name, names));
     }
@@ -98,6 +102,29 @@ void change_body(mjModel* m, const ModelJoint& joint, const JointPhysics& physic
   m->body_mass[b] = mass;
 }
 
+// Share of the rows in which the joint is at the end of its range or beyond.
+double share_at_stops(const ModelJoint& joint, const Eigen::Ref<const Eigen::VectorXd>& angle) {
+  if (!(joint.high > joint.low)) return 0;
+  return static_cast<double>((angle.array() <= joint.low || angle.array() >= joint.high).count()) /
+         static_cast<double>(angle.size());
+}
+
+void refuse_stops(const Robot& robot, const RobotRecording& recording) {
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    const RobotJoint& joint = robot.joints[j];
+    const double share = share_at_stops(joint.model, recording.angle.col(static_cast<Eigen::Index>(j)));
+    if (share <= contact_share) continue;
+    const std::string unit = joint.model.slides ? " m" : " rad";
+    throw DiagnoseError(
+        recording.name + ": in " + diagnose_program::percent(share) + " of the rows " + in_quotes(joint.setup.name) +
+        " is at a stop or beyond (" + robot.model.file + " has " + diagnose_program::rounded(joint.model.low) + " to " +
+        diagnose_program::rounded(joint.model.high) + unit +
+        "); stops are not diagnosed: mend the range, which MJCF takes for degrees unless it says <compiler "
+        "angle=\"radian\"/>, record away from the stop, or write contacts = \"ignore\" in " +
+        robot.setup.file);
+  }
+}
+
 }  // namespace
 
 bool changes_bodies(const JointPhysics& joint) {
@@ -162,6 +189,7 @@ std::vector<std::string> check_recording(const Robot& robot, const RobotRecordin
                         diagnose_program::rounded(range) + " rad; if these are degrees, write angle = { column = \"" +
                         joint.setup.angle.name + "\", unit = \"deg\" }");
   }
+  if (!robot.setup.ignore_contacts) refuse_stops(robot, recording);
   const DataPointer data(mj_makeData(m));
   const Eigen::Index rows = recording.time.size(), stride = std::max<Eigen::Index>(1, rows / contact_rows);
   Eigen::Index looked = 0, touching = 0;

@@ -24,6 +24,11 @@ struct JointDifference {
   bool differs = false;  // named; otherwise ruled out beyond the interval
 };
 
+/// What no size of would show in the recordings, such as the offset of an encoder on a vertical axis.
+struct InvisibleEffect {
+  std::string joint, effect, parameter;
+};
+
 /// Where a number of the result went.
 struct AugmentedEntry {
   std::string joint, effect, parameter, unit;
@@ -52,6 +57,7 @@ struct RobotDiagnosis {
   double step = 0;      // [s] of the simulation
   std::vector<JointError> joints;
   std::vector<JointDifference> differences;
+  std::vector<InvisibleEffect> invisible;
   std::vector<AugmentedEntry> augmented;
   std::vector<std::string> effect_columns;  // of shares
   Eigen::MatrixXd shares;                   // joint x effect: share of the error that goes with it

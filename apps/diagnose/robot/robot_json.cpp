@@ -54,6 +54,13 @@ Json differences_json(const RobotDiagnosis& d) {
   return list;
 }
 
+Json invisible_json(const RobotDiagnosis& d) {
+  Json list = Json::array();
+  for (const InvisibleEffect& one : d.invisible)
+    list.push_back({{"joint", one.joint}, {"effect", one.effect}, {"parameter", one.parameter}});
+  return list;
+}
+
 Json augmented_json(const RobotDiagnosis& d) {
   Json list = Json::array();
   for (const AugmentedEntry& entry : d.augmented) {
@@ -82,6 +89,7 @@ std::string robot_json(const RobotDiagnosis& d) {
                    {"step_s", d.step},
                    {"joints", joints_json(d)},
                    {"differences", differences_json(d)},
+                   {"invisible", invisible_json(d)},
                    {"augmented", augmented_json(d)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -35,7 +35,8 @@ void hold_last(Eigen::MatrixXd& commands, const std::string& file) {
 }
 
 // Readings that are missing lie on the line between their neighbours.
-void bridge_gaps(Eigen::MatrixXd& readings, const Eigen::VectorXd& t, const std::string& file) {
+void bridge_gaps(Eigen::MatrixXd& readings, const Eigen::VectorXd& t, const std::string& file,
+                 const RobotSetup& setup) {
   for (Eigen::Index j = 0; j < readings.cols(); ++j) {
     Eigen::Index last = -1;
     for (Eigen::Index k = 0; k < readings.rows(); ++k) {
@@ -47,7 +48,11 @@ void bridge_gaps(Eigen::MatrixXd& readings, const Eigen::VectorXd& t, const std:
       }
       last = k;
     }
-    if (last < 0) throw DiagnoseError(file + ": the column of joint number " + std::to_string(j + 1) + " is empty");
+    if (last < 0) {
+      const JointSetup& joint = setup.joints[static_cast<std::size_t>(j)];
+      throw DiagnoseError(file + ": the column " + in_quotes(joint.angle.name) + " is empty; log it, or list " +
+                          in_quotes(joint.name) + " under held if it did not move");
+    }
     for (Eigen::Index i = last + 1; i < readings.rows(); ++i) readings(i, j) = readings(last, j);
   }
 }
@@ -80,7 +85,7 @@ RobotRecording read_recording(const diagnose_program::Csv& csv, const RobotSetup
     fill(recording.torque, j, joints, csv, joint.torque, why, rows);
     fill(recording.speed, j, joints, csv, joint.speed, why, rows);
   }
-  bridge_gaps(recording.angle, recording.time, csv.file);
+  bridge_gaps(recording.angle, recording.time, csv.file, setup);
   if (setup.drive == DriveKind::position) hold_last(recording.goal, csv.file);
   if (setup.drive == DriveKind::torque) hold_last(recording.torque, csv.file);
   return recording;

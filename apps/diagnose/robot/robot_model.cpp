@@ -50,6 +50,29 @@ std::string what_ends_it(const std::function<void()>& load) {
   return "its reader fails on this file (" + reason + "); look for numbers and elements that are damaged";
 }
 
+// What to do about a file that MuJoCo's reader refuses: its own words, without those of its XML parser.
+std::string refusal(const std::string& complaint) {
+  std::smatch line;
+  if (complaint.find("XML parse error") != std::string::npos &&
+      std::regex_search(complaint, line, std::regex("[Ll]ine number=([0-9]+)"))) {
+    return "the XML breaks off in line " + line[1].str() + ": close the element or the quotes there";
+  }
+  const bool of_mesh = std::regex_search(complaint, std::regex("mesh|\\.stl|\\.obj|inertia", std::regex::icase));
+  return "MuJoCo cannot load it: " + complaint +
+         (of_mesh ? "; mend the file, or give each link an inertial element if it is a mesh that is missing"
+                  : "; mend the file there");
+}
+
+void refuse_other_files(const RobotModel& robot) {
+  const std::size_t begin = robot.text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  if (begin == std::string::npos)
+    throw DiagnoseError(robot.file + ": the file is empty; a robot in MJCF or URDF is wanted");
+  const bool known = robot.text.find("<mujoco") != std::string::npos || robot.text.find("<robot") != std::string::npos;
+  if (robot.text[begin] == '<' && known) return;
+  throw DiagnoseError(robot.file +
+                      ": neither MJCF (<mujoco>) nor URDF (<robot>); give the robot's model first, then the log");
+}
+
 std::string name_of(const mjModel* m, int type, int id) {
   const char* name = mj_id2name(m, type, id);
   return name != nullptr ? name : "";
@@ -158,6 +181,7 @@ RobotModel load_robot(const std::filesystem::path& file) {
   robot.file = file.filename().string();
   const surefoot::Bytes bytes = surefoot::read_file(file);
   robot.text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  refuse_other_files(robot);
   const bool urdf = is_urdf(robot.text);
   if (urdf) robot.text = without_elements(robot.text, {"visual", "collision"});
   std::string complaint, second;
@@ -175,8 +199,7 @@ RobotModel load_robot(const std::filesystem::path& file) {
   try_text(with_possible_inertias(without_meshes(robot.text)),
            "meshes were left out and inertias that cannot be made possible");
   if (!robot.model) {
-    throw DiagnoseError(robot.file + ": MuJoCo cannot load it: " + complaint +
-                        "; mend the file, or give each link an inertial element if it is a mesh that is missing");
+    throw DiagnoseError(robot.file + ": " + refusal(complaint));
   }
   const mjModel* m = robot.model.get();
   robot.name = m->names[0] != 0 ? m->names : robot.file;

@@ -154,6 +154,12 @@ std::string charts_part(const RobotDiagnosis& d) {
     panel.series.push_back({d.torque_driven ? "rigid bodies" : "file", "before", one.nominal});
     panel.series.push_back({"after", "after", one.after});
     chart.panels.push_back(panel);
+    if (one.measured.size() > 0) {
+      chart.panels.push_back(
+          {"error [rad]",
+           110,
+           {{"file", "before", one.nominal - one.measured}, {"after", "after", one.after - one.measured}}});
+    }
     figure(one.joint + (d.torque_driven ? ": torque left over time" : ": angle over time"), chart);
   }
   return html + "</div>\n";

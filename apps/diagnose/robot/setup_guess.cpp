@@ -163,6 +163,17 @@ void guess_groups(const RobotModel& model, SetupGuess& guess) {
 }
 
 void guess_drive(const diagnose_program::Csv& csv, SetupGuess& guess) {
+  const auto has_torque = [](const JointSetup& joint) { return !joint.torque.name.empty(); };
+  std::vector<std::string> without_goal;
+  for (const JointSetup& joint : guess.setup.joints) {
+    if (joint.goal.name.empty()) without_goal.push_back(joint.name);
+  }
+  if (without_goal.size() < guess.setup.joints.size() && !without_goal.empty() &&
+      std::ranges::none_of(guess.setup.joints, has_torque)) {
+    throw surefoot::DiagnoseError(csv.file + ": no column of a goal for " + diagnose_program::listed(without_goal) +
+                                  "; add it, named like goal_" + without_goal.front() +
+                                  "_rad, or leave out the angle of a joint that did not move");
+  }
   const bool goals =
       std::ranges::all_of(guess.setup.joints, [](const JointSetup& joint) { return !joint.goal.name.empty(); });
   guess.setup.drive = goals ? DriveKind::position : DriveKind::torque;
@@ -190,6 +201,46 @@ void guess_drive(const diagnose_program::Csv& csv, SetupGuess& guess) {
   guess.remarks.push_back(unknown
                               ? "SET kp and kd of the drives: neither the model nor the log states them"
                               : "kp and kd are those of the model's position actuators or of the log's first lines");
+}
+
+struct MatchedColumns {
+  std::vector<JointSetup> joints;  // of the model, in its order
+  std::vector<std::string> unused, degrees, not_radians;
+};
+
+MatchedColumns match_columns(const RobotModel& model, const diagnose_program::Csv& csv, const std::string& time) {
+  MatchedColumns result;
+  result.joints.resize(model.joints.size());
+  std::vector<ColumnOf*> unitless;
+  bool any_degrees = false;
+  for (const CsvColumn& column : csv.columns) {
+    if (column.name == time) continue;
+    const Match matched = match(model, column.name);
+    ColumnOf* target = matched.found ? &column_of(result.joints[matched.joint], matched.kind) : nullptr;
+    if (target == nullptr || !target->name.empty()) {
+      result.unused.push_back(column.name);
+      continue;
+    }
+    target->name = column.name;
+    const bool angle_like = matched.kind == Kind::angle || matched.kind == Kind::goal;
+    const bool states_unit =
+        column.name.find("deg") != std::string::npos || column.name.find("rad") != std::string::npos;
+    if (!angle_like || model.joints[matched.joint].slides) continue;
+    const bool beyond = looks_like_degrees(column, model.joints[matched.joint]);
+    if (beyond && states_unit) {
+      if (column.name.find("deg") == std::string::npos) result.not_radians.push_back(column.name);
+    } else if (!states_unit) {
+      unitless.push_back(target);
+      any_degrees = any_degrees || beyond;
+    }
+  }
+  // A log has one unit for its angles: what goes far beyond the range of one joint tells it for all.
+  for (ColumnOf* column : unitless) {
+    if (!any_degrees) break;
+    column->factor = std::numbers::pi / 180;
+    result.degrees.push_back(column->name);
+  }
+  return result;
 }
 
 }  // namespace
@@ -231,24 +282,8 @@ SetupGuess guess_setup(const RobotModel& model, const diagnose_program::Csv& csv
   guess.remarks.push_back("guessed from " + model.file + " and " + csv.file +
                           ": look through it before you rely on it");
   guess_time(csv, guess);
-  std::vector<JointSetup> joints(model.joints.size());
-  std::vector<std::string> unused, degrees;
-  for (const CsvColumn& column : csv.columns) {
-    if (column.name == guess.setup.time) continue;
-    const Match matched = match(model, column.name);
-    ColumnOf* target = matched.found ? &column_of(joints[matched.joint], matched.kind) : nullptr;
-    if (target == nullptr || !target->name.empty()) {
-      unused.push_back(column.name);
-      continue;
-    }
-    target->name = column.name;
-    const bool angle_like = matched.kind == Kind::angle || matched.kind == Kind::goal;
-    if (angle_like && column.name.find("deg") == std::string::npos && column.name.find("rad") == std::string::npos &&
-        looks_like_degrees(column, model.joints[matched.joint])) {
-      target->factor = std::numbers::pi / 180;
-      degrees.push_back(column.name);
-    }
-  }
+  MatchedColumns matched = match_columns(model, csv, guess.setup.time);
+  std::vector<JointSetup>& joints = matched.joints;
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const ModelJoint& joint = model.joints[j];
     joints[j].name = joint.name;
@@ -267,6 +302,12 @@ SetupGuess guess_setup(const RobotModel& model, const diagnose_program::Csv& csv
                                   "_rad");
   }
   guess_drive(csv, guess);
+  for (int j = 0; j < model.model->njnt; ++j) {
+    const char* name = mj_id2name(model.model.get(), mjOBJ_JOINT, j);
+    if (model.model->jnt_type[j] == mjJNT_BALL)
+      guess.remarks.push_back("the ball joint " + std::string(name != nullptr ? name : "without a name") +
+                              " cannot be diagnosed: only hinges and slides can");
+  }
   const bool torque = guess.setup.drive == DriveKind::torque;
   std::erase_if(guess.setup.joints, [&](const JointSetup& joint) {
     if (!torque || !joint.torque.name.empty()) return false;
@@ -284,11 +325,18 @@ SetupGuess guess_setup(const RobotModel& model, const diagnose_program::Csv& csv
     guess.remarks.push_back("the model's base floats; base = \"held\" says that it was held in the recording");
   if (!guess.setup.held.empty())
     guess.remarks.push_back("joints without columns are listed under held: they must not have moved");
-  if (!unused.empty())
-    guess.remarks.push_back("columns that belong to no joint and are not used: " + diagnose_program::listed(unused));
-  guess.remarks.push_back(degrees.empty() ? "units are those that the names of columns end in, else rad, N m and s"
-                                          : "taken for degrees, since they go far beyond the joint's range: " +
-                                                diagnose_program::listed(degrees));
+  if (!matched.unused.empty())
+    guess.remarks.push_back("columns that belong to no joint and are not used: " +
+                            diagnose_program::listed(matched.unused));
+  guess.remarks.push_back(matched.degrees.empty()
+                              ? "units are those that the names of columns end in, else rad, N m and s"
+                              : "taken for degrees, since some go far beyond their joint's range: " +
+                                    diagnose_program::listed(matched.degrees));
+  if (!matched.not_radians.empty()) {
+    guess.remarks.push_back("SET the unit, as in angle = { column = \"" + matched.not_radians.front() +
+                            "\", unit = \"deg\" }: these are named radians but go far beyond their joint's range: " +
+                            diagnose_program::listed(matched.not_radians));
+  }
   return guess;
 }
 

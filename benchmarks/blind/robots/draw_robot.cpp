@@ -142,7 +142,7 @@ void hide(RobotCase& robot, const Hidden& what, plants::Random& random) {
 
 }  // namespace
 
-RobotCase draw_robot(plants::Random& random, const std::string& family, bool none) {
+RobotCase draw_robot(plants::Random& random, const std::string& family, std::optional<int> faults) {
   RobotCase robot;
   robot.family = family;
   robot.truth = nlohmann::ordered_json::array();
@@ -153,20 +153,21 @@ RobotCase draw_robot(plants::Random& random, const std::string& family, bool non
     robot.torque_driven = random.chance(0.5);
   }
   size_drives(robot, random);
-  if (none) return robot;
-  if (random.chance(0.08)) {
+  if (faults == 0) return robot;
+  if (!faults && random.chance(0.08)) {
     const std::size_t a = random.index(robot.joints.size() - 1);
     robot.swapped.emplace_back(a, a + 1);
     robot.truth.push_back(
         {{"effect", "columns_swapped"}, {"place", robot.joints[a].name}, {"parameter", ""}, {"value", 0}});
     return robot;
   }
-  const double count = random.uniform(0, 1);
+  const double drawn = random.uniform(0, 1);
+  const int count = faults.value_or(drawn < 0.6 ? 1 : drawn < 0.85 ? 2 : 3);
   std::vector<const Hidden*> left;
   for (const Hidden& what : catalogue()) {
     if (robot.torque_driven ? what.torque : what.position) left.push_back(&what);
   }
-  for (int i = 0; i < (count < 0.6 ? 1 : count < 0.85 ? 2 : 3); ++i) {
+  for (int i = 0; i < count; ++i) {
     const std::size_t chosen = random.index(left.size());
     hide(robot, *left[chosen], random);
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(chosen));

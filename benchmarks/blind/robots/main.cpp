@@ -10,8 +10,9 @@
 namespace {
 
 constexpr const char* usage =
-    "usage: concealed_robots OUT CASES SEED [FAMILY]\n"
+    "usage: concealed_robots OUT CASES SEED [FAMILY [FAULTS]]\n"
     "writes OUT/cases/case_0001/{robot.xml,robot.toml,rec_1.csv,...} and OUT/truth/case_0001.json\n"
+    "FAULTS: hidden in each; without it none in a fifth, in others one to three, or swapped columns\n"
     "FAMILY: arm2 to arm7, or legs3, legs6, ... legs24; without it arm2, arm6, arm7 and legs12 take turns\n";
 constexpr int recordings = 3;
 
@@ -23,19 +24,21 @@ void write(const std::filesystem::path& file, const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4 && argc != 5) {
+  if (argc < 4 || argc > 6) {
     std::fputs(usage, stderr);
     return 2;
   }
   try {
     const std::filesystem::path out = argv[1];
     const std::vector<std::string> families =
-        argc == 5 ? std::vector<std::string>{argv[4]} : std::vector<std::string>{"arm2", "arm6", "arm7", "legs12"};
+        argc > 4 ? std::vector<std::string>{argv[4]} : std::vector<std::string>{"arm2", "arm6", "arm7", "legs12"};
     for (unsigned long i = 1; i <= std::stoul(argv[2]); ++i) {
       plants::Random random(1000003 * std::stoull(argv[3]) + i);
       const std::string family = families[i % families.size()];
-      const bool none = random.chance(0.2);
-      const auto robot = blind_robots::draw_robot(random, family, none);
+      std::optional<int> faults;
+      if (random.chance(0.2)) faults = 0;
+      if (argc == 6) faults = std::stoi(argv[5]);
+      const auto robot = blind_robots::draw_robot(random, family, faults);
       char name[20];
       std::snprintf(name, sizeof name, "case_%04lu", i);
       const auto folder = out / "cases" / name;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,8 +37,8 @@ struct RobotCase {
 
 inline constexpr double file_armature = 0.01;  // [kg m^2], which the model states and the robot has
 
-/// Everything follows from the generator; `none`: nothing is hidden.
-RobotCase draw_robot(plants::Random& random, const std::string& family, bool none);
+/// Everything follows from the generator. `faults`: so many; without a number one to three, or swapped columns.
+RobotCase draw_robot(plants::Random& random, const std::string& family, std::optional<int> faults);
 
 /// As MJCF; `real`: with masses and frictions that the model leaves out.
 std::string robot_xml(const RobotCase& robot, bool real);

@@ -23,7 +23,7 @@ bool same_place(const std::string& said, const std::string& truth) {
 }
 
 struct Match {
-  bool found = false, tied = false;
+  bool found = false, tied = false, invisible = false;  // declared to show at no size
   double error = NAN;  // of the parameter, relative
   std::size_t used = 0;
 };
@@ -54,6 +54,8 @@ Match match(const json& truth, const json& diagnosis, std::vector<char>& used) {
     for (const json& one : other["effects"])
       result.tied = result.tied || (one["name"] == effect && same_place(one["attached_to"], place));
   }
+  for (const json& one : diagnosis["robot"].value("invisible", json::array()))
+    result.invisible = result.invisible || (!result.tied && one["effect"] == effect && one["joint"] == place);
   return result;
 }
 
@@ -67,8 +69,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   const std::filesystem::path cases = argv[1], results = argv[2];
-  std::size_t hidden = 0, found = 0, tied = 0, none = 0, false_alarms = 0, extra = 0, complete = 0, robots = 0,
-              contradicted = 0, replays = 0, replayed = 0;
+  std::size_t hidden = 0, found = 0, tied = 0, invisible = 0, none = 0, false_alarms = 0, extra = 0, complete = 0,
+              robots = 0, contradicted = 0, replays = 0, replayed = 0;
   std::vector<double> errors;
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(cases / "truth")) files.push_back(entry.path());
@@ -89,14 +91,16 @@ int main(int argc, char** argv) {
       ++hidden;
       found += result.found ? 1 : 0;
       tied += result.tied ? 1 : 0;
-      all = all && (result.found || result.tied);
+      invisible += result.invisible ? 1 : 0;
+      all = all && (result.found || result.tied || result.invisible);
       if (std::isfinite(result.error)) errors.push_back(result.error);
       char text[200];
       std::snprintf(text, sizeof text, " %s@%s=%.3g %s(%.0f %%)", std::string(one["effect"]).c_str(),
                     std::string(one["place"]).c_str(), double(one["value"]),
-                    result.found  ? "found"
-                    : result.tied ? "tied"
-                                  : "MISSED",
+                    result.found       ? "found"
+                    : result.tied      ? "tied"
+                    : result.invisible ? "invisible"
+                                       : "MISSED",
                     100 * result.error);
       line += text;
     }
@@ -128,10 +132,11 @@ int main(int argc, char** argv) {
   }
   std::sort(errors.begin(), errors.end());
   std::printf(
-      "robots %zu; hidden %zu: found %zu, in a stated tie %zu; without fault and without extras %zu of %zu; extras "
+      "robots %zu; hidden %zu: found %zu, in a stated tie %zu, declared invisible %zu; without fault and without "
+      "extras %zu of %zu; extras "
       "%zu; "
       "false alarms %zu of %zu; verdicts against the noise floor %zu; parameters off by %.1f %% in the median; "
       "replayed to the stated error %zu of %zu\n",
-      robots, hidden, found, tied, complete, robots - none, extra, false_alarms, none, contradicted,
+      robots, hidden, found, tied, invisible, complete, robots - none, extra, false_alarms, none, contradicted,
       errors.empty() ? NAN : 100 * errors[errors.size() / 2], replayed, replays);
 }
