@@ -1,4 +1,5 @@
 // record_legs: stands for the real pair of legs, on its stand, and for the computer that logs it.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>

@@ -126,21 +126,6 @@ TEST_CASE("a torque that friction of both joints can just hold moves nothing, a 
   }
 }
 
-TEST_CASE("holding forces: none beyond its limit, nothing that is held moves, what moves is opposed by the limit") {
-  Eigen::MatrixXd responses(2, 2);
-  responses << 2, -1, -1, 3;
-  const Eigen::Vector2d limits(1, 0.5);
-  for (const Eigen::Vector2d& rates : {Eigen::Vector2d(1, 0.2), Eigen::Vector2d(4, 0), Eigen::Vector2d(-6, 9)}) {
-    const Eigen::VectorXd forces = holding_forces(responses, rates, limits);
-    const Eigen::VectorXd left = rates + responses * forces;
-    for (Eigen::Index i = 0; i < 2; ++i) {
-      CHECK(std::abs(forces[i]) <= limits[i]);
-      if (std::abs(forces[i]) < limits[i]) CHECK(std::abs(left[i]) < 1e-9);
-      if (std::abs(forces[i]) == limits[i]) CHECK(left[i] * forces[i] <= 1e-9);
-    }
-  }
-}
-
 TEST_CASE("the force behind the rates of coupled joints is that of the mass matrix") {
   const Arm arm;
   const Eigen::VectorXd p = Eigen::VectorXd::Constant(1, 1.5);

@@ -10,40 +10,46 @@
 
 #include "surefoot/diagnose/simulation/input_signal.hpp"
 #include "surefoot/diagnose/simulation/rates.hpp"
+#include "surefoot/optimize/coupled_dry_friction.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
 inline bool rests(const EffectSlot& slot, double velocity) { return !(std::abs(velocity) > 1e-12 * slot.size); }
 
-/// The same for velocities that rest and are coupled by the mass matrix: what holds one of them pushes the others. `f`
-/// are the rates without dry friction, `limit_at` gives how much of it there can be at a velocity.
+/// Decides modes of velocities that rest and are coupled by the mass matrix: what holds one of them pushes the others.
+/// `f` are the rates without dry friction, `limit_at` gives how much of it there can be at a velocity.
 template <Simulator S, class LimitAt>
 void decide_together(AugmentedSimulator<S>& m, const Point<S>& at, typename S::State f,
                      const ForceResponse<S>& response, LimitAt&& limit_at, const typename S::Input& u, double t,
                      double h, std::span<Mode> modes) {
   const auto& dry = m.slots.dry;
-  const auto model = copied(f);
+  const auto without = copied(f);
   std::vector<int> resting;
   for (std::size_t i = 0; i < dry.size(); ++i) {
     if (number_of_pushed(m.structure, dry[i].at) < 0) continue;
     if (modes[i] != Mode::stuck) {
-      push(m, response, dry[i].at, -static_cast<double>(modes[i]) * level(m, dry[i], at.x, model, response, u, t, h),
+      push(m, response, dry[i].at, -static_cast<double>(modes[i]) * level(m, dry[i], at.x, without, response, u, t, h),
            f);
     } else if (std::find(resting.begin(), resting.end(), dry[i].at) == resting.end()) {
       resting.push_back(dry[i].at);
     }
   }
+  if (resting.empty()) return;
   const auto n = static_cast<Eigen::Index>(resting.size());
   Eigen::VectorXd rate(n), limit(n);
   for (Eigen::Index k = 0; k < n; ++k) {
     rate[k] = f[resting[static_cast<std::size_t>(k)]];
     limit[k] = limit_at(resting[static_cast<std::size_t>(k)]);
   }
-  const Eigen::VectorXd force = holding_forces(responses_among(m, response, resting), rate, limit);
+  const Eigen::MatrixXd mass = surefoot::detail::invert_symmetric(responses_among(m, response, resting));
+  CoupledDryFriction work;
+  Eigen::VectorXd next;  // the rates that friction leaves: 0 where it holds
+  solve_coupled_dry_friction(mass, surefoot::detail::product(mass, rate), limit, work, next);
   for (std::size_t i = 0; i < dry.size(); ++i) {
     for (Eigen::Index k = 0; k < n; ++k) {
-      if (dry[i].at != resting[static_cast<std::size_t>(k)] || std::abs(force[k]) < limit[k]) continue;
-      modes[i] = force[k] < 0 ? Mode::forth : Mode::back;
+      if (dry[i].at != resting[static_cast<std::size_t>(k)] || next[k] == 0) continue;
+      modes[i] = next[k] > 0 ? Mode::forth : Mode::back;
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "surefoot/diagnose/simulation/augmented_simulator.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -16,15 +17,6 @@ struct ForceResponse {
   typename S::State effort;                  // by state: of its rate alone, if nothing else holds it
   std::vector<typename S::State> by_pushed;  // by state of structure.pushed: rates per unit of force on it
 };
-
-/// Solves a x = b, by elimination with pivots, for the few velocities of a machine. NaN where a is singular.
-Eigen::VectorXd solved(Eigen::MatrixXd a, Eigen::VectorXd b);
-
-/// Forces of dry friction, each at most its limit, that hold as many of the resting velocities as they can: the linear
-/// complementarity problem rates + responses * forces = 0, or the force is at its limit and opposes the rate, by
-/// projected Gauss-Seidel iterations (D. E. Stewart, J. C. Trinkle, Int. J. Numer. Meth. Eng. 39, 1996).
-Eigen::VectorXd holding_forces(const Eigen::MatrixXd& responses, const Eigen::VectorXd& rates,
-                               const Eigen::VectorXd& limits);
 
 /// Number of a state among those that forces push by way of the mass matrix; -1 for all others.
 inline int number_of_pushed(const SimulatorStructure& structure, int state) {
@@ -67,7 +59,8 @@ void push(const AugmentedSimulator<S>& m, const ForceResponse<S>& response, int 
   for (Eigen::Index i = 0; i < rate.size(); ++i) rate[i] += force * per_force[i];
 }
 
-/// What each unit of force on one of these velocities, all pushed, adds to the rates of the others.
+/// What each unit of force on one of these velocities, all pushed, adds to the rates of all of them: symmetric, since
+/// it is the inverse of a mass matrix.
 template <Simulator S>
 Eigen::MatrixXd responses_among(const AugmentedSimulator<S>& m, const ForceResponse<S>& response,
                                 const std::vector<int>& velocities) {
@@ -89,7 +82,7 @@ Eigen::VectorXd forces_for(const AugmentedSimulator<S>& m, const ForceResponse<S
                            const std::vector<int>& velocities, const typename S::State& rates) {
   Eigen::VectorXd wanted(static_cast<Eigen::Index>(velocities.size()));
   for (Eigen::Index i = 0; i < wanted.size(); ++i) wanted[i] = rates[velocities[static_cast<std::size_t>(i)]];
-  return solved(responses_among(m, response, velocities), std::move(wanted));
+  return surefoot::detail::solve_symmetric(responses_among(m, response, velocities), wanted);
 }
 
 /// The generalized force on a state that goes with these rates.
@@ -119,7 +112,3 @@ void hold(const AugmentedSimulator<S>& m, const ForceResponse<S>& response, cons
 }
 
 }  // namespace surefoot::diagnosis
-
-#ifndef SUREFOOT_COMPILED
-#include "surefoot/diagnose/simulation/generalized_forces.ipp"
-#endif

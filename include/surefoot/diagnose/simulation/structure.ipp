@@ -160,10 +160,10 @@ SUREFOOT_ONCE std::vector<int> pushed_states(const SimulatorAnswers& answers, co
   return pushed;
 }
 
-/// By state: some input changes its rate and that of another velocity.
-SUREFOOT_ONCE std::vector<bool> driven_with_others(const SimulatorAnswers& answers, const std::vector<bool>& velocity,
-                                                   const Eigen::VectorXd& x, const Eigen::VectorXd& u) {
-  std::vector<bool> result(velocity.size(), false);
+/// Velocities that some input moves together with another one.
+SUREFOOT_ONCE std::vector<int> moved_together(const SimulatorAnswers& answers, const std::vector<bool>& velocity,
+                                              const Eigen::VectorXd& x, const Eigen::VectorXd& u) {
+  std::vector<bool> together(velocity.size(), false);
   const Eigen::VectorXd rate = answers.rates(x, u, nullptr);
   for (Eigen::Index k = 0; k < u.size(); ++k) {
     Eigen::VectorXd moved = u;
@@ -174,7 +174,11 @@ SUREFOOT_ONCE std::vector<bool> driven_with_others(const SimulatorAnswers& answe
       const auto row = static_cast<Eigen::Index>(i);
       if (velocity[i] && !nearly_equal(rate[row], changed[row])) driven.push_back(i);
     }
-    for (const std::size_t i : driven) result[i] = result[i] || driven.size() > 1;
+    for (const std::size_t i : driven) together[i] = together[i] || driven.size() > 1;
+  }
+  std::vector<int> result;
+  for (std::size_t i = 0; i < together.size(); ++i) {
+    if (together[i]) result.push_back(static_cast<int>(i));
   }
   return result;
 }
@@ -214,9 +218,8 @@ SUREFOOT_ONCE SimulatorStructure find_structure(const SimulatorAnswers& answers,
   const Eigen::VectorXd first = example.inputs.cols() > 0 && m > 0
                                     ? surefoot::detail::column_of(example.inputs, 0)
                                     : Eigen::VectorXd::Zero(static_cast<Eigen::Index>(m));
-  const std::vector<bool> together = driven_with_others(answers, structure.velocity, example.initial, first);
-  for (std::size_t i = 0; i < n && structure.pushed.empty(); ++i) {
-    if (together[i]) structure.moved_together.push_back(static_cast<int>(i));
+  if (structure.pushed.empty()) {
+    structure.moved_together = moved_together(answers, structure.velocity, example.initial, first);
   }
   return structure;
 }

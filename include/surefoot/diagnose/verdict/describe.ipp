@@ -100,15 +100,11 @@ SUREFOOT_ONCE std::string rejection_sentence() {
 }
 
 SUREFOOT_ONCE std::string moved_together_sentence(const SimulatorInfo& info, const std::vector<int>& velocities) {
-  std::string names;
-  for (std::size_t i = 0; i < velocities.size(); ++i) {
-    if (i > 0) names += i + 1 < velocities.size() ? ", " : " and ";
-    names += info.states[static_cast<std::size_t>(velocities[i])].name;
-  }
-  return "one input moves " + names +
-         " at once: if a force on one of them does, too, say so in the model (a model file "
-         "by force = \"NAME\" and NAME in the rates, C++ by response()); friction at one then moves the others, as it "
-         "does not now";
+  std::vector<std::string> names;
+  for (const int velocity : velocities) names.push_back(info.states[static_cast<std::size_t>(velocity)].name);
+  return "one input moves " + in_list(names) +
+         " at once: if a force on one of them does, too, say so in the model (a model file by force = \"NAME\" and "
+         "NAME in the rates, C++ by response()); friction at one then moves the others as well";
 }
 
 SUREFOOT_ONCE std::string not_held_out_sentence() {
