@@ -81,7 +81,7 @@ TEST_CASE("a signal that is a multiple of an input is left to the input, and inp
 TEST_CASE("what really is missing ranks high, and starts near its truth") {
   const Bench b = bench({{"constant_force", "omega", {}, {}, {0.1}}});
   const auto candidates = attachments(b.bound, all_effects(), distinct_inputs(b.bound, b.base, {0, 1}, b.runs));
-  const auto proposals = propose(b.bound, b.base, b.problem, candidates, serially());
+  const auto proposals = propose(b.bound, b.base, b.problem, candidates, 0, serially());
   REQUIRE(proposals.size() > 20);
   const auto found = std::find_if(proposals.begin(), proposals.end(), [](const Proposal& proposal) {
     return proposal.effect.label() == "constant_force at omega";
@@ -100,15 +100,39 @@ TEST_CASE("what really is missing ranks high, and starts near its truth") {
 TEST_CASE("a late actuator inside a control loop is proposed where it is") {
   const Bench b = bench({{"input_delay", "duty", {}, {}, {0.06}}});
   const auto candidates = attachments(b.bound, all_effects(), distinct_inputs(b.bound, b.base, {0, 1}, b.runs));
-  const auto proposals = propose(b.bound, b.base, b.problem, candidates, serially());
+  const auto proposals = propose(b.bound, b.base, b.problem, candidates, 0, serially());
   CHECK(proposals.front().effect.label() == "input_delay at duty");
+}
+
+TEST_CASE("a reading that was rounded before it drifted is rounded in front of the drift") {
+  constexpr double step = 0.05;
+  const NamedEffect drift{"sensor_drift", "theta_rad", {}, {}, {0.3}};
+  Bench b = bench({{"quantization", "theta_rad", {}, {}, {step}}, drift});
+  b.base.effects.push_back(attach(b.bound.info, drift, all_effects()));
+  b.base.values.emplace_back(Eigen::VectorXd::Constant(1, drift.values[0]));
+  auto candidates = attachments(b.bound, all_effects(), {true, true, true});
+  std::erase_if(candidates,
+                [](const AttachedEffect& one) { return !one.effect->form.empty() || one.effect->name != "quantization"; });
+  const auto proposals = propose(b.bound, b.base, b.problem, candidates, 0, serially());
+  REQUIRE_FALSE(proposals.empty());
+  CHECK(proposals[0].before == 0);
+  CHECK(proposals[0].start[0] == doctest::Approx(step).epsilon(0.01));
+  CHECK(proposals[0].gain > 0.9);
+  const auto behind = propose(b.bound, b.base, b.problem, candidates, 1, serially());  // the drift is the model's own
+  CHECK(behind[0].before == 1);
+  CHECK(behind[0].gain < 0.5);
+
+  const Hypothesis both = with_effect(b.base, proposals[0].effect, proposals[0].start, proposals[0].before);
+  CHECK(both.effects[0].effect->name == "quantization");
+  CHECK(both.effects[1].effect->name == "sensor_drift");
+  CHECK(both.values[1][0] == drift.values[0]);
 }
 
 TEST_CASE("beside another effect, one without a strength counts as it was tried") {
   const Bench b = bench({{"rate_limit", "duty", {}, {}, {2}}});
   auto candidates = attachments(b.bound, all_effects(), distinct_inputs(b.bound, b.base, {0, 1}, b.runs));
   std::erase_if(candidates, [](const AttachedEffect& one) { return one.label() != "rate_limit at duty"; });
-  const auto proposals = propose(b.bound, b.base, b.problem, candidates, serially());
+  const auto proposals = propose(b.bound, b.base, b.problem, candidates, 0, serially());
   REQUIRE(proposals.size() == 2);  // and from rest
   for (const Proposal& one : proposals) {
     CHECK(one.least_share[0] == 1);
@@ -119,7 +143,7 @@ TEST_CASE("beside another effect, one without a strength counts as it was tried"
 TEST_CASE("where nothing is missing no proposal explains much") {
   const Bench b = bench({});
   const auto candidates = attachments(b.bound, all_effects(), distinct_inputs(b.bound, b.base, {0, 1}, b.runs));
-  for (const Proposal& proposal : propose(b.bound, b.base, b.problem, candidates, serially())) {
+  for (const Proposal& proposal : propose(b.bound, b.base, b.problem, candidates, 0, serially())) {
     INFO(proposal.effect.label());
     CHECK(proposal.gain < 0.1);
   }
@@ -129,8 +153,8 @@ TEST_CASE("the signature of an effect grows with its strength, and one that does
   const Bench b = bench({});
   const OpenResiduals open = open_residuals(b.bound, b.base, b.problem, serially());
   const AttachedEffect force = attachments(b.bound, {effects::constant_force()}, {true, true, true}).front();
-  const Eigen::MatrixXd one = signatures(b.bound, b.base, b.problem, open.residuals, force, Vec<1>(0.01));
-  const Eigen::MatrixXd two = signatures(b.bound, b.base, b.problem, open.residuals, force, Vec<1>(0.02));
+  const Eigen::MatrixXd one = signatures(b.bound, b.base, b.problem, open.residuals, force, Vec<1>(0.01), 0);
+  const Eigen::MatrixXd two = signatures(b.bound, b.base, b.problem, open.residuals, force, Vec<1>(0.02), 0);
   REQUIRE(one.cols() == 1);
   CHECK(two.norm() == doctest::Approx(2 * one.norm()).epsilon(0.05));
   const Proposal nothing = predict_gain(b.bound, open, force, Vec<1>(0.01), 0 * one, {});
@@ -144,7 +168,7 @@ TEST_CASE(
   const Bench b = bench({{"constant_force", "omega", {}, {}, {0.1}}});
   const OpenResiduals open = open_residuals(b.bound, b.base, b.problem, serially());
   const AttachedEffect force = attachments(b.bound, {effects::constant_force()}, {true, true, true}).front();
-  const Eigen::MatrixXd signature = signatures(b.bound, b.base, b.problem, open.residuals, force, Vec<1>(0.01));
+  const Eigen::MatrixXd signature = signatures(b.bound, b.base, b.problem, open.residuals, force, Vec<1>(0.01), 0);
   const Proposal one = predict_gain(b.bound, open, force, Vec<1>(0.01), signature, {});
   REQUIRE(one.beyond.cols() == 1);
   CHECK((one.beyond * std::sqrt(open.energy) - open.beyond_parameters(signature)).norm() < 1e-9 * signature.norm());

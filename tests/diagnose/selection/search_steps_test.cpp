@@ -250,5 +250,22 @@ TEST_CASE("what an effect may be confused with is tried in its place, beside the
   CHECK(same.size() == 1);
 }
 
+TEST_CASE("an effect that is not worth its parameters once all has settled is taken away") {
+  const TankBench bench({rate_in_tank});
+  const Search search = bench.search();
+  Selection selection;
+  selection.nominal = bench.with({});
+  selection.chosen = bench.with({"constant_rate", "sensor_bias"});
+  const auto fewer = weigh_effects(search, selection);
+  REQUIRE(fewer);
+  CHECK(names_in(*fewer) == "constant_rate");
+
+  Selection worth;
+  worth.nominal = bench.with({});
+  worth.chosen = *fewer;
+  CHECK_FALSE(weigh_effects(search, worth));
+  CHECK(worth.evidence.size() == 1);
+}
+
 }  // namespace
 }  // namespace surefoot::diagnosis

@@ -43,8 +43,9 @@ SUREFOOT_ONCE Fit fit_child(const BoundSimulator& bound, const Hypothesis& paren
   const auto attempt = [&](const std::vector<Eigen::VectorXd>& starts, bool settle = false) {
     Hypothesis child = parent;
     for (std::size_t k = 0; k < starts.size(); ++k) {
-      child.effects.push_back(additions[k].effect);
-      child.values.push_back(starts[k]);
+      std::size_t before = additions[k].before;  // where the parent has it
+      for (std::size_t j = 0; j < k; ++j) before += additions[j].before <= additions[k].before ? 1 : 0;
+      child = with_effect(std::move(child), additions[k].effect, starts[k], before);
     }
     if (settle) {
       FitProblem around = quick;
@@ -85,7 +86,7 @@ SUREFOOT_ONCE std::vector<Proposal> proposals_for(const Search& search, const Ev
                                   [&](const AttachedEffect& effect) { return same_but_for_form(effect, candidate); });
     if (!used) open.push_back(candidate);
   }
-  std::vector<Proposal> proposals = propose(bound, parent.hypothesis, screened, open, parallel);
+  std::vector<Proposal> proposals = propose(bound, parent.hypothesis, screened, open, problem.known, parallel);
   std::erase_if(proposals, [&](const Proposal& one) { return one.distinct < problem.criteria.least_distinct; });
   return proposals;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 #include "surefoot/diagnose/estimation/fit.hpp"
@@ -20,6 +21,7 @@ struct ProposalCriteria {
 /// An effect that is worth a fit, with the parameters to start it from.
 struct Proposal {
   AttachedEffect effect;
+  std::size_t before = 0;  // the effect of the base that it acts before; their number: after all of them
   Eigen::VectorXd start;
   double gain = 0;                           // share of the squared residuals it would explain
   double distinct = 0;                       // share of its signature that the model's parameters cannot imitate
@@ -49,11 +51,15 @@ OpenResiduals open_residuals(const BoundSimulator& bound, const Hypothesis& base
 /// Places of the strengths among the parameters of an effect.
 std::vector<Eigen::Index> strengths_of(const Effect& effect);
 
+/// The hypothesis with one more effect, in front of the one at `before`.
+Hypothesis with_effect(Hypothesis base, const AttachedEffect& effect, const Eigen::VectorXd& values,
+                       std::size_t before);
+
 /// Changes of the residuals that an effect with these parameters causes, a column for each of its strengths alone (one
 /// column if it has none); empty if the simulation runs away.
 Eigen::MatrixXd signatures(const BoundSimulator& bound, const Hypothesis& base, const FitProblem& problem,
                            const Eigen::VectorXd& residuals, const AttachedEffect& candidate,
-                           const Eigen::VectorXd& start);
+                           const Eigen::VectorXd& start, std::size_t before);
 
 /// Predicts what an effect would explain; no effect in it if its signatures are empty.
 Proposal predict_gain(const BoundSimulator& bound, const OpenResiduals& open, const AttachedEffect& candidate,
@@ -61,10 +67,12 @@ Proposal predict_gain(const BoundSimulator& bound, const OpenResiduals& open, co
                       const ProposalCriteria& criteria);
 
 /// Ranks candidates, best first. `base` is fitted; only `problem.recordings` are simulated, once per candidate, start
-/// and strength.
+/// and strength. An effect on an input or a sensor that others act on already is tried behind them and in front of
+/// them, since order matters (a reading that is rounded and then drifts, or drifts and is then rounded); but not in
+/// front of the first `known` effects, those of the model.
 std::vector<Proposal> propose(const BoundSimulator& bound, const Hypothesis& base, const FitProblem& problem,
-                              const std::vector<AttachedEffect>& candidates, const Parallel& parallel,
-                              const ProposalCriteria& criteria = {});
+                              const std::vector<AttachedEffect>& candidates, std::size_t known,
+                              const Parallel& parallel, const ProposalCriteria& criteria = {});
 
 }  // namespace surefoot::diagnosis
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -56,19 +57,26 @@ SUREFOOT_ONCE std::vector<Eigen::Index> strengths_of(const Effect& effect) {
   return strengths;
 }
 
+SUREFOOT_ONCE Hypothesis with_effect(Hypothesis base, const AttachedEffect& effect, const Eigen::VectorXd& values,
+                                     std::size_t before) {
+  const auto at = static_cast<std::ptrdiff_t>(before);
+  base.effects.insert(base.effects.begin() + at, effect);
+  base.values.insert(base.values.begin() + at, values);
+  return base;
+}
+
 SUREFOOT_ONCE Eigen::MatrixXd signatures(const BoundSimulator& bound, const Hypothesis& base, const FitProblem& problem,
                                          const Eigen::VectorXd& residuals, const AttachedEffect& candidate,
-                                         const Eigen::VectorXd& start) {
+                                         const Eigen::VectorXd& start, std::size_t before) {
   const std::vector<Eigen::Index> strengths = strengths_of(*candidate.effect);
   const auto count = static_cast<Eigen::Index>(std::max<std::size_t>(1, strengths.size()));
   Eigen::MatrixXd result(residuals.size(), count);
   for (Eigen::Index m = 0; m < count; ++m) {
-    Hypothesis with = base;
-    with.effects.push_back(candidate);
-    with.values.push_back(start);
+    Eigen::VectorXd values = start;
     for (const Eigen::Index k : strengths) {
-      if (k != strengths[static_cast<std::size_t>(m)]) with.values.back()[k] = 0;
+      if (k != strengths[static_cast<std::size_t>(m)]) values[k] = 0;
     }
+    const Hypothesis with = with_effect(base, candidate, values, before);
     const FitFunctions changed(bound, with, problem, serially());
     const Eigen::VectorXd after = changed.residuals(changed.start());
     if (!surefoot::all_finite(after)) return {};
@@ -152,31 +160,89 @@ SUREFOOT_ONCE std::vector<Proposal> best_of_each_effect(std::vector<Proposal> tr
                                    [&](const Proposal& other) { return same_effect(other.effect, one.effect); });
     if (same == best.end()) {
       best.push_back(one);
-    } else {
+    } else if (same->before == one.before) {
       same->more_starts.push_back(one.start);
     }
   }
   return best;
 }
 
-SUREFOOT_ONCE std::vector<Proposal> propose(const BoundSimulator& bound, const Hypothesis& base,
-                                            const FitProblem& problem, const std::vector<AttachedEffect>& candidates,
-                                            const Parallel& parallel, const ProposalCriteria& criteria) {
-  const OpenResiduals open = open_residuals(bound, base, problem, parallel);
+/// The first of the effects from `known` on that act on the same input or output; their number if there is none.
+SUREFOOT_ONCE std::size_t first_on_the_same(const Hypothesis& base, const AttachedEffect& candidate,
+                                            std::size_t known) {
+  const Place place = candidate.effect->place;
+  if (place != Place::input && place != Place::output) return base.effects.size();
+  std::size_t e = known;
+  while (e < base.effects.size() && (base.effects[e].effect->place != place || base.effects[e].at != candidate.at)) ++e;
+  return e;
+}
+
+/// What an output would have read, and what is simulated, without the effects of `base` on it from `before` on.
+SUREFOOT_ONCE std::vector<Observed> observe_before(const BoundSimulator& bound, const Hypothesis& base,
+                                                   const AttachedEffect& candidate, std::size_t before,
+                                                   const FitProblem& problem, std::vector<Observed> observed) {
+  Hypothesis first = base;
+  for (std::size_t e = base.effects.size(); e-- > before;) {
+    if (base.effects[e].effect->place != Place::output || base.effects[e].at != candidate.at) continue;
+    first.effects.erase(first.effects.begin() + static_cast<std::ptrdiff_t>(e));
+    first.values.erase(first.values.begin() + static_cast<std::ptrdiff_t>(e));
+  }
+  const auto runs = simulate_all(bound, first, problem.recordings, problem.integration, serially());
+  const std::vector<Observed> bare = observe(bound, problem.recordings, runs);
+  for (std::size_t k = 0; k < observed.size(); ++k) {
+    for (std::size_t i = 0; i < observed[k].readings.size(); ++i) {
+      observed[k].readings[i] -= observed[k].simulated[i] - bare[k].simulated[i];
+    }
+    observed[k].simulated = bare[k].simulated;
+  }
+  return observed;
+}
+
+/// A candidate, where in the order of effects it acts, and what it begins with.
+struct Trial {
+  std::size_t candidate = 0, before = 0;
+  Eigen::VectorXd start;
+};
+
+SUREFOOT_ONCE std::vector<Trial> trials_of(const BoundSimulator& bound, const Hypothesis& base,
+                                           const FitProblem& problem, const std::vector<AttachedEffect>& candidates,
+                                           std::size_t known, const Parallel& parallel) {
   const auto observed =
       observe(bound, problem.recordings, simulate_all(bound, base, problem.recordings, problem.integration, parallel));
-  std::vector<std::vector<Eigen::VectorXd>> starts(candidates.size());
-  parallel(candidates.size(), [&](std::size_t c) { starts[c] = starting_values(bound, candidates[c], observed); });
-  std::vector<std::pair<std::size_t, Eigen::VectorXd>> jobs;  // candidate and start
-  for (std::size_t c = 0; c < candidates.size(); ++c) {
-    for (const Eigen::VectorXd& start : starts[c]) jobs.emplace_back(c, start);
+  std::vector<std::vector<Trial>> by_candidate(candidates.size());
+  parallel(candidates.size(), [&](std::size_t c) {
+    const AttachedEffect& candidate = candidates[c];
+    const auto add = [&](std::size_t before, const std::vector<Observed>& seen) {
+      for (const Eigen::VectorXd& start : starting_values(bound, candidate, seen)) {
+        by_candidate[c].push_back({c, before, start});
+      }
+    };
+    add(base.effects.size(), observed);
+    const std::size_t first = first_on_the_same(base, candidate, known);
+    if (first == base.effects.size()) return;
+    const bool looks = candidate.effect->suggest && candidate.effect->place == Place::output;
+    add(first, looks ? observe_before(bound, base, candidate, first, problem, observed) : observed);
+  });
+  std::vector<Trial> trials;
+  for (std::vector<Trial>& some : by_candidate) {
+    std::move(some.begin(), some.end(), std::back_inserter(trials));
   }
-  std::vector<Proposal> tried(jobs.size());
-  parallel(jobs.size(), [&](std::size_t j) {
-    const AttachedEffect& candidate = candidates[jobs[j].first];
-    const Eigen::VectorXd& start = jobs[j].second;
-    tried[j] = predict_gain(bound, open, candidate, start,
-                            signatures(bound, base, problem, open.residuals, candidate, start), criteria);
+  return trials;
+}
+
+SUREFOOT_ONCE std::vector<Proposal> propose(const BoundSimulator& bound, const Hypothesis& base,
+                                            const FitProblem& problem, const std::vector<AttachedEffect>& candidates,
+                                            std::size_t known, const Parallel& parallel,
+                                            const ProposalCriteria& criteria) {
+  const OpenResiduals open = open_residuals(bound, base, problem, parallel);
+  const std::vector<Trial> trials = trials_of(bound, base, problem, candidates, known, parallel);
+  std::vector<Proposal> tried(trials.size());
+  parallel(trials.size(), [&](std::size_t j) {
+    const auto& [c, before, start] = trials[j];
+    tried[j] =
+        predict_gain(bound, open, candidates[c], start,
+                     signatures(bound, base, problem, open.residuals, candidates[c], start, before), criteria);
+    tried[j].before = before;
   });
   return best_of_each_effect(std::move(tried));
 }

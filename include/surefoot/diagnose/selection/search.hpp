@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "surefoot/diagnose/estimation/calibrate.hpp"
@@ -71,6 +72,10 @@ void try_confusable(const Search& search, std::vector<EvaluatedHypothesis>& pool
 /// Single effects and pairs once more, from the parameters of the best structure on: these are nearest to the truth,
 /// whatever effects led there, and an early choice that only led there is left behind.
 void begin_anew(const Search& search, std::vector<EvaluatedHypothesis>& pool);
+
+/// The evidence of each chosen effect into the selection. If one is not worth its parameters once all has settled (its
+/// size may have gone to zero): the structure without it.
+std::optional<EvaluatedHypothesis> weigh_effects(const Search& search, Selection& selection);
 
 /// Recordings that the search looks at: of many only some, which differ in how far the calibrated model misses them.
 std::vector<std::size_t> informative(const BoundSimulator& bound, const Hypothesis& calibrated,

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -339,6 +340,18 @@ SUREFOOT_ONCE void settle(Search& search, EvaluatedHypothesis& chosen) {
   }
 }
 
+SUREFOOT_ONCE std::optional<EvaluatedHypothesis> weigh_effects(const Search& search, Selection& selection) {
+  const EvaluatedHypothesis& chosen = selection.chosen;
+  for (std::size_t e = search.problem.known; e < chosen.hypothesis.effects.size(); ++e) {
+    const bool only = search.effects(chosen) == 1;
+    const EvaluatedHypothesis rest = only ? selection.nominal : search.without(chosen, e);
+    const double odds = log_odds(chosen, rest, search.problem.criteria);
+    if (!only && odds < 0) return rest;
+    selection.evidence.push_back(gain_of(rest.errors, chosen.errors, odds));
+  }
+  return std::nullopt;
+}
+
 SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& calibrated, SearchProblem problem,
                                        const std::vector<AttachedEffect>& candidates, const Parallel& parallel) {
   problem.candidates = candidates.size();
@@ -369,14 +382,17 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
     if (finished && leaves_structure(search, pool[best_of(pool, criteria)]))
       grow(search, pool);  // the others show more
   }
-  Selection selection = ranked(search, pool);
-  for (std::size_t e = search.problem.known; e < selection.chosen.hypothesis.effects.size(); ++e) {
-    const EvaluatedHypothesis rest =
-        search.effects(selection.chosen) == 1 ? selection.nominal : search.without(selection.chosen, e);
-    selection.evidence.push_back(
-        gain_of(rest.errors, selection.chosen.errors, log_odds(selection.chosen, rest, criteria)));
+  Selection selection;
+  while (true) {
+    selection = ranked(search, pool);
+    settle(search, selection.chosen);
+    const auto fewer = weigh_effects(search, selection);
+    if (!fewer || search.problem.stopped()) break;
+    std::erase_if(pool, [&](const EvaluatedHypothesis& one) {
+      return same_structure(one.hypothesis, selection.chosen.hypothesis);
+    });
+    keep_best_form(pool, *fewer, criteria);
   }
-  settle(search, selection.chosen);
   selection.fit = search.problem.fit;
   return selection;
 }

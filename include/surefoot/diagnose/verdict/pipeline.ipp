@@ -224,8 +224,9 @@ SUREFOOT_ONCE void describe_limits(const EstimationSetup& setup, const FittedMod
   if (!diagnosis.effects.empty() || diagnosis.verdict == Verdict::unexplained) return;
   FitProblem few = setup.problem;
   few.recordings = problem.screened;
-  diagnosis.limits =
-      detection_limits(setup.bound, propose(setup.bound, models.calibrated.hypothesis, few, candidates, run.parallel));
+  const Hypothesis& base = models.calibrated.hypothesis;
+  diagnosis.limits = detection_limits(
+      setup.bound, propose(setup.bound, base, few, candidates, base.effects.size(), run.parallel));
 }
 
 SUREFOOT_ONCE void name_recordings(const EstimationSetup& setup, Diagnosis& diagnosis) {
