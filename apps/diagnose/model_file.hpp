@@ -23,7 +23,7 @@ struct Formula {
 
 struct ModelInput {
   std::string name, column, unit;
-  bool linear = false;   // interpolated between rows
+  std::optional<bool> linear = {};  // interpolated between rows, or held; not said: as recordings show
   bool assumed = false;  // the unit was not to be found and is taken as 1
 };
 

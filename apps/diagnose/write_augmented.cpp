@@ -108,7 +108,7 @@ std::string model_text(const ModelFile& model) {
   if (!model.inputs.empty()) out << "\n[inputs]\n";
   for (const ModelInput& input : model.inputs) {
     out << key(input.name) << " = { column = " << toml_string(input.column)
-        << (input.linear ? ", hold = \"linear\"" : "") << ", unit = " << toml_string(input.unit) << " }\n";
+        << (!input.linear.has_value() ? "" : *input.linear ? ", hold = \"linear\"" : ", hold = \"held\"") << ", unit = " << toml_string(input.unit) << " }\n";
   }
   if (!model.lets.empty()) out << "\n[let]\n";
   for (const ModelLet& let : model.lets) out << key(let.name) << " = " << toml_string(let.value.text) << '\n';
@@ -152,6 +152,9 @@ ModelFile augmented_model(const ModelFile& model, const surefoot::Diagnosis& dia
       if (calibrated.fit.name != parameter.name || parameter.fixed || !std::isfinite(calibrated.fit.value)) continue;
       parameter.value = std::clamp(calibrated.fit.value, parameter.low, parameter.high);
     }
+  }
+  for (std::size_t i = 0; i < std::min(result.inputs.size(), diagnosis.linear_inputs.size()); ++i) {
+    if (model.kind == surefoot::SimulatorKind::ode) result.inputs[i].linear = diagnosis.linear_inputs[i];
   }
   for (std::size_t i = 0; i < std::min(result.effects.size(), diagnosis.known_effects.size()); ++i) {
     for (surefoot::ParameterInfo& parameter : result.effects[i].parameters) {

@@ -166,6 +166,7 @@ struct Diagnosis {
   std::vector<Curve> curves;
   int integration_order = 4;    // with which all this was simulated, see Integration
   double integration_step = 0;  // [s]
+  std::vector<bool> linear_inputs;  // by input: interpolated between rows, as the model says or as recordings show
   double seconds = 0;
   std::uint64_t seed = 0;
 };

@@ -21,6 +21,14 @@ std::optional<Integration> finer_integration(const BoundSimulator& bound, const 
                                              const Eigen::VectorXd& residual_size, const Integration& now,
                                              const std::vector<std::size_t>& recordings, const Parallel& parallel);
 
+/// Share of the residuals that the way of simulating may add: lost in them.
+inline constexpr double lost_in_residuals = 0.05;
+
+/// Root mean square of the differences between runs of the same recordings, by output; infinite where one ran away.
+/// Recordings that cannot be simulated exactly either count for nothing.
+Eigen::VectorXd differences_of_runs(const std::vector<SimulatedRun>& runs, const std::vector<SimulatedRun>& exact,
+                                    Eigen::Index outputs);
+
 }  // namespace surefoot::diagnosis
 
 #ifndef SUREFOOT_COMPILED

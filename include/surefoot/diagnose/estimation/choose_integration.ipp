@@ -30,8 +30,6 @@ SUREFOOT_ONCE double shortest_interval(const BoundSimulator& bound, const std::v
   return shortest;
 }
 
-/// Root mean square of the differences between runs of the same recordings, by output; infinite where one ran away.
-/// Recordings that cannot be simulated exactly either count for nothing.
 SUREFOOT_ONCE Eigen::VectorXd differences_of_runs(const std::vector<SimulatedRun>& runs,
                                                   const std::vector<SimulatedRun>& exact, Eigen::Index outputs) {
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(outputs);
@@ -54,7 +52,6 @@ SUREFOOT_ONCE Eigen::VectorXd differences_of_runs(const std::vector<SimulatedRun
 SUREFOOT_ONCE Integration choose_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                              const Eigen::VectorXd& residual_size, const Integration& now,
                                              const std::vector<std::size_t>& recordings, const Parallel& parallel) {
-  constexpr double error_share = 0.05;   // of the residuals that an integration may add: lost in them
   constexpr double reference_steps = 8;  // per row, of what is held to be exact
   // Steps are a little longer than one, and a little shorter than a half or a quarter of a row, so that rounding does
   // not add one.
@@ -76,7 +73,7 @@ SUREFOOT_ONCE Integration choose_integration(const BoundSimulator& bound, const 
     const auto runs = simulate_all(bound, hypothesis, recordings, coarse, parallel);
     const Eigen::VectorXd off = differences_of_runs(runs, exact, residual_size.size());
     bool good = true;
-    for (Eigen::Index k = 0; k < off.size(); ++k) good = good && off[k] < error_share * residual_size[k];
+    for (Eigen::Index k = 0; k < off.size(); ++k) good = good && off[k] < lost_in_residuals * residual_size[k];
     if (good) return coarse;
   }
   return fine;

@@ -19,6 +19,7 @@
 #include "surefoot/diagnose/estimation/guided_fit.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/restarts.hpp"
+#include "surefoot/diagnose/selection/choose_holds.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
 
@@ -144,10 +145,12 @@ SUREFOOT_ONCE void begin_elsewhere(Search search, std::vector<EvaluatedHypothesi
 
 SUREFOOT_ONCE bool refine_integration(Search& search, const EvaluatedHypothesis& best) {
   FitProblem& problem = search.problem.fit;
-  const auto finer = finer_integration(search.bound, best.hypothesis, problem.weighting.sigma, problem.integration,
+  Fit fitted{best.hypothesis, best.loss, true};
+  const bool otherwise = choose_holds(search.bound, fitted, search.problem, search.parallel);
+  const auto finer = finer_integration(search.bound, fitted.hypothesis, problem.weighting.sigma, problem.integration,
                                        problem.recordings, search.parallel);
   if (finer) problem.integration = *finer;
-  return finer.has_value();
+  return otherwise || finer.has_value();
 }
 
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> smaller(const Search& search, const EvaluatedHypothesis& whole) {

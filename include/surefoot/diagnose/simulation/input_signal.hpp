@@ -15,14 +15,15 @@ namespace surefoot::diagnosis {
 template <class Input>
 class InputSignal {
  public:
-  InputSignal(const SimulatorInfo& info, const Recording& recording)
+  /// `linear`: the inputs that are interpolated, of those of which the model does not say; empty: none.
+  InputSignal(const SimulatorInfo& info, const Recording& recording, const std::vector<bool>& linear = {})
       : recording_(recording),
         late_(info.inputs.size(), 0.0),
         linear_(info.inputs.size()),
         from_rest_(info.inputs.size(), false),
         seen_(info.inputs.size(), 0) {
     for (std::size_t i = 0; i < linear_.size(); ++i) {
-      linear_[i] = info.inputs[i].linear;
+      linear_[i] = info.inputs[i].linear.value_or(i < linear.size() && linear[i]);
       any_special_ = any_special_ || linear_[i];
       steady_ = steady_ && !linear_[i];
     }

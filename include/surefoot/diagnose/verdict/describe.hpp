@@ -36,6 +36,9 @@ std::string rejection_sentence();
 /// For held-out recordings that nothing was fitted without.
 std::string not_held_out_sentence();
 
+/// For an input of which the recordings say that it is not held between rows.
+std::string interpolated_sentence(const std::string& input);
+
 /// That friction at one of these velocities may have to move the others too.
 std::string moved_together_sentence(const SimulatorInfo& info, const std::vector<int>& velocities);
 

@@ -99,6 +99,12 @@ SUREFOOT_ONCE std::string rejection_sentence() {
          "dropped";
 }
 
+SUREFOOT_ONCE std::string interpolated_sentence(const std::string& input) {
+  return "input " + input +
+         " goes straight from row to row in what follows: recordings fit better so than with values held until the next "
+         "row; say in the model which it is (a model file by hold = \"linear\" or \"held\", C++ by InputInfo::linear)";
+}
+
 SUREFOOT_ONCE std::string moved_together_sentence(const SimulatorInfo& info, const std::vector<int>& velocities) {
   std::vector<std::string> names;
   for (const int velocity : velocities) names.push_back(info.states[static_cast<std::size_t>(velocity)].name);

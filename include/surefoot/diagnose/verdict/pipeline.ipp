@@ -18,6 +18,7 @@
 #include "surefoot/diagnose/estimation/standard_errors.hpp"
 #include "surefoot/diagnose/residual_tests/noise.hpp"
 #include "surefoot/diagnose/screening.hpp"
+#include "surefoot/diagnose/selection/choose_holds.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
 #include "surefoot/diagnose/verdict/describe.hpp"
 #include "surefoot/diagnose/verdict/detection_limits.hpp"
@@ -79,6 +80,11 @@ SUREFOOT_ONCE EstimationSetup hold_out_recordings(const BindSimulator& bind, std
   return setup;
 }
 
+/// The weights by which errors are compared.
+SUREFOOT_ONCE Weighting error_scale_of(const EstimationSetup& setup) {
+  return {.sigma = error_scale(setup.bound), .whitening = setup.problem.weighting.whitening};
+}
+
 SUREFOOT_ONCE Calibration calibrate_model(EstimationSetup& setup, const RunContext& run) {
   auto& [bound, split, noise, problem] = setup;
   const Parallel& parallel = run.parallel;
@@ -100,6 +106,10 @@ SUREFOOT_ONCE Calibration calibrate_model(EstimationSetup& setup, const RunConte
     problem.weighting.whitening = final_pose_whitening(bound, calibrated.hypothesis, split.training, bound.integration);
   }
   calibrated = fit(bound, calibrated.hypothesis, problem, parallel);
+  SearchProblem way;
+  way.fit = problem;
+  way.scale = error_scale_of(setup);
+  if (choose_holds(bound, calibrated, way, parallel)) bound.integration = problem.integration = way.fit.integration;
   const auto runs = simulate_all(bound, calibrated.hypothesis, split.training, bound.integration, parallel);
   bound.sizes = measure_sizes(bound, calibrated.hypothesis, split.training, runs);
   return {with_estimated_initial_states(bound, nominal, split.training, problem, parallel), calibrated, runs};
@@ -142,7 +152,7 @@ SUREFOOT_ONCE SearchProblem search_problem(const EstimationSetup& setup, const C
   const auto& training = setup.split.training;
   SearchProblem problem;
   problem.fit = setup.problem;
-  problem.scale = {.sigma = error_scale(setup.bound), .whitening = setup.problem.weighting.whitening};
+  problem.scale = error_scale_of(setup);
   problem.nominal = calibration.nominal;
   problem.known = run.options.known.size();
   problem.criteria.max_effects = run.options.max_effects;
@@ -183,6 +193,11 @@ SUREFOOT_ONCE void describe_models(const EstimationSetup& setup, const FittedMod
   diagnosis.noise_sentence = noise_sentence(setup.noise);
   diagnosis.integration_order = bound.integration.order;
   diagnosis.integration_step = bound.integration.step;
+  for (std::size_t i = 0; i < bound.info.inputs.size(); ++i) {
+    const bool found = i < bound.integration.linear.size() && bound.integration.linear[i];
+    diagnosis.linear_inputs.push_back(bound.info.inputs[i].linear.value_or(found));
+    if (found) diagnosis.remarks.push_back({"", interpolated_sentence(bound.info.inputs[i].name)});
+  }
   for (std::size_t e = 0; e < chosen.effects.size(); ++e) {
     FoundEffect found = describe(bound, chosen, e, &errors);
     if (e < known) {
