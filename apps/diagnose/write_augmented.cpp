@@ -108,7 +108,10 @@ std::string model_text(const ModelFile& model) {
   if (!model.inputs.empty()) out << "\n[inputs]\n";
   for (const ModelInput& input : model.inputs) {
     out << key(input.name) << " = { column = " << toml_string(input.column)
-        << (!input.linear.has_value() ? "" : *input.linear ? ", hold = \"linear\"" : ", hold = \"held\"") << ", unit = " << toml_string(input.unit) << " }\n";
+        << (!input.linear.has_value() ? ""
+            : *input.linear           ? ", hold = \"linear\""
+                                      : ", hold = \"held\"")
+        << ", unit = " << toml_string(input.unit) << " }\n";
   }
   if (!model.lets.empty()) out << "\n[let]\n";
   for (const ModelLet& let : model.lets) out << key(let.name) << " = " << toml_string(let.value.text) << '\n';

@@ -111,8 +111,9 @@ TEST_CASE("a reading that was rounded before it drifted is rounded in front of t
   b.base.effects.push_back(attach(b.bound.info, drift, all_effects()));
   b.base.values.emplace_back(Eigen::VectorXd::Constant(1, drift.values[0]));
   auto candidates = attachments(b.bound, all_effects(), {true, true, true});
-  std::erase_if(candidates,
-                [](const AttachedEffect& one) { return !one.effect->form.empty() || one.effect->name != "quantization"; });
+  std::erase_if(candidates, [](const AttachedEffect& one) {
+    return !one.effect->form.empty() || one.effect->name != "quantization";
+  });
   const auto proposals = propose(b.bound, b.base, b.problem, candidates, 0, serially());
   REQUIRE_FALSE(proposals.empty());
   CHECK(proposals[0].before == 0);

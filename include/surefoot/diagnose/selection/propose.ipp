@@ -239,9 +239,8 @@ SUREFOOT_ONCE std::vector<Proposal> propose(const BoundSimulator& bound, const H
   std::vector<Proposal> tried(trials.size());
   parallel(trials.size(), [&](std::size_t j) {
     const auto& [c, before, start] = trials[j];
-    tried[j] =
-        predict_gain(bound, open, candidates[c], start,
-                     signatures(bound, base, problem, open.residuals, candidates[c], start, before), criteria);
+    tried[j] = predict_gain(bound, open, candidates[c], start,
+                            signatures(bound, base, problem, open.residuals, candidates[c], start, before), criteria);
     tried[j].before = before;
   });
   return best_of_each_effect(std::move(tried));

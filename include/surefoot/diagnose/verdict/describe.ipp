@@ -101,7 +101,8 @@ SUREFOOT_ONCE std::string rejection_sentence() {
 
 SUREFOOT_ONCE std::string interpolated_sentence(const std::string& input) {
   return "input " + input +
-         " goes straight from row to row in what follows: recordings fit better so than with values held until the next "
+         " goes straight from row to row in what follows: recordings fit better so than with values held until the "
+         "next "
          "row; say in the model which it is (a model file by hold = \"linear\" or \"held\", C++ by InputInfo::linear)";
 }
 

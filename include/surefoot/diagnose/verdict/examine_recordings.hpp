@@ -18,10 +18,17 @@ Hypothesis nominal_with_known(const BoundSimulator& bound, const DiagnoseOptions
 LogExamination examine_recordings(const BindSimulator& bind, const std::vector<Recording>& recordings,
                                   const RunContext& run);
 
-/// The same by a model with the effects that were found, and with its typical sizes: physics that was missing hides a
-/// clock that is some percent off, or one recording's sensor that sticks.
+/// The model with the effects that were found.
+struct FoundModel {
+  Hypothesis hypothesis;
+  Sizes sizes;               // typical ones, of which the bounds of effects are multiples
+  std::vector<bool> linear;  // inputs, as in Integration
+};
+
+/// The same by a model with the effects that were found: physics that was missing hides a clock that is some percent
+/// off, or one recording's sensor that sticks.
 LogExamination examine_with_effects(const BindSimulator& bind, const std::vector<Recording>& recordings,
-                                    const Hypothesis& found, const Sizes& sizes, const RunContext& run);
+                                    const FoundModel& found, const RunContext& run);
 
 /// Whether a fault is named once more in recordings that were repaired: the model without the effects was wrong about
 /// it.

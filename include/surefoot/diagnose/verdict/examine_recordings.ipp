@@ -47,20 +47,21 @@ SUREFOOT_ONCE LogExamination examine_recordings(const BindSimulator& bind, const
 }
 
 SUREFOOT_ONCE LogExamination examine_with_effects(const BindSimulator& bind, const std::vector<Recording>& recordings,
-                                                  const Hypothesis& found, const Sizes& sizes, const RunContext& run) {
-  const auto bind_with_sizes = [&](std::vector<Recording> logged) {
+                                                  const FoundModel& found, const RunContext& run) {
+  const auto bind_as_found = [&](std::vector<Recording> logged) {
     BoundSimulator bound = bind(std::move(logged));
-    bound.sizes = sizes;
+    bound.sizes = found.sizes;
+    bound.integration.linear = found.linear;
     return bound;
   };
   const auto model = [&](const BoundSimulator& bound) {
     Hypothesis hypothesis = nominal_hypothesis(bound);
-    hypothesis.parameters = found.parameters;
-    hypothesis.effects = found.effects;
-    hypothesis.values = found.values;
+    hypothesis.parameters = found.hypothesis.parameters;
+    hypothesis.effects = found.hypothesis.effects;
+    hypothesis.values = found.hypothesis.values;
     return hypothesis;
   };
-  return examine(bind_with_sizes, recordings, model, run);
+  return examine(bind_as_found, recordings, model, run);
 }
 
 SUREFOOT_ONCE bool is_named_again(const std::vector<LogFault>& repaired, const std::vector<LogFault>& named) {

@@ -66,12 +66,6 @@ void evaluate_selection(const EstimationSetup& setup, const Calibration& calibra
                         const Selection& selection, const std::vector<AttachedEffect>& candidates,
                         const RunContext& run, Diagnosis& diagnosis);
 
-/// The model with the effects that were found.
-struct FoundModel {
-  Hypothesis hypothesis;
-  Sizes sizes;  // typical ones, of which the bounds of effects are multiples
-};
-
 /// All stages after the recordings were screened and examined: fills in the diagnosis.
 FoundModel diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings, const RunContext& run,
                                Diagnosis& diagnosis);

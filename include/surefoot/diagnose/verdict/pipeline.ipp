@@ -240,8 +240,8 @@ SUREFOOT_ONCE void describe_limits(const EstimationSetup& setup, const FittedMod
   FitProblem few = setup.problem;
   few.recordings = problem.screened;
   const Hypothesis& base = models.calibrated.hypothesis;
-  diagnosis.limits = detection_limits(
-      setup.bound, propose(setup.bound, base, few, candidates, base.effects.size(), run.parallel));
+  diagnosis.limits =
+      detection_limits(setup.bound, propose(setup.bound, base, few, candidates, base.effects.size(), run.parallel));
 }
 
 SUREFOOT_ONCE void name_recordings(const EstimationSetup& setup, Diagnosis& diagnosis) {
@@ -341,7 +341,7 @@ SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vec
 
   run.progress("evaluating", progress_evaluation);
   evaluate_selection(setup, calibration, problem, selection, candidates, run, diagnosis);
-  return {selection.chosen.hypothesis, setup.bound.sizes};
+  return {selection.chosen.hypothesis, setup.bound.sizes, setup.bound.integration.linear};
 }
 
 /// Stages after the log was examined. What was found shows more faults: with these repaired all begins anew, if there
@@ -359,13 +359,13 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
     const bool found_any = found.hypothesis.effects.size() > run.options.known.size();
     LogExamination more;
     if (found_any && !begins_anew && !run.search_has_ended()) {
-      more = examine_with_effects(bind, log.repaired, found.hypothesis, found.sizes, run);
+      more = examine_with_effects(bind, log.repaired, found, run);
     }
     const bool found_late = run.options.repair && !more.faults.empty();
     begins_anew = found_late && run.has_time_for_as_much_again(started);
     if (found_late && !begins_anew) diagnosis.remarks.push_back({"", no_time_to_begin_anew_sentence()});
     if (is_named_again(log.faults, more.faults)) {
-      log = examine_with_effects(bind, logged, found.hypothesis, found.sizes, run);
+      log = examine_with_effects(bind, logged, found, run);
     } else if (!more.faults.empty()) {
       log.faults.insert(log.faults.end(), more.faults.begin(), more.faults.end());
       log.repaired = std::move(more.repaired);
