@@ -159,6 +159,11 @@ ModelFile augmented_model(const ModelFile& model, const surefoot::Diagnosis& dia
   for (std::size_t i = 0; i < std::min(result.inputs.size(), diagnosis.linear_inputs.size()); ++i) {
     if (model.kind == surefoot::SimulatorKind::ode) result.inputs[i].linear = diagnosis.linear_inputs[i];
   }
+  for (std::size_t i = 0; i < std::min(result.states.size(), diagnosis.freed_states.size()); ++i) {
+    if (!diagnosis.freed_states[i]) continue;
+    result.states[i].initial = ModelState::Initial::free;
+    result.states[i].start.text = "free";
+  }
   for (std::size_t i = 0; i < std::min(result.effects.size(), diagnosis.known_effects.size()); ++i) {
     for (surefoot::ParameterInfo& parameter : result.effects[i].parameters) {
       for (const auto& fit : diagnosis.known_effects[i].parameters) {

@@ -27,7 +27,7 @@ bool keep_best_form(std::vector<EvaluatedHypothesis>& pool, const EvaluatedHypot
 void reweight(Search& search, const EvaluatedHypothesis& best);
 
 /// What effects explain shows smaller errors of the integration, which would pass for further effects: chooses it anew
-/// for what a hypothesis leaves, and how inputs go between rows; true if it is finer now, or these are.
+/// for what a hypothesis leaves; true if it is finer now.
 bool refine_integration(Search& search, const EvaluatedHypothesis& best);
 
 /// The children of the model without effects, but with the parameters and initial states of `start`: what is missing

@@ -145,12 +145,10 @@ SUREFOOT_ONCE void begin_elsewhere(Search search, std::vector<EvaluatedHypothesi
 
 SUREFOOT_ONCE bool refine_integration(Search& search, const EvaluatedHypothesis& best) {
   FitProblem& problem = search.problem.fit;
-  Fit fitted{best.hypothesis, best.loss, true};
-  const bool otherwise = choose_holds(search.bound, fitted, search.problem, search.parallel);
-  const auto finer = finer_integration(search.bound, fitted.hypothesis, problem.weighting.sigma, problem.integration,
+  const auto finer = finer_integration(search.bound, best.hypothesis, problem.weighting.sigma, problem.integration,
                                        problem.recordings, search.parallel);
   if (finer) problem.integration = *finer;
-  return otherwise || finer.has_value();
+  return finer.has_value();
 }
 
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> smaller(const Search& search, const EvaluatedHypothesis& whole) {
@@ -195,13 +193,15 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool) 
     beam = best_structures(children, effort.beam, effort.hopeless, criteria);
     if (beam.empty()) break;
     reweight(search, now);
-    const bool finer = refine_integration(search, now);
-    if (finer) pool = fitted_again(search, pool);  // compared with the same errors
-    for (EvaluatedHypothesis& one : beam) {        // and with the weights of their children
+    Fit fitted{now.hypothesis, now.loss, true};
+    const bool holds = choose_holds(search.bound, fitted, search.problem, search.parallel);
+    const bool otherwise = refine_integration(search, now) || holds;
+    if (otherwise) pool = fitted_again(search, pool);  // compared with the same errors
+    for (EvaluatedHypothesis& one : beam) {            // and with the weights of their children
       const auto again = std::find_if(pool.begin(), pool.end(), [&](const EvaluatedHypothesis& other) {
         return same_structure(other.hypothesis, one.hypothesis);
       });
-      if (finer && again != pool.end()) {
+      if (otherwise && again != pool.end()) {
         one = *again;
       } else {
         one = refitted(search, one);

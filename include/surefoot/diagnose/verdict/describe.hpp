@@ -36,6 +36,9 @@ std::string rejection_sentence();
 /// For held-out recordings that nothing was fitted without.
 std::string not_held_out_sentence();
 
+/// For a state that begins, in recordings, between these values and not where the model says.
+std::string freed_state_sentence(const StateInfo& state, double low, double high);
+
 /// For an input of which the recordings say that it is not held between rows.
 std::string interpolated_sentence(const std::string& input);
 

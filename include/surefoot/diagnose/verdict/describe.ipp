@@ -99,6 +99,13 @@ SUREFOOT_ONCE std::string rejection_sentence() {
          "dropped";
 }
 
+SUREFOOT_ONCE std::string freed_state_sentence(const StateInfo& state, double low, double high) {
+  return "recordings do not begin with " + state.name + " as the model says, but between " +
+         with_unit(low, state.unit) + " and " + with_unit(high, state.unit) +
+         ": it is free in what follows; say so in the model (a model file by initial = \"free\", C++ by "
+         "Recording::initial_scale)";
+}
+
 SUREFOOT_ONCE std::string interpolated_sentence(const std::string& input) {
   return "input " + input +
          " goes straight from row to row in what follows: recordings fit better so than with values held until the "

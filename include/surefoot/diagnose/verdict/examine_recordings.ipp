@@ -2,12 +2,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/selection/choose_initial_states.hpp"
 #include "surefoot/diagnose/verdict/examine_recordings.hpp"
 
 namespace surefoot::diagnosis {
@@ -52,6 +54,9 @@ SUREFOOT_ONCE LogExamination examine_with_effects(const BindSimulator& bind, con
     BoundSimulator bound = bind(std::move(logged));
     bound.sizes = found.sizes;
     bound.integration.linear = found.linear;
+    for (std::size_t i = 0; i < found.freed.size(); ++i) {
+      if (found.freed[i]) set_initial_scale(bound, i, found.sizes.state[i]);
+    }
     return bound;
   };
   const auto model = [&](const BoundSimulator& bound) {

@@ -16,6 +16,7 @@ struct EstimationSetup {
   RecordingSplit split;
   NoiseKind noise = NoiseKind::measurement;
   FitProblem problem = {};  // of the training recordings
+  std::vector<bool> freed = {};  // states of which the model said where they begin, and recordings otherwise
 };
 
 /// Simulations by a model; each list goes with the training or the held-out recordings.

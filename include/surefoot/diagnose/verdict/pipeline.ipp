@@ -19,6 +19,7 @@
 #include "surefoot/diagnose/residual_tests/noise.hpp"
 #include "surefoot/diagnose/screening.hpp"
 #include "surefoot/diagnose/selection/choose_holds.hpp"
+#include "surefoot/diagnose/selection/choose_initial_states.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
 #include "surefoot/diagnose/verdict/describe.hpp"
 #include "surefoot/diagnose/verdict/detection_limits.hpp"
@@ -85,8 +86,29 @@ SUREFOOT_ONCE Weighting error_scale_of(const EstimationSetup& setup) {
   return {.sigma = error_scale(setup.bound), .whitening = setup.problem.weighting.whitening};
 }
 
+/// Frees initial states that recordings refute, beside those before; true if there are any.
+SUREFOOT_ONCE bool free_more_states(EstimationSetup& setup, Fit& fitted, const SearchProblem& problem,
+                                    const Parallel& parallel) {
+  if (setup.noise != NoiseKind::measurement) return false;
+  const std::vector<bool> more = free_initial_states(setup.bound, fitted, problem, parallel);
+  setup.freed.resize(more.size(), false);
+  for (std::size_t i = 0; i < more.size(); ++i) setup.freed[i] = setup.freed[i] || more[i];
+  return std::find(more.begin(), more.end(), true) != more.end();
+}
+
+/// Inputs that are not held, and states that do not begin as the model says; true if recordings show any.
+SUREFOOT_ONCE bool revise_what_was_said(EstimationSetup& setup, Fit& calibrated, const Parallel& parallel) {
+  SearchProblem problem;
+  problem.fit = setup.problem;
+  problem.scale = error_scale_of(setup);
+  const bool holds = choose_holds(setup.bound, calibrated, problem, parallel);
+  setup.bound.integration = setup.problem.integration = problem.fit.integration;
+  return free_more_states(setup, calibrated, problem, parallel) || holds;
+}
+
 SUREFOOT_ONCE Calibration calibrate_model(EstimationSetup& setup, const RunContext& run) {
-  auto& [bound, split, noise, problem] = setup;
+  constexpr int most_rounds = 3;  // inputs, initial states, and neither
+  auto& [bound, split, noise, problem, freed] = setup;
   const Parallel& parallel = run.parallel;
   const Hypothesis nominal = nominal_with_known(bound, run.options);
   noise = noise_kind(bound, nominal, split.training);
@@ -98,20 +120,23 @@ SUREFOOT_ONCE Calibration calibrate_model(EstimationSetup& setup, const RunConte
     bound.sizes = measure_sizes(bound, nominal, split.training,
                                 simulate_all(bound, nominal, split.training, bound.integration, parallel));
   }
-  Fit calibrated = calibrate(bound, nominal, problem, run.options.starts, run.seed, parallel);
-  bound.integration = choose_integration(bound, calibrated.hypothesis, problem.weighting.sigma, bound.integration,
-                                         split.training, parallel);
-  problem.integration = bound.integration;
-  if (noise == NoiseKind::final_pose) {
-    problem.weighting.whitening = final_pose_whitening(bound, calibrated.hypothesis, split.training, bound.integration);
+  Fit calibrated{nominal, 0, true};
+  std::vector<SimulatedRun> runs;
+  bool changed = true;
+  for (int round = 0; round < most_rounds && changed; ++round) {
+    calibrated = calibrate(bound, calibrated.hypothesis, problem, run.options.starts, run.seed, parallel);
+    bound.integration = choose_integration(bound, calibrated.hypothesis, problem.weighting.sigma, bound.integration,
+                                           split.training, parallel);
+    problem.integration = bound.integration;
+    if (noise == NoiseKind::final_pose) {
+      problem.weighting.whitening =
+          final_pose_whitening(bound, calibrated.hypothesis, split.training, bound.integration);
+    }
+    calibrated = fit(bound, calibrated.hypothesis, problem, parallel);
+    runs = simulate_all(bound, calibrated.hypothesis, split.training, bound.integration, parallel);
+    bound.sizes = measure_sizes(bound, calibrated.hypothesis, split.training, runs);
+    changed = revise_what_was_said(setup, calibrated, parallel);
   }
-  calibrated = fit(bound, calibrated.hypothesis, problem, parallel);
-  SearchProblem way;
-  way.fit = problem;
-  way.scale = error_scale_of(setup);
-  if (choose_holds(bound, calibrated, way, parallel)) bound.integration = problem.integration = way.fit.integration;
-  const auto runs = simulate_all(bound, calibrated.hypothesis, split.training, bound.integration, parallel);
-  bound.sizes = measure_sizes(bound, calibrated.hypothesis, split.training, runs);
   return {with_estimated_initial_states(bound, nominal, split.training, problem, parallel), calibrated, runs};
 }
 
@@ -287,7 +312,7 @@ SUREFOOT_ONCE void evaluate_selection(const EstimationSetup& setup, const Calibr
 
 /// The choice, fitted to all recordings, may need finer steps than the search took: it is fitted once more with these.
 SUREFOOT_ONCE void refit_with_finer_steps(EstimationSetup& setup, Selection& selection, const RunContext& run) {
-  auto& [bound, split, noise, problem] = setup;
+  auto& [bound, split, noise, problem, freed] = setup;
   Hypothesis& chosen = selection.chosen.hypothesis;
   if (chosen.effects.size() == selection.nominal.hypothesis.effects.size()) return;
   const auto finer =
@@ -320,28 +345,95 @@ SUREFOOT_ONCE void remove_outliers_from(EstimationSetup& setup, const Hypothesis
   }
 }
 
+/// A search and what led to it.
+struct Searched {
+  Calibration calibration;
+  SearchProblem problem;
+  std::vector<AttachedEffect> candidates;
+  Selection selection;
+};
+
+SUREFOOT_ONCE Searched search_effects(EstimationSetup& setup, const RunContext& run, Diagnosis& diagnosis) {
+  run.progress("calibrating", progress_calibration);
+  Searched found{calibrate_model(setup, run), {}, {}, {}};
+  remove_outliers_from(setup, found.calibration.calibrated.hypothesis, run, diagnosis);
+  found.problem = search_problem(setup, found.calibration, run);
+  found.candidates = candidate_effects(setup, found.calibration, run);
+  found.selection =
+      select_effects(setup.bound, found.calibration.calibrated, found.problem, found.candidates, run.parallel);
+  return found;
+}
+
+/// With what was found recordings may refute more initial states, which asks for another search, or those freed before
+/// may be known after all.
+SUREFOOT_ONCE void revise_initial_states(EstimationSetup& setup, Searched& found, const RunContext& run,
+                                         Diagnosis& diagnosis) {
+  const auto chosen = [&] { return Fit{found.selection.chosen.hypothesis, found.selection.chosen.loss, true}; };
+  const auto any_effect = [&] {
+    return found.selection.chosen.hypothesis.effects.size() > run.options.known.size();
+  };
+  const auto with_present_weights = [&] {
+    SearchProblem problem = found.problem;
+    problem.fit = found.selection.fit;
+    return problem;
+  };
+  if (!any_effect() || run.search_has_ended()) return;
+  Fit fitted = chosen();
+  if (free_more_states(setup, fitted, with_present_weights(), run.parallel)) {
+    found = search_effects(setup, run, diagnosis);
+    if (!any_effect() || run.search_has_ended()) return;
+    fitted = chosen();
+  }
+  const std::vector<bool> before = setup.freed;
+  restore_initial_states(setup.bound, setup.freed, fitted, with_present_weights(), run.parallel);
+  if (setup.freed == before) return;
+  found.selection.chosen.hypothesis = fitted.hypothesis;
+  Fit& calibrated = found.calibration.calibrated;
+  for (std::size_t r = 0; r < setup.bound.recordings.size(); ++r) {
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const auto state = static_cast<Eigen::Index>(i);
+      const bool restored = before[i] && !setup.freed[i];
+      if (restored) calibrated.hypothesis.initial[r][state] = setup.bound.recordings[r].initial[state];
+    }
+  }
+  calibrated = fit(setup.bound, calibrated.hypothesis, found.selection.fit, run.parallel);
+  found.selection.nominal.hypothesis = calibrated.hypothesis;
+}
+
+SUREFOOT_ONCE void remark_on_freed_states(const EstimationSetup& setup, const Hypothesis& chosen,
+                                          Diagnosis& diagnosis) {
+  diagnosis.freed_states = setup.freed;
+  for (std::size_t i = 0; i < setup.freed.size(); ++i) {
+    if (!setup.freed[i]) continue;
+    const auto state = static_cast<Eigen::Index>(i);
+    double low = chosen.initial[setup.split.training.front()][state], high = low;
+    for (const std::size_t r : setup.split.training) {
+      low = std::min(low, chosen.initial[r][state]);
+      high = std::max(high, chosen.initial[r][state]);
+    }
+    diagnosis.remarks.push_back({"", freed_state_sentence(setup.bound.info.states[i], low, high)});
+  }
+}
+
 SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
                                              const RunContext& run, Diagnosis& diagnosis) {
   recordings = cut_few_recordings(bind, std::move(recordings), run);
   EstimationSetup setup = hold_out_recordings(bind, std::move(recordings), run);
   name_recordings(setup, diagnosis);
-
-  run.progress("calibrating", progress_calibration);
-  const Calibration calibration = calibrate_model(setup, run);
-  remove_outliers_from(setup, calibration.calibrated.hypothesis, run, diagnosis);
-  const SearchProblem problem = search_problem(setup, calibration, run);
-  const std::vector<AttachedEffect> candidates = candidate_effects(setup, calibration, run);
-  Selection selection = select_effects(setup.bound, calibration.calibrated, problem, candidates, run.parallel);
+  Searched found = search_effects(setup, run, diagnosis);
+  revise_initial_states(setup, found, run, diagnosis);
+  auto& [calibration, problem, candidates, selection] = found;
   diagnosis.complete = !run.search_has_ended();
   setup.problem = selection.fit;
   setup.problem.stopped = [run] { return run.has_ended(); };
   setup.bound.integration = setup.problem.integration;
   refit_with_finer_steps(setup, selection, run);
   remove_outliers_from(setup, selection.chosen.hypothesis, run, diagnosis);
+  remark_on_freed_states(setup, selection.chosen.hypothesis, diagnosis);
 
   run.progress("evaluating", progress_evaluation);
   evaluate_selection(setup, calibration, problem, selection, candidates, run, diagnosis);
-  return {selection.chosen.hypothesis, setup.bound.sizes, setup.bound.integration.linear};
+  return {selection.chosen.hypothesis, setup.bound.sizes, setup.bound.integration.linear, setup.freed};
 }
 
 /// Stages after the log was examined. What was found shows more faults: with these repaired all begins anew, if there
