@@ -13,7 +13,7 @@ surefoot::SimulatorInfo info_of(const ModelFile& model, const EquationPlan& plan
   info.name = model.name;
   info.kind = model.kind;
   for (const auto& state : model.states) info.states.push_back({state.name, state.unit, state.effort_unit});
-  for (const auto& input : model.inputs) info.inputs.push_back({input.name, input.unit, input.linear});
+  for (const auto& input : model.inputs) info.inputs.push_back({input.name, input.unit, input.hold});
   for (const auto& output : model.outputs) {
     info.outputs.push_back({output.name, output.unit, output.noise, output.process_noise});
   }

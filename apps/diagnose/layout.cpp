@@ -59,7 +59,7 @@ Layout layout_of(const surefoot::SimulatorInfo& info) {
   layout.ode = info.kind == surefoot::SimulatorKind::ode;
   layout.time = layout.ode ? "t_s" : "";
   for (const auto& input : info.inputs) {
-    layout.inputs.push_back({input.name, column_of(input.name, input.unit), input.unit, input.linear, false});
+    layout.inputs.push_back({input.name, column_of(input.name, input.unit), input.unit, input.hold, false});
   }
   for (const auto& output : info.outputs) layout.outputs.push_back(column_of(output.name, output.unit));
   for (const auto& state : info.states) {

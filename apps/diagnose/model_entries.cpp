@@ -30,8 +30,11 @@ ModelInput read_input(const TomlTable& table, const TomlEntry& entry) {
     input.column = required_text(own, "column", "the column of the recordings");
     if (const toml::value* hold = find(own, "hold")) {
       const std::string text = to_text(*hold, place(own, *hold, "hold"));
-      if (text != "linear" && text != "held") fail(place(own, *hold, "hold"), "\"held\" or \"linear\" is expected");
-      input.linear = text == "linear";
+      for (const surefoot::InputHold one :
+           {surefoot::InputHold::held, surefoot::InputHold::linear, surefoot::InputHold::before}) {
+        if (text == hold_name(one)) input.hold = one;
+      }
+      if (!input.hold) fail(place(own, *hold, "hold"), R"("held", "linear" or "before" is expected)");
     }
     if (const toml::value* unit = find(own, "unit")) input.unit = to_text(*unit, place(own, *unit, "unit"));
   }

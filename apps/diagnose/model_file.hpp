@@ -21,9 +21,14 @@ struct Formula {
   std::string place;  // "model.toml, line 12, [let] tau"
 };
 
+/// How a model file calls it.
+constexpr std::string_view hold_name(surefoot::InputHold hold) {
+  return hold == surefoot::InputHold::held ? "held" : hold == surefoot::InputHold::linear ? "linear" : "before";
+}
+
 struct ModelInput {
   std::string name, column, unit;
-  std::optional<bool> linear = {};  // interpolated between rows, or held; not said: as recordings show
+  std::optional<surefoot::InputHold> hold = {};  // not said: as recordings show
   bool assumed = false;  // the unit was not to be found and is taken as 1
 };
 

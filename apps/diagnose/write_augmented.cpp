@@ -108,10 +108,7 @@ std::string model_text(const ModelFile& model) {
   if (!model.inputs.empty()) out << "\n[inputs]\n";
   for (const ModelInput& input : model.inputs) {
     out << key(input.name) << " = { column = " << toml_string(input.column)
-        << (!input.linear.has_value() ? ""
-            : *input.linear           ? ", hold = \"linear\""
-                                      : ", hold = \"held\"")
-        << ", unit = " << toml_string(input.unit) << " }\n";
+        << (input.hold ? ", hold = " + toml_string(std::string(hold_name(*input.hold))) : "") << ", unit = " << toml_string(input.unit) << " }\n";
   }
   if (!model.lets.empty()) out << "\n[let]\n";
   for (const ModelLet& let : model.lets) out << key(let.name) << " = " << toml_string(let.value.text) << '\n';
@@ -156,8 +153,8 @@ ModelFile augmented_model(const ModelFile& model, const surefoot::Diagnosis& dia
       parameter.value = std::clamp(calibrated.fit.value, parameter.low, parameter.high);
     }
   }
-  for (std::size_t i = 0; i < std::min(result.inputs.size(), diagnosis.linear_inputs.size()); ++i) {
-    if (model.kind == surefoot::SimulatorKind::ode) result.inputs[i].linear = diagnosis.linear_inputs[i];
+  for (std::size_t i = 0; i < std::min(result.inputs.size(), diagnosis.input_holds.size()); ++i) {
+    if (model.kind == surefoot::SimulatorKind::ode) result.inputs[i].hold = diagnosis.input_holds[i];
   }
   for (std::size_t i = 0; i < std::min(result.states.size(), diagnosis.freed_states.size()); ++i) {
     if (!diagnosis.freed_states[i]) continue;

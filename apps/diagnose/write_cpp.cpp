@@ -44,7 +44,7 @@ void write_info(std::ostream& out, const ModelFile& model, const EquationPlan& p
   out << "};\n    info.inputs = {";
   for (const auto& input : model.inputs) {
     out << "{" << string_literal(input.name) << ", " << string_literal(input.unit) << ", "
-        << (input.linear.value_or(false) ? "true" : "false") << "}, ";
+        << (input.hold ? "surefoot::InputHold::" + std::string(hold_name(*input.hold)) : "{}") << "}, ";
   }
   out << "};\n    info.outputs = {";
   for (const auto& output : model.outputs) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/diagnose/recording.hpp"
 #include "surefoot/diagnose/residual_model.hpp"
 
 namespace surefoot {
@@ -166,7 +167,7 @@ struct Diagnosis {
   std::vector<Curve> curves;
   int integration_order = 4;    // with which all this was simulated, see Integration
   double integration_step = 0;  // [s]
-  std::vector<bool> linear_inputs;  // by input: interpolated between rows, as the model says or as recordings show
+  std::vector<InputHold> input_holds;  // as the model says or as recordings show
   std::vector<bool> freed_states;   // by state: the model said where it begins, recordings say otherwise
   double seconds = 0;
   std::uint64_t seed = 0;

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -12,12 +13,17 @@
 
 namespace surefoot {
 
+/// What an input is between rows: the value of a row until the next one (a command that is logged as it is given), a
+/// straight line between both (something smooth that was measured), or the value of a row since the one before (a
+/// command that is logged after it acted).
+enum class InputHold : std::uint8_t { held, linear, before };
+
 /// One column per row of the recording (a context for an ODE, a step for a map). Units are those of the model.
 struct Recording {
   std::string name;                         // for messages and reports: the file's name
   std::map<std::string, double> constants;  // of this recording: mass, gain, supply voltage, ...
   Eigen::VectorXd time;                     // [s] rising; for a map the number of the row
-  Eigen::MatrixXd inputs;                   // input x row; held until the next row, or interpolated (InputInfo::linear)
+  Eigen::MatrixXd inputs;                   // input x row; between rows as InputInfo::hold says
   Eigen::MatrixXd outputs;                  // output x row; NaN: not measured in that row
   Eigen::VectorXd initial;                  // state in the first row, as far as it is known
   Eigen::VectorXd initial_scale;  // 0: that state is known; else it is estimated, and may be off by about this

@@ -24,9 +24,7 @@ struct StateInfo {
 
 struct InputInfo {
   std::string name, unit;
-  /// true: interpolated between rows; false: held until the next row. Not given: held, unless a diagnosis finds that
-  /// recordings say otherwise.
-  std::optional<bool> linear = {};
+  std::optional<InputHold> hold = {};  // not given: held, unless a diagnosis finds that recordings say otherwise
 };
 
 struct OutputInfo {
@@ -65,7 +63,7 @@ struct Integration {
   double step = 0;    // longest step [s]; 0: one step per row
   int restart = 0;    // begin again from the measured state every so many rows; 0: never (all states must be measured)
   double follow = 0;  // share of their distance to the readings by which measured states move in each row; 0: never
-  std::vector<bool> linear = {};  // by input: interpolated between rows, where the model does not say; empty: none
+  std::vector<InputHold> inputs = {};  // between rows, where the model does not say; empty: all held
 };
 
 /// A simulated recording; states are those before each restart.

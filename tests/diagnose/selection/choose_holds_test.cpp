@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
@@ -18,16 +17,16 @@ namespace {
 
 /// A tank of which it is said, or not, how its valve goes between rows.
 struct SaidTank : toys::LeakyTank {
-  std::optional<bool> linear = {};
+  std::optional<InputHold> hold = {};
   SimulatorInfo info() const {
     SimulatorInfo info = LeakyTank::info();
-    info.inputs[0].linear = linear;
+    info.inputs[0].hold = hold;
     return info;
   }
 };
 
-/// Recordings with noise of 5 mm of a tank whose valve is moved smoothly and is truly interpolated, or held.
-std::vector<Recording> tank_logs(bool linear) {
+/// Recordings with noise of 5 mm of a tank whose valve moves smoothly and is truly like that between rows.
+std::vector<Recording> tank_logs(InputHold truth) {
   std::vector<Recording> recordings;
   Rng rng(3);
   for (int r = 0; r < 4; ++r) {
@@ -35,51 +34,60 @@ std::vector<Recording> tank_logs(bool linear) {
     for (Eigen::Index i = 0; i < recording.rows(); ++i) {
       recording.inputs(0, i) = std::sin((3 + 0.4 * r) * recording.time[i]) + 0.5 * std::sin(7 * recording.time[i]);
     }
-    recording.outputs = simulate_augmented(SaidTank{{}, linear}, toys::machine({1.1, 0.9}, {}), recording).outputs;
+    recording.outputs = simulate_augmented(SaidTank{{}, truth}, toys::machine({1.1, 0.9}, {}), recording).outputs;
     for (double& level : recording.outputs.reshaped()) level += 0.005 * rng.normal();
     recordings.push_back(std::move(recording));
   }
   return recordings;
 }
 
-/// What is chosen from held on: whether the valve is interpolated, and whether the fit was replaced.
-std::pair<bool, bool> chosen(const SaidTank& tank, bool truth) {
-  const BoundSimulator bound = bind_simulator(tank, tank_logs(truth));
+SearchProblem tank_problem() {
   SearchProblem problem;
   problem.fit.recordings = {0, 1, 2, 3};
   problem.fit.weighting.sigma.setConstant(1, 0.005);
   problem.scale.sigma.setConstant(1, 0.1);
+  return problem;
+}
+
+/// What is chosen, beginning with `from`, where the truth is otherwise or not; checks that the fit follows.
+InputHold chosen(const SaidTank& tank, InputHold truth, InputHold from = InputHold::held) {
+  const BoundSimulator bound = bind_simulator(tank, tank_logs(truth));
+  SearchProblem problem = tank_problem();
+  problem.fit.integration.inputs = {from};
   Fit fitted = fit(bound, nominal_hypothesis(bound), problem.fit, serially());
   const double before = fitted.loss;
   const bool changed = choose_holds(bound, fitted, problem, serially());
-  const auto& linear = problem.fit.integration.linear;
-  return {changed && fitted.loss < before, !linear.empty() && linear[0]};
+  const InputHold now = problem.fit.integration.inputs[0];
+  CHECK(changed == (now != from));
+  CHECK((fitted.loss < before) == changed);
+  return now;
 }
 
-TEST_CASE("an input is interpolated if recordings say so, and only where the model does not say") {
-  CHECK(chosen(SaidTank{}, true) == std::pair{true, true});
-  CHECK(chosen(SaidTank{}, false) == std::pair{false, false});
-  CHECK(chosen(SaidTank{{}, false}, true) == std::pair{false, false});
-  CHECK(chosen(SaidTank{{}, true}, false) == std::pair{false, false});
+TEST_CASE("recordings say what an input is between rows, where the model does not") {
+  using enum InputHold;
+  for (const InputHold truth : {held, linear, before}) {
+    for (const InputHold from : {held, linear, before}) CHECK(chosen(SaidTank{}, truth, from) == truth);
+    CHECK(chosen(SaidTank{{}, held}, truth) == held);
+  }
 }
 
-TEST_CASE("what was interpolated is held again if recordings say so") {
-  const BoundSimulator bound = bind_simulator(SaidTank{}, tank_logs(false));
-  SearchProblem problem;
-  problem.fit.recordings = {0, 1, 2, 3};
-  problem.fit.weighting.sigma.setConstant(1, 0.005);
-  problem.scale.sigma.setConstant(1, 0.1);
-  problem.fit.integration.linear = {true};
+TEST_CASE("what stands still in most rows is not interpolated") {
+  std::vector<Recording> recordings = tank_logs(InputHold::linear);
+  for (Recording& recording : recordings) {  // as measured smoothly, but logged only every third row
+    for (Eigen::Index row = 0; row < recording.rows(); ++row) recording.inputs(0, row) = recording.inputs(0, row - row % 3);
+  }
+  const BoundSimulator bound = bind_simulator(SaidTank{}, recordings);
+  SearchProblem problem = tank_problem();
   Fit fitted = fit(bound, nominal_hypothesis(bound), problem.fit, serially());
-  CHECK(choose_holds(bound, fitted, problem, serially()));
-  CHECK_FALSE(problem.fit.integration.linear[0]);
+  choose_holds(bound, fitted, problem, serially());
+  const auto& holds = problem.fit.integration.inputs;
+  CHECK((holds.empty() || holds[0] != InputHold::linear));
 }
 
 TEST_CASE("a diagnosis of smooth inputs finds nothing missing, and says that they are interpolated") {
-  const Diagnosis found = diagnose(SaidTank{}, tank_logs(true), DiagnoseOptions{}, surefoot::Threads{}, 1);
+  const Diagnosis found = diagnose(SaidTank{}, tank_logs(InputHold::linear), DiagnoseOptions{}, surefoot::Threads{}, 1);
   CHECK(found.effects.empty());
-  REQUIRE(found.linear_inputs.size() == 1);
-  CHECK(found.linear_inputs[0]);
+  CHECK(found.input_holds == std::vector<InputHold>{InputHold::linear});
   CHECK(std::ranges::any_of(found.remarks, [](const Remark& one) {
     return one.text.find("input valve goes straight from row to row") != std::string::npos;
   }));

@@ -56,13 +56,13 @@ std::vector<Recording> block_logs(const std::vector<double>& speeds, double fric
 
 const std::vector<double> in_motion{0.5, -0.4, 0.8, 0, -0.7, 0.3}, at_rest(6, 0.0);
 
-struct Bench {
+struct BlockBench {
   BoundSimulator bound;
   SearchProblem problem;
   Fit fitted;
 };
-Bench bench(const std::vector<double>& speeds) {
-  Bench b{bind_simulator(SeenBlock{}, block_logs(speeds)), {}, {}};
+BlockBench block_bench(const std::vector<double>& speeds) {
+  BlockBench b{bind_simulator(SeenBlock{}, block_logs(speeds)), {}, {}};
   b.problem.fit.recordings = {0, 1, 2, 3, 4, 5};
   b.problem.scale.sigma.setConstant(1, 0.1);
   b.fitted = calibrate(b.bound, nominal_hypothesis(b.bound), b.problem.fit, 4, 1, serially());
@@ -72,7 +72,7 @@ Bench bench(const std::vector<double>& speeds) {
 }
 
 TEST_CASE("a speed that recordings do not begin with is freed; a position that is read, never") {
-  Bench b = bench(in_motion);
+  BlockBench b = block_bench(in_motion);
   CHECK(free_initial_states(b.bound, b.fitted, b.problem, serially()) == std::vector<bool>{false, true});
   for (std::size_t r = 0; r < in_motion.size(); ++r) {
     CHECK(b.bound.recordings[r].initial_scale[1] > 0);
@@ -82,7 +82,7 @@ TEST_CASE("a speed that recordings do not begin with is freed; a position that i
 }
 
 TEST_CASE("what begins as the model says is left alone, and known again if it was freed in vain") {
-  Bench b = bench(at_rest);
+  BlockBench b = block_bench(at_rest);
   CHECK(free_initial_states(b.bound, b.fitted, b.problem, serially()) == std::vector<bool>{false, false});
   CHECK(b.bound.recordings[0].initial_scale[1] == 0);
 
@@ -93,7 +93,7 @@ TEST_CASE("what begins as the model says is left alone, and known again if it wa
   CHECK(b.bound.recordings[0].initial_scale[1] == 0);
   CHECK(b.fitted.hypothesis.initial[0][1] == 0);
 
-  Bench moving = bench(in_motion);
+  BlockBench moving = block_bench(in_motion);
   std::vector<bool> needed = free_initial_states(moving.bound, moving.fitted, moving.problem, serially());
   const double scale = moving.bound.recordings[0].initial_scale[1];
   restore_initial_states(moving.bound, needed, moving.fitted, moving.problem, serially());

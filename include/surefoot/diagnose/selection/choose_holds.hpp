@@ -1,5 +1,6 @@
-// Inputs between rows: held, as commands of a digital controller are, or interpolated, as what was measured of
-// something smooth is. Held instead of interpolated it comes half a row too late, which no delay can mend.
+// Inputs between rows: held, as commands of a digital controller are, interpolated, as what was measured of something
+// smooth is, or held before their row, as commands are that are logged after they acted. Held, the latter two come half a
+// row or a row too late, which no delay can mend.
 #pragma once
 
 #include "surefoot/diagnose/estimation/calibrate.hpp"
@@ -7,10 +8,10 @@
 
 namespace surefoot::diagnosis {
 
-/// Interpolates inputs of which the model does not say, or holds them again, where the fit `fitted` of an ODE predicts
-/// recordings better with it, at the odds that name an effect; in `problem.fit.integration`, input by input. True if
-/// anything changed: `fitted` is then the fit with it. Cost: a simulation for each such input, and a fit if that
-/// matters against the residuals.
+/// Chooses how inputs of which the model does not say go between rows, where the fit `fitted` of an ODE predicts
+/// recordings better with another way, at the odds that name an effect; in `problem.fit.integration`, input by input.
+/// Only what moves in most rows is interpolated. True if anything changed: `fitted` is then the fit with it. Cost: two
+/// simulations for each such input, and two fits if that matters against the residuals.
 bool choose_holds(const BoundSimulator& bound, Fit& fitted, SearchProblem& problem, const Parallel& parallel);
 
 }  // namespace surefoot::diagnosis

@@ -25,6 +25,18 @@ SUREFOOT_ONCE bool differ(const BoundSimulator& bound, const Hypothesis& hypothe
   return any;
 }
 
+/// Whether an input moves from most rows to the next: a command that stands still is not interpolated.
+SUREFOOT_ONCE bool moves(const BoundSimulator& bound, const std::vector<std::size_t>& recordings, std::size_t input) {
+  const auto i = static_cast<Eigen::Index>(input);
+  Eigen::Index moving = 0, rows = 0;
+  for (const std::size_t r : recordings) {
+    const Eigen::MatrixXd& inputs = bound.recordings[r].inputs;
+    for (Eigen::Index row = 1; row < inputs.cols(); ++row) moving += inputs(i, row) != inputs(i, row - 1) ? 1 : 0;
+    rows += inputs.cols() - 1;
+  }
+  return 2 * moving > rows;
+}
+
 SUREFOOT_ONCE bool choose_holds(const BoundSimulator& bound, Fit& fitted, SearchProblem& problem,
                                 const Parallel& parallel) {
   if (bound.info.kind == SimulatorKind::map) return false;
@@ -34,19 +46,28 @@ SUREFOOT_ONCE bool choose_holds(const BoundSimulator& bound, Fit& fitted, Search
         error_squares(bound, one.hypothesis, with.recordings, with.integration, problem.scale, parallel)};
   };
   bool changed = false;
-  for (std::size_t i = 0; i < bound.info.inputs.size() && !problem.stopped(); ++i) {
-    if (bound.info.inputs[i].linear.has_value()) continue;
-    FitProblem other = problem.fit;
-    other.integration.linear.resize(bound.info.inputs.size(), false);
-    other.integration.linear[i] = !other.integration.linear[i];
-    if (!differ(bound, fitted.hypothesis, problem.fit, other.integration, parallel)) continue;
-    const Fit then = fit(bound, fitted.hypothesis, other, parallel);
-    if (!then.ok) continue;
-    const double odds = log_odds(evaluate(then, other), evaluate(fitted, problem.fit), problem.criteria);
-    if (!(odds > std::log(problem.criteria.named_odds))) continue;
-    problem.fit.integration = other.integration;
-    fitted = then;
-    changed = true;
+  for (std::size_t i = 0; i < bound.info.inputs.size(); ++i) {
+    if (bound.info.inputs[i].hold.has_value()) continue;
+    const FitProblem before = problem.fit;
+    const Fit now = fitted;
+    double most = std::log(problem.criteria.named_odds);
+    for (const InputHold hold : {InputHold::held, InputHold::linear, InputHold::before}) {
+      if (problem.stopped()) return changed;
+      FitProblem other = before;
+      other.integration.inputs.resize(bound.info.inputs.size(), InputHold::held);
+      if (other.integration.inputs[i] == hold) continue;
+      if (hold == InputHold::linear && !moves(bound, before.recordings, i)) continue;
+      other.integration.inputs[i] = hold;
+      if (!differ(bound, now.hypothesis, before, other.integration, parallel)) continue;
+      const Fit then = fit(bound, now.hypothesis, other, parallel);
+      if (!then.ok) continue;
+      const double odds = log_odds(evaluate(then, other), evaluate(now, before), problem.criteria);
+      if (!(odds > most)) continue;
+      most = odds;
+      problem.fit.integration = other.integration;
+      fitted = then;
+      changed = true;
+    }
   }
   return changed;
 }

@@ -15,15 +15,18 @@ namespace surefoot::diagnosis {
 template <class Input>
 class InputSignal {
  public:
-  /// `linear`: the inputs that are interpolated, of those of which the model does not say; empty: none.
-  InputSignal(const SimulatorInfo& info, const Recording& recording, const std::vector<bool>& linear = {})
+  /// `holds`: of those inputs of which the model does not say; empty: held.
+  InputSignal(const SimulatorInfo& info, const Recording& recording, const std::vector<InputHold>& holds = {})
       : recording_(recording),
         late_(info.inputs.size(), 0.0),
+        ahead_(info.inputs.size(), 0),
         linear_(info.inputs.size()),
         from_rest_(info.inputs.size(), false),
         seen_(info.inputs.size(), 0) {
     for (std::size_t i = 0; i < linear_.size(); ++i) {
-      linear_[i] = info.inputs[i].linear.value_or(i < linear.size() && linear[i]);
+      const InputHold hold = info.inputs[i].hold.value_or(i < holds.size() ? holds[i] : InputHold::held);
+      linear_[i] = hold == InputHold::linear;
+      ahead_[i] = hold == InputHold::before ? 1 : 0;
       any_special_ = any_special_ || linear_[i];
       steady_ = steady_ && !linear_[i];
     }
@@ -42,13 +45,13 @@ class InputSignal {
     sum.assign(static_cast<std::size_t>(recording_.rows()), 0.0);
     for (std::size_t row = 1; row < sum.size(); ++row) {
       const auto r = static_cast<Eigen::Index>(row);
-      sum[row] = sum[row - 1] + recording_.inputs(i, r - 1) * (recording_.time[r] - recording_.time[r - 1]);
+      sum[row] = sum[row - 1] + logged(i, r - 1) * (recording_.time[r] - recording_.time[r - 1]);
     }
   }
 
   Input at_row(Eigen::Index row) const {
     Input u = unset<Input>(recording_.inputs.rows());
-    for (Eigen::Index i = 0; i < u.size(); ++i) u[i] = recording_.inputs(i, row);
+    for (Eigen::Index i = 0; i < u.size(); ++i) u[i] = logged(i, row);
     return u;
   }
 
@@ -67,11 +70,11 @@ class InputSignal {
       if (late_[i] == 0 || linear_[i]) continue;
       const auto k = static_cast<Eigen::Index>(i);
       const double begin = recording_.time[0] + late_[i];
-      if (from_rest_[i] && begin > after && recording_.inputs(k, 0) != 0) next = std::min(next, begin);
+      if (from_rest_[i] && begin > after && logged(k, 0) != 0) next = std::min(next, begin);
       for (Eigen::Index row = row_before(i, after - late_[i]) + 1; row < recording_.rows(); ++row) {
         const double change = recording_.time[row] + late_[i];
         if (change >= next) break;
-        if (change > after && recording_.inputs(k, row) != recording_.inputs(k, row - 1)) next = change;
+        if (change > after && logged(k, row) != logged(k, row - 1)) next = change;
       }
     }
     return next;
@@ -103,6 +106,11 @@ class InputSignal {
     return u;
   }
 
+  // What is given from a row on.
+  double logged(Eigen::Index i, Eigen::Index row) const {
+    return recording_.inputs(i, std::min(row + ahead_[static_cast<std::size_t>(i)], recording_.rows() - 1));
+  }
+
   // The last row at or before time t, or the first; rows are searched from the one that input i showed last.
   Eigen::Index row_before(std::size_t i, double t) const {
     Eigen::Index row = seen_[i];
@@ -127,11 +135,12 @@ class InputSignal {
     if (rests(i, t)) return 0;
     const auto k = static_cast<Eigen::Index>(i);
     const Eigen::Index row = row_before(i, t);
-    return integral_[i][static_cast<std::size_t>(row)] + recording_.inputs(k, row) * (t - recording_.time[row]);
+    return integral_[i][static_cast<std::size_t>(row)] + logged(k, row) * (t - recording_.time[row]);
   }
 
   const Recording& recording_;
   std::vector<double> late_;
+  std::vector<Eigen::Index> ahead_;  // by input: the row that holds what is given from a row on, relative to it
   std::vector<bool> linear_, from_rest_;
   std::vector<std::vector<double>> integral_;
   std::vector<Eigen::Index> seen_;  // by input: the row it showed at the beginning of the present one

@@ -43,7 +43,7 @@ class SimulationRun {
            .start = recording.time[0],
            .raw = std::vector<double>(augmentation.effects.size()),
            .past = std::vector<SignalHistory>(augmentation.effects.size())},
-        u_(info, recording, integration.linear),
+        u_(info, recording, integration.inputs),
         modes_(m_.slots.dry.size()) {
     m_.driven_signals = has_tap<S> && std::any_of(structure.driven_signal.begin(), structure.driven_signal.end(),
                                                   [](bool driven) { return driven; });

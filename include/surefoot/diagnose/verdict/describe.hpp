@@ -39,8 +39,8 @@ std::string not_held_out_sentence();
 /// For a state that begins, in recordings, between these values and not where the model says.
 std::string freed_state_sentence(const StateInfo& state, double low, double high);
 
-/// For an input of which the recordings say that it is not held between rows.
-std::string interpolated_sentence(const std::string& input);
+/// For an input of which the recordings say that it is not held until the next row.
+std::string hold_sentence(const std::string& input, InputHold hold);
 
 /// That friction at one of these velocities may have to move the others too.
 std::string moved_together_sentence(const SimulatorInfo& info, const std::vector<int>& velocities);

@@ -106,11 +106,13 @@ SUREFOOT_ONCE std::string freed_state_sentence(const StateInfo& state, double lo
          "Recording::initial_scale)";
 }
 
-SUREFOOT_ONCE std::string interpolated_sentence(const std::string& input) {
+SUREFOOT_ONCE std::string hold_sentence(const std::string& input, InputHold hold) {
+  const bool linear = hold == InputHold::linear;
   return "input " + input +
-         " goes straight from row to row in what follows: recordings fit better so than with values held until the "
-         "next "
-         "row; say in the model which it is (a model file by hold = \"linear\" or \"held\", C++ by InputInfo::linear)";
+         (linear ? " goes straight from row to row" : " of each row acts since the row before, not from its own row on,") +
+         " in what follows: recordings fit better so than with values held until the next row; say in the model which it "
+         "is (a model file by hold = " +
+         (linear ? "\"linear\"" : "\"before\"") + " or \"held\", C++ by InputInfo::hold)";
 }
 
 SUREFOOT_ONCE std::string moved_together_sentence(const SimulatorInfo& info, const std::vector<int>& velocities) {

@@ -22,8 +22,8 @@ LogExamination examine_recordings(const BindSimulator& bind, const std::vector<R
 struct FoundModel {
   Hypothesis hypothesis;
   Sizes sizes;               // typical ones, of which the bounds of effects are multiples
-  std::vector<bool> linear;  // inputs, as in Integration
-  std::vector<bool> freed;   // states that begin otherwise than the model says
+  std::vector<InputHold> holds;  // of inputs, as in Integration
+  std::vector<bool> freed;       // states that begin otherwise than the model says
 };
 
 /// The same by a model with the effects that were found: physics that was missing hides a clock that is some percent

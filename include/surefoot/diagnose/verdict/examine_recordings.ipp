@@ -53,7 +53,7 @@ SUREFOOT_ONCE LogExamination examine_with_effects(const BindSimulator& bind, con
   const auto bind_as_found = [&](std::vector<Recording> logged) {
     BoundSimulator bound = bind(std::move(logged));
     bound.sizes = found.sizes;
-    bound.integration.linear = found.linear;
+    bound.integration.inputs = found.holds;
     for (std::size_t i = 0; i < found.freed.size(); ++i) {
       if (found.freed[i]) set_initial_scale(bound, i, found.sizes.state[i]);
     }

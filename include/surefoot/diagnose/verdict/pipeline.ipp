@@ -218,10 +218,12 @@ SUREFOOT_ONCE void describe_models(const EstimationSetup& setup, const FittedMod
   diagnosis.noise_sentence = noise_sentence(setup.noise);
   diagnosis.integration_order = bound.integration.order;
   diagnosis.integration_step = bound.integration.step;
+  const std::vector<InputHold>& found = bound.integration.inputs;
   for (std::size_t i = 0; i < bound.info.inputs.size(); ++i) {
-    const bool found = i < bound.integration.linear.size() && bound.integration.linear[i];
-    diagnosis.linear_inputs.push_back(bound.info.inputs[i].linear.value_or(found));
-    if (found) diagnosis.remarks.push_back({"", interpolated_sentence(bound.info.inputs[i].name)});
+    const InputInfo& input = bound.info.inputs[i];
+    diagnosis.input_holds.push_back(input.hold.value_or(i < found.size() ? found[i] : InputHold::held));
+    const bool otherwise = !input.hold && diagnosis.input_holds[i] != InputHold::held;
+    if (otherwise) diagnosis.remarks.push_back({"", hold_sentence(input.name, diagnosis.input_holds[i])});
   }
   for (std::size_t e = 0; e < chosen.effects.size(); ++e) {
     FoundEffect found = describe(bound, chosen, e, &errors);
@@ -433,7 +435,7 @@ SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vec
 
   run.progress("evaluating", progress_evaluation);
   evaluate_selection(setup, calibration, problem, selection, candidates, run, diagnosis);
-  return {selection.chosen.hypothesis, setup.bound.sizes, setup.bound.integration.linear, setup.freed};
+  return {selection.chosen.hypothesis, setup.bound.sizes, setup.bound.integration.inputs, setup.freed};
 }
 
 /// Stages after the log was examined. What was found shows more faults: with these repaired all begins anew, if there
