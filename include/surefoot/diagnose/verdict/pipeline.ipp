@@ -107,7 +107,6 @@ SUREFOOT_ONCE bool revise_what_was_said(EstimationSetup& setup, Fit& calibrated,
 }
 
 SUREFOOT_ONCE Calibration calibrate_model(EstimationSetup& setup, const RunContext& run) {
-  constexpr int most_rounds = 3;  // inputs, initial states, and neither
   auto& [bound, split, noise, problem, freed] = setup;
   const Parallel& parallel = run.parallel;
   const Hypothesis nominal = nominal_with_known(bound, run.options);
@@ -122,8 +121,10 @@ SUREFOOT_ONCE Calibration calibrate_model(EstimationSetup& setup, const RunConte
   }
   Fit calibrated{nominal, 0, true};
   std::vector<SimulatedRun> runs;
+  // One change shows the next: each input once, initial states, neither; errors of the integration show in the end.
+  const std::size_t most_rounds = bound.info.inputs.size() + 2;
   bool changed = true;
-  for (int round = 0; round < most_rounds && changed; ++round) {
+  for (std::size_t round = 0; round < most_rounds && changed; ++round) {
     calibrated = calibrate(bound, calibrated.hypothesis, problem, run.options.starts, run.seed, parallel);
     bound.integration = choose_integration(bound, calibrated.hypothesis, problem.weighting.sigma, bound.integration,
                                            split.training, parallel);
@@ -366,6 +367,16 @@ SUREFOOT_ONCE Searched search_effects(EstimationSetup& setup, const RunContext& 
   return found;
 }
 
+/// Fits the model without effects once more: the search found that inputs or initial states are otherwise.
+SUREFOOT_ONCE void calibrate_again(EstimationSetup& setup, Searched& found, const RunContext& run) {
+  Fit& calibrated = found.calibration.calibrated;
+  calibrated = fit(setup.bound, calibrated.hypothesis, found.selection.fit, run.parallel);
+  const std::size_t known = calibrated.hypothesis.effects.size();
+  found.selection.nominal.hypothesis = calibrated.hypothesis;
+  EvaluatedHypothesis& chosen = found.selection.chosen;
+  if (chosen.hypothesis.effects.size() == known) chosen.hypothesis = calibrated.hypothesis;
+}
+
 /// With what was found recordings may refute more initial states, which asks for another search, or those freed before
 /// may be known after all.
 SUREFOOT_ONCE void revise_initial_states(EstimationSetup& setup, Searched& found, const RunContext& run,
@@ -390,16 +401,15 @@ SUREFOOT_ONCE void revise_initial_states(EstimationSetup& setup, Searched& found
   restore_initial_states(setup.bound, setup.freed, fitted, with_present_weights(), run.parallel);
   if (setup.freed == before) return;
   found.selection.chosen.hypothesis = fitted.hypothesis;
-  Fit& calibrated = found.calibration.calibrated;
+  Hypothesis& calibrated = found.calibration.calibrated.hypothesis;
   for (std::size_t r = 0; r < setup.bound.recordings.size(); ++r) {
     for (std::size_t i = 0; i < before.size(); ++i) {
       const auto state = static_cast<Eigen::Index>(i);
       const bool restored = before[i] && !setup.freed[i];
-      if (restored) calibrated.hypothesis.initial[r][state] = setup.bound.recordings[r].initial[state];
+      if (restored) calibrated.initial[r][state] = setup.bound.recordings[r].initial[state];
     }
   }
-  calibrated = fit(setup.bound, calibrated.hypothesis, found.selection.fit, run.parallel);
-  found.selection.nominal.hypothesis = calibrated.hypothesis;
+  calibrate_again(setup, found, run);
 }
 
 SUREFOOT_ONCE void remark_on_freed_states(const EstimationSetup& setup, const Hypothesis& chosen,
@@ -423,6 +433,9 @@ SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vec
   EstimationSetup setup = hold_out_recordings(bind, std::move(recordings), run);
   name_recordings(setup, diagnosis);
   Searched found = search_effects(setup, run, diagnosis);
+  const bool inputs_changed = found.selection.fit.integration.inputs != setup.bound.integration.inputs;
+  setup.bound.integration.inputs = found.selection.fit.integration.inputs;
+  if (inputs_changed) calibrate_again(setup, found, run);
   revise_initial_states(setup, found, run, diagnosis);
   auto& [calibration, problem, candidates, selection] = found;
   diagnosis.complete = !run.search_has_ended();
