@@ -31,7 +31,7 @@ ModelInput read_input(const TomlTable& table, const TomlEntry& entry) {
     if (const toml::value* hold = find(own, "hold")) {
       const std::string text = to_text(*hold, place(own, *hold, "hold"));
       for (const surefoot::InputHold one :
-           {surefoot::InputHold::held, surefoot::InputHold::linear, surefoot::InputHold::before}) {
+           {surefoot::InputHold::zero_order, surefoot::InputHold::linear, surefoot::InputHold::before}) {
         if (text == hold_name(one)) input.hold = one;
       }
       if (!input.hold) fail(place(own, *hold, "hold"), R"("held", "linear" or "before" is expected)");

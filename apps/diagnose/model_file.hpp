@@ -23,7 +23,7 @@ struct Formula {
 
 /// How a model file calls it.
 constexpr std::string_view hold_name(surefoot::InputHold hold) {
-  return hold == surefoot::InputHold::held ? "held" : hold == surefoot::InputHold::linear ? "linear" : "before";
+  return hold == surefoot::InputHold::zero_order ? "held" : hold == surefoot::InputHold::linear ? "linear" : "before";
 }
 
 struct ModelInput {

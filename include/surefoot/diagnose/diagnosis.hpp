@@ -168,7 +168,7 @@ struct Diagnosis {
   int integration_order = 4;    // with which all this was simulated, see Integration
   double integration_step = 0;  // [s]
   std::vector<InputHold> input_holds;  // as the model says or as recordings show
-  std::vector<bool> freed_states;   // by state: the model said where it begins, recordings say otherwise
+  std::vector<bool> freed_states;      // by state: the model said where it begins, recordings say otherwise
   double seconds = 0;
   std::uint64_t seed = 0;
 };

@@ -13,10 +13,10 @@
 
 namespace surefoot {
 
-/// What an input is between rows: the value of a row until the next one (a command that is logged as it is given), a
-/// straight line between both (something smooth that was measured), or the value of a row since the one before (a
-/// command that is logged after it acted).
-enum class InputHold : std::uint8_t { held, linear, before };
+/// What an input is between rows: the value of a row until the next one (zero-order hold: a command that is logged as
+/// it is given), a straight line between both (something smooth that was measured), or the value of a row since the one
+/// before (a command that is logged after it acted).
+enum class InputHold : std::uint8_t { zero_order, linear, before };
 
 /// One column per row of the recording (a context for an ODE, a step for a map). Units are those of the model.
 struct Recording {

@@ -50,7 +50,7 @@ SearchProblem tank_problem() {
 }
 
 /// What is chosen, beginning with `from`, where the truth is otherwise or not; checks that the fit follows.
-InputHold chosen(const SaidTank& tank, InputHold truth, InputHold from = InputHold::held) {
+InputHold chosen(const SaidTank& tank, InputHold truth, InputHold from = InputHold::zero_order) {
   const BoundSimulator bound = bind_simulator(tank, tank_logs(truth));
   SearchProblem problem = tank_problem();
   problem.fit.integration.inputs = {from};
@@ -65,16 +65,17 @@ InputHold chosen(const SaidTank& tank, InputHold truth, InputHold from = InputHo
 
 TEST_CASE("recordings say what an input is between rows, where the model does not") {
   using enum InputHold;
-  for (const InputHold truth : {held, linear, before}) {
-    for (const InputHold from : {held, linear, before}) CHECK(chosen(SaidTank{}, truth, from) == truth);
-    CHECK(chosen(SaidTank{{}, held}, truth) == held);
+  for (const InputHold truth : {zero_order, linear, before}) {
+    for (const InputHold from : {zero_order, linear, before}) CHECK(chosen(SaidTank{}, truth, from) == truth);
+    CHECK(chosen(SaidTank{{}, zero_order}, truth) == zero_order);
   }
 }
 
 TEST_CASE("what stands still in most rows is not interpolated") {
   std::vector<Recording> recordings = tank_logs(InputHold::linear);
   for (Recording& recording : recordings) {  // as measured smoothly, but logged only every third row
-    for (Eigen::Index row = 0; row < recording.rows(); ++row) recording.inputs(0, row) = recording.inputs(0, row - row % 3);
+    for (Eigen::Index row = 0; row < recording.rows(); ++row)
+      recording.inputs(0, row) = recording.inputs(0, row - row % 3);
   }
   const BoundSimulator bound = bind_simulator(SaidTank{}, recordings);
   SearchProblem problem = tank_problem();

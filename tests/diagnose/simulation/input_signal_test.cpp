@@ -13,8 +13,11 @@ namespace {
 
 // Input 0 is held, input 1 interpolated.
 SimulatorInfo two_inputs() {
-  return {
-      .name = "two", .states = {}, .inputs = {{"held", "1"}, {"linear", "1", InputHold::linear}}, .outputs = {}, .parameters = {}};
+  return {.name = "two",
+          .states = {},
+          .inputs = {{"held", "1"}, {"linear", "1", InputHold::linear}},
+          .outputs = {},
+          .parameters = {}};
 }
 
 // Rows at unequal intervals.
@@ -45,23 +48,25 @@ TEST_CASE("what is logged after it acted acts since the row before, late or not"
   SimulatorInfo info = two_inputs();
   info.inputs[0].hold = {};
   const Recording recording = unequal();
-  InputSignal<Vec<2>> u(info, recording, {InputHold::before, InputHold::held});
+  InputSignal<Vec<2>> u(info, recording, {InputHold::before, InputHold::zero_order});
   CHECK(u.at_row(1)[0] == 4);
   CHECK(u.at_row(4)[0] == 9);  // the last row has no other
   u.go_to(1);
   CHECK(u.between(2.2, 0.1, 0.5)[0] == 4);
   u.delay(0, 100);
   u.go_to(3);
-  CHECK(u.between(recording.time[3], 0.1, 0.5)[0] == doctest::Approx(-3));  // as in the first row, which acts from row 0 on
-  info.inputs[0].hold = InputHold::held;
-  CHECK(InputSignal<Vec<2>>(info, recording, {InputHold::before, InputHold::held}).at_row(1)[0] == -3);  // the model says
+  CHECK(u.between(recording.time[3], 0.1, 0.5)[0] ==
+        doctest::Approx(-3));  // as in the first row, which acts from row 0 on
+  info.inputs[0].hold = InputHold::zero_order;
+  CHECK(InputSignal<Vec<2>>(info, recording, {InputHold::before, InputHold::zero_order}).at_row(1)[0] ==
+        -3);  // the model says
 }
 
 TEST_CASE("inputs are steady during a step unless one is interpolated") {
   SimulatorInfo info = two_inputs();
   const Recording recording = unequal();
   CHECK_FALSE(InputSignal<Vec<2>>(info, recording).steady());
-  info.inputs[1].hold = InputHold::held;
+  info.inputs[1].hold = InputHold::zero_order;
   InputSignal<Vec<2>> u(info, recording);
   CHECK(u.steady());
   u.delay(0, 0.15);

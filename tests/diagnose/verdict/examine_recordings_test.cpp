@@ -13,10 +13,6 @@
 namespace surefoot::diagnosis {
 namespace {
 
-const BindSimulator bind_tank_of_examination = [](std::vector<Recording> recordings) {
-  return bind_simulator(toys::LeakyTank{}, std::move(recordings));
-};
-
 TEST_CASE("faults of the log are named first, and repaired only if that is asked for") {
   DiagnoseOptions options;
   const Parallel parallel = serially();
@@ -24,22 +20,21 @@ TEST_CASE("faults of the log are named first, and repaired only if that is asked
   auto recordings = toys::noisy_tanks({}, 0.01);
   recordings[3].outputs *= -1;
   const auto logged = recordings[3].outputs;
-  const auto named = examine_recordings(bind_tank_of_examination, recordings, run).faults;
+  const auto named = examine_recordings(toys::bind_tank, recordings, run).faults;
   REQUIRE(named.size() == 1);
   CHECK(named[0].recording == "tank 3");
   CHECK(named[0].kind == "sign_flipped");
   CHECK_FALSE(named[0].repaired);
   CHECK(recordings[3].outputs == logged);
   options.repair = true;
-  const LogExamination examined = examine_recordings(bind_tank_of_examination, recordings, run);
+  const LogExamination examined = examine_recordings(toys::bind_tank, recordings, run);
   CHECK(examined.faults.at(0).repaired);
   CHECK(examined.repaired[3].outputs(0, 7) == -logged(0, 7));
   recordings = examined.repaired;
   const SimulatorInfo info = toys::LeakyTank{}.info();
-  CHECK(
-      run_pipeline(bind_tank_of_examination, info, recordings, {.max_effects = 0}, parallel, 1, {}).log_faults.empty());
+  CHECK(run_pipeline(toys::bind_tank, info, recordings, {.max_effects = 0}, parallel, 1, {}).log_faults.empty());
   recordings[3].outputs *= -1;
-  CHECK(run_pipeline(bind_tank_of_examination, info, recordings, {.max_effects = 0}, parallel, 1, {})
+  CHECK(run_pipeline(toys::bind_tank, info, recordings, {.max_effects = 0}, parallel, 1, {})
             .sentence.starts_with("Caution, the log has a fault: tank 3: level_m has the opposite sign"));
 }
 

@@ -15,10 +15,6 @@
 namespace surefoot::diagnosis {
 namespace {
 
-const BindSimulator bind_tank = [](std::vector<Recording> recordings) {
-  return bind_simulator(toys::LeakyTank{}, std::move(recordings));
-};
-
 TEST_CASE("recordings are checked, freed of outliers, and remarked upon") {
   auto recordings = toys::noisy_tanks({}, 0.01, 2);
   recordings[1].outputs(0, 50) = 1000;
@@ -35,60 +31,23 @@ TEST_CASE("few recordings are cut, unless those to hold out are named; one short
   options.starts = 2;
   const Parallel parallel = serially();
   const RunContext run{options, parallel};
-  CHECK(cut_few_recordings(bind_tank, toys::noisy_tanks({}, 0.01, 2), run).size() == 6);
-  CHECK(cut_few_recordings(bind_tank, toys::noisy_tanks({}, 0.01, 4), run).size() == 4);
+  CHECK(cut_few_recordings(toys::bind_tank, toys::noisy_tanks({}, 0.01, 2), run).size() == 6);
+  CHECK(cut_few_recordings(toys::bind_tank, toys::noisy_tanks({}, 0.01, 4), run).size() == 4);
   options.held_out = {"tank 1"};
-  CHECK(cut_few_recordings(bind_tank, toys::noisy_tanks({}, 0.01, 2), run).size() == 2);
+  CHECK(cut_few_recordings(toys::bind_tank, toys::noisy_tanks({}, 0.01, 2), run).size() == 2);
   options.held_out = {};
   auto short_one = toys::noisy_tanks({}, 0.01, 1);
   short_one[0] = part_of(short_one[0], 0, 50, short_one[0].initial, short_one[0].initial_scale);
-  CHECK_THROWS_AS(cut_few_recordings(bind_tank, short_one, run), DiagnoseError);
+  CHECK_THROWS_AS(cut_few_recordings(toys::bind_tank, short_one, run), DiagnoseError);
 }
 
 TEST_CASE("what is held out takes no part in the fit") {
   DiagnoseOptions options;
   options.held_out = {"tank 2"};
   const Parallel parallel = serially();
-  const EstimationSetup setup = hold_out_recordings(bind_tank, toys::noisy_tanks({}, 0.01), {options, parallel});
+  const EstimationSetup setup = hold_out_recordings(toys::bind_tank, toys::noisy_tanks({}, 0.01), {options, parallel});
   CHECK(setup.split.held_out == std::vector<std::size_t>{2});
   CHECK(setup.problem.recordings == std::vector<std::size_t>{0, 1, 3, 4, 5});
-}
-
-TEST_CASE("candidates are the effects that were asked for, at every place that they fit") {
-  DiagnoseOptions options;
-  options.effects = {"constant_rate", "sensor_bias", "wind"};
-  options.more_effects = {{.name = "wind", .place = Place::state}};
-  options.starts = 2;
-  const Parallel parallel = serially();
-  const RunContext run{options, parallel};
-  EstimationSetup setup = hold_out_recordings(bind_tank, toys::noisy_tanks({}, 0.01), run);
-  const Calibration calibration = calibrate_model(setup, run);
-  std::string labels;
-  for (const AttachedEffect& one : candidate_effects(setup, calibration, run)) labels += one.label() + "; ";
-  CHECK(labels.find("constant_rate at level; ") != std::string::npos);
-  CHECK(labels.find("sensor_bias at level_m; ") != std::string::npos);
-  CHECK(labels.find("wind at level; ") != std::string::npos);
-  CHECK(labels.find("leak") == std::string::npos);
-  setup.noise = NoiseKind::process;  // rows start from readings: no fault of a sensor can be seen
-  for (const AttachedEffect& one : candidate_effects(setup, calibration, run)) {
-    CHECK(one.effect->place != Place::output);
-  }
-}
-
-TEST_CASE("small problems get a longer list of proposals, and the search ends when its time is over") {
-  DiagnoseOptions options;
-  const Parallel parallel = serially();
-  options.starts = 2;
-  EstimationSetup setup = hold_out_recordings(bind_tank, toys::noisy_tanks({}, 0.01), {options, parallel});
-  const Calibration calibration = calibrate_model(setup, {options, parallel});
-  const SearchProblem problem = search_problem(setup, calibration, {options, parallel});
-  CHECK(problem.effort.shortlist == SearchEffort{}.max_shortlist);
-  CHECK(problem.screened.size() == SearchEffort{}.screening);
-  CHECK(problem.scale.sigma == error_scale(setup.bound));
-  CHECK(problem.nominal.parameters == calibration.nominal.parameters);
-  CHECK_FALSE(problem.stopped());
-  options.max_seconds = 1e-9;
-  CHECK(search_problem(setup, calibration, {options, parallel}).stopped());
 }
 
 TEST_CASE("the search leaves time for fits without each held-out recording, and it is said where these were not made") {
@@ -104,47 +63,16 @@ TEST_CASE("the search leaves time for fits without each held-out recording, and 
 
   options.max_seconds = 1e-9;
   const Diagnosis late =
-      run_pipeline(bind_tank, toys::LeakyTank{}.info(), toys::noisy_tanks({}, 0.01), options, parallel, 1, {});
+      run_pipeline(toys::bind_tank, toys::LeakyTank{}.info(), toys::noisy_tanks({}, 0.01), options, parallel, 1, {});
   const auto says_so = [](const Remark& one) { return one.text == not_held_out_sentence(); };
   CHECK(std::ranges::any_of(late.remarks, says_so));
   CHECK_FALSE(late.complete);
 }
 
-TEST_CASE("residuals are searched for more as long as they hold what noise does not") {
-  DiagnoseOptions options;
-  options.starts = 2;
-  const Parallel parallel = serially();
-  EstimationSetup setup =
-      hold_out_recordings(bind_tank, toys::noisy_tanks(toys::extra_inflow(), 0.01), {options, parallel});
-  const Calibration calibration = calibrate_model(setup, {options, parallel});
-  const SearchProblem problem = search_problem(setup, calibration, {options, parallel});
-  CHECK(problem.structured(calibration.calibrated.hypothesis, problem.fit));
-  CHECK_FALSE(problem.structured(toys::with_effects(setup, toys::extra_inflow()), problem.fit));
-}
-
-TEST_CASE("what a structure leaves of recordings that it was not fitted to says nothing of it") {
-  DiagnoseOptions options;
-  options.starts = 2;
-  const Parallel parallel = serially();
-  std::vector<Recording> recordings = toys::noisy_tanks({}, 0.01);
-  const Recording other = toys::noisy_tanks(toys::extra_inflow(), 0.01).back();
-  recordings.back().outputs = other.outputs;
-  EstimationSetup setup = hold_out_recordings(bind_tank, std::move(recordings), {options, parallel});
-  const Calibration calibration = calibrate_model(setup, {options, parallel});
-  const SearchProblem problem = search_problem(setup, calibration, {options, parallel});
-  const Hypothesis truth = toys::with_effects(setup, {});
-  CHECK(problem.structured(truth, problem.fit));
-  FitProblem without_it = problem.fit;
-  std::erase_if(without_it.recordings,
-                [&](std::size_t r) { return setup.bound.recordings[r].outputs == other.outputs; });
-  REQUIRE(without_it.recordings.size() + 1 == problem.fit.recordings.size());
-  CHECK_FALSE(problem.structured(truth, without_it));
-}
-
 TEST_CASE("by default every recording is for the fit, and held out once") {
   DiagnoseOptions options;
   const Parallel parallel = serially();
-  const EstimationSetup setup = hold_out_recordings(bind_tank, toys::noisy_tanks({}, 0.01), {options, parallel});
+  const EstimationSetup setup = hold_out_recordings(toys::bind_tank, toys::noisy_tanks({}, 0.01), {options, parallel});
   CHECK(setup.split.cross_fitted);
   CHECK(setup.split.training.size() == 6);
   Diagnosis diagnosis;

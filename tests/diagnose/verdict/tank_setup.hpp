@@ -9,6 +9,7 @@
 #include "surefoot/diagnose/effects/catalogue.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
 #include "surefoot/diagnose/verdict/fitted_model.hpp"
+#include "surefoot/diagnose/verdict/run_context.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
 namespace toys {
@@ -29,6 +30,10 @@ inline std::vector<surefoot::Recording> noisy_tanks(const std::vector<surefoot::
   }
   return recordings;
 }
+
+inline const surefoot::diagnosis::BindSimulator bind_tank = [](std::vector<surefoot::Recording> recordings) {
+  return surefoot::diagnosis::bind_simulator(LeakyTank{}, std::move(recordings));
+};
 
 inline surefoot::diagnosis::EstimationSetup tank_setup(std::vector<surefoot::Recording> recordings,
                                                        double sigma = 0.01) {

@@ -1,6 +1,6 @@
 // Inputs between rows: held, as commands of a digital controller are, interpolated, as what was measured of something
-// smooth is, or held before their row, as commands are that are logged after they acted. Held, the latter two come half a
-// row or a row too late, which no delay can mend.
+// smooth is, or held before their row, as commands are that are logged after they acted. Held, the latter two come half
+// a row or a row too late, which no delay can mend.
 #pragma once
 
 #include "surefoot/diagnose/estimation/calibrate.hpp"

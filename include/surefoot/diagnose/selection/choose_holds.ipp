@@ -51,10 +51,10 @@ SUREFOOT_ONCE bool choose_holds(const BoundSimulator& bound, Fit& fitted, Search
     const FitProblem before = problem.fit;
     const Fit now = fitted;
     double most = std::log(problem.criteria.named_odds);
-    for (const InputHold hold : {InputHold::held, InputHold::linear, InputHold::before}) {
+    for (const InputHold hold : {InputHold::zero_order, InputHold::linear, InputHold::before}) {
       if (problem.stopped()) return changed;
       FitProblem other = before;
-      other.integration.inputs.resize(bound.info.inputs.size(), InputHold::held);
+      other.integration.inputs.resize(bound.info.inputs.size(), InputHold::zero_order);
       if (other.integration.inputs[i] == hold) continue;
       if (hold == InputHold::linear && !moves(bound, before.recordings, i)) continue;
       other.integration.inputs[i] = hold;

@@ -21,9 +21,9 @@ SUREFOOT_ONCE void set_initial_scale(BoundSimulator& bound, std::size_t state, d
 SUREFOOT_ONCE double odds_of_freeing(const BoundSimulator& bound, const Fit& free, const Fit& known,
                                      const SearchProblem& problem, const Parallel& parallel) {
   const auto evaluate = [&](const Fit& one) {
-    return EvaluatedHypothesis{one.hypothesis, one.loss,
-                               error_squares(bound, one.hypothesis, problem.fit.recordings, problem.fit.integration,
-                                             problem.scale, parallel)};
+    return EvaluatedHypothesis{
+        one.hypothesis, one.loss,
+        error_squares(bound, one.hypothesis, problem.fit.recordings, problem.fit.integration, problem.scale, parallel)};
   };
   const EvaluatedHypothesis with = evaluate(free), without = evaluate(known);
   const ErrorSquares& errors = with.errors;

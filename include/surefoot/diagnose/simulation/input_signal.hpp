@@ -24,7 +24,7 @@ class InputSignal {
         from_rest_(info.inputs.size(), false),
         seen_(info.inputs.size(), 0) {
     for (std::size_t i = 0; i < linear_.size(); ++i) {
-      const InputHold hold = info.inputs[i].hold.value_or(i < holds.size() ? holds[i] : InputHold::held);
+      const InputHold hold = info.inputs[i].hold.value_or(i < holds.size() ? holds[i] : InputHold::zero_order);
       linear_[i] = hold == InputHold::linear;
       ahead_[i] = hold == InputHold::before ? 1 : 0;
       any_special_ = any_special_ || linear_[i];

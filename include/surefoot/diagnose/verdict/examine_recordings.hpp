@@ -21,7 +21,7 @@ LogExamination examine_recordings(const BindSimulator& bind, const std::vector<R
 /// The model with the effects that were found.
 struct FoundModel {
   Hypothesis hypothesis;
-  Sizes sizes;               // typical ones, of which the bounds of effects are multiples
+  Sizes sizes;                   // typical ones, of which the bounds of effects are multiples
   std::vector<InputHold> holds;  // of inputs, as in Integration
   std::vector<bool> freed;       // states that begin otherwise than the model says
 };

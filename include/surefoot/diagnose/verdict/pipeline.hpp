@@ -11,6 +11,7 @@
 #include "surefoot/diagnose/verdict/fitted_model.hpp"
 #include "surefoot/diagnose/verdict/held_out_check.hpp"
 #include "surefoot/diagnose/verdict/run_context.hpp"
+#include "surefoot/diagnose/verdict/search_stage.hpp"
 #include "surefoot/diagnose/verdict/verdict.hpp"
 
 namespace surefoot::diagnosis {
@@ -29,24 +30,6 @@ EstimationSetup hold_out_recordings(const BindSimulator& bind, std::vector<Recor
 
 /// Fills in which recordings are for what.
 void name_recordings(const EstimationSetup& setup, Diagnosis& diagnosis);
-
-/// The model before and after its parameters were calibrated.
-struct Calibration {
-  Hypothesis nominal;  // with the initial states of the training recordings
-  Fit calibrated;
-  std::vector<SimulatedRun> training_runs;  // of the calibrated model
-};
-
-/// Calibrates, with an integration that is fine enough and in the way the noise asks for: fills in noise, integration,
-/// weighting and sizes of the setup.
-Calibration calibrate_model(EstimationSetup& setup, const RunContext& run);
-
-/// Effects that may be missing, at the places where they may be.
-std::vector<AttachedEffect> candidate_effects(const EstimationSetup& setup, const Calibration& calibration,
-                                              const RunContext& run);
-
-/// The subject of the search. It keeps a reference to the setup.
-SearchProblem search_problem(const EstimationSetup& setup, const Calibration& calibration, const RunContext& run);
 
 /// Fills in parameters, effects and their evidence.
 void describe_models(const EstimationSetup& setup, const FittedModels& models, const Selection& selection,

@@ -18,8 +18,6 @@
 #include "surefoot/diagnose/estimation/standard_errors.hpp"
 #include "surefoot/diagnose/residual_tests/noise.hpp"
 #include "surefoot/diagnose/screening.hpp"
-#include "surefoot/diagnose/selection/choose_holds.hpp"
-#include "surefoot/diagnose/selection/choose_initial_states.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
 #include "surefoot/diagnose/verdict/describe.hpp"
 #include "surefoot/diagnose/verdict/detection_limits.hpp"
@@ -31,9 +29,6 @@
 #include "surefoot/diagnose/verdict/prepare.hpp"
 
 namespace surefoot::diagnosis {
-
-/// Shares of the work done at the begin of a stage, as far as it is known beforehand.
-inline constexpr double progress_calibration = 0.05, progress_search = 0.15, progress_evaluation = 0.85;
 
 SUREFOOT_ONCE std::vector<Remark> screen_recordings(const SimulatorInfo& info, std::vector<Recording>& recordings) {
   if (recordings.empty()) throw DiagnoseError("there is no recording to diagnose");
@@ -81,130 +76,6 @@ SUREFOOT_ONCE EstimationSetup hold_out_recordings(const BindSimulator& bind, std
   return setup;
 }
 
-/// The weights by which errors are compared.
-SUREFOOT_ONCE Weighting error_scale_of(const EstimationSetup& setup) {
-  return {.sigma = error_scale(setup.bound), .whitening = setup.problem.weighting.whitening};
-}
-
-/// Frees initial states that recordings refute, beside those before; true if there are any.
-SUREFOOT_ONCE bool free_more_states(EstimationSetup& setup, Fit& fitted, const SearchProblem& problem,
-                                    const Parallel& parallel) {
-  if (setup.noise != NoiseKind::measurement) return false;
-  const std::vector<bool> more = free_initial_states(setup.bound, fitted, problem, parallel);
-  setup.freed.resize(more.size(), false);
-  for (std::size_t i = 0; i < more.size(); ++i) setup.freed[i] = setup.freed[i] || more[i];
-  return std::find(more.begin(), more.end(), true) != more.end();
-}
-
-/// Inputs that are not held, and states that do not begin as the model says; true if recordings show any.
-SUREFOOT_ONCE bool revise_what_was_said(EstimationSetup& setup, Fit& calibrated, const Parallel& parallel) {
-  SearchProblem problem;
-  problem.fit = setup.problem;
-  problem.scale = error_scale_of(setup);
-  const bool holds = choose_holds(setup.bound, calibrated, problem, parallel);
-  setup.bound.integration = setup.problem.integration = problem.fit.integration;
-  return free_more_states(setup, calibrated, problem, parallel) || holds;
-}
-
-SUREFOOT_ONCE Calibration calibrate_model(EstimationSetup& setup, const RunContext& run) {
-  auto& [bound, split, noise, problem, freed] = setup;
-  const Parallel& parallel = run.parallel;
-  const Hypothesis nominal = nominal_with_known(bound, run.options);
-  noise = noise_kind(bound, nominal, split.training);
-  bound.integration.restart = noise == NoiseKind::process ? 1 : 0;
-  if (noise == NoiseKind::measurement) free_measured_initial_states(bound, split.training);
-  problem.integration = bound.integration;
-  problem.stopped = [run] { return run.search_has_ended(); };
-  if (!nominal.effects.empty()) {  // the bounds of their parameters are multiples of these
-    bound.sizes = measure_sizes(bound, nominal, split.training,
-                                simulate_all(bound, nominal, split.training, bound.integration, parallel));
-  }
-  Fit calibrated{nominal, 0, true};
-  std::vector<SimulatedRun> runs;
-  // One change shows the next: each input once, initial states, neither; errors of the integration show in the end.
-  const std::size_t most_rounds = bound.info.inputs.size() + 2;
-  bool changed = true;
-  for (std::size_t round = 0; round < most_rounds && changed; ++round) {
-    calibrated = calibrate(bound, calibrated.hypothesis, problem, run.options.starts, run.seed, parallel);
-    bound.integration = choose_integration(bound, calibrated.hypothesis, problem.weighting.sigma, bound.integration,
-                                           split.training, parallel);
-    problem.integration = bound.integration;
-    if (noise == NoiseKind::final_pose) {
-      problem.weighting.whitening =
-          final_pose_whitening(bound, calibrated.hypothesis, split.training, bound.integration);
-    }
-    calibrated = fit(bound, calibrated.hypothesis, problem, parallel);
-    runs = simulate_all(bound, calibrated.hypothesis, split.training, bound.integration, parallel);
-    bound.sizes = measure_sizes(bound, calibrated.hypothesis, split.training, runs);
-    changed = revise_what_was_said(setup, calibrated, parallel);
-  }
-  return {with_estimated_initial_states(bound, nominal, split.training, problem, parallel), calibrated, runs};
-}
-
-SUREFOOT_ONCE std::vector<AttachedEffect> candidate_effects(const EstimationSetup& setup,
-                                                            const Calibration& calibration, const RunContext& run) {
-  const auto& names = run.options.effects;
-  std::vector<Effect> effects = nameable_effects(run.options);
-  std::erase_if(effects, [&](const Effect& effect) {
-    return !names.empty() && std::find(names.begin(), names.end(), effect.name) == names.end();
-  });
-  if (setup.noise == NoiseKind::process) {  // each row starts from readings, so that a sensor's faults cannot be told
-    std::erase_if(effects, [](const Effect& effect) { return effect.place == Place::output; });
-  }
-  std::vector<AttachedEffect> candidates = attachments(
-      setup.bound, effects,
-      distinct_inputs(setup.bound, calibration.calibrated.hypothesis, setup.split.training, calibration.training_runs));
-  const bool map = setup.bound.info.kind == SimulatorKind::map;  // whose first row is the first command
-  const std::vector<bool> zero = zero_at_first(setup.bound, setup.split.training);
-  std::erase_if(candidates, [&](const AttachedEffect& one) {
-    return one.effect->from_rest && (map || zero[static_cast<std::size_t>(one.at)]);
-  });
-  return candidates;
-}
-
-/// Whether the residuals of a hypothesis hold what noise does not; final poses are too few to tell. Recordings that it
-/// was not fitted to would tell of parameters.
-SUREFOOT_ONCE bool holds_structure(const EstimationSetup& setup, const Hypothesis& hypothesis, const FitProblem& fit,
-                                   const SelectionCriteria& criteria, const Parallel& parallel) {
-  if (setup.noise == NoiseKind::final_pose) return true;
-  const auto runs = simulate_all(setup.bound, hypothesis, fit.recordings, fit.integration, parallel);
-  const Mismatch mismatch =
-      measure_mismatch(setup.bound, fit.recordings, runs, setup.problem.weighting.sigma, setup.noise);
-  return mismatch.p_value < criteria.structure_significance && mismatch.share > criteria.structure_share;
-}
-
-SUREFOOT_ONCE SearchProblem search_problem(const EstimationSetup& setup, const Calibration& calibration,
-                                           const RunContext& run) {
-  const auto& training = setup.split.training;
-  SearchProblem problem;
-  problem.fit = setup.problem;
-  problem.scale = error_scale_of(setup);
-  problem.nominal = calibration.nominal;
-  problem.known = run.options.known.size();
-  problem.criteria.max_effects = run.options.max_effects;
-  const VerdictCriteria verdict;
-  if (within_process_noise(process_ratio(setup, calibration.training_runs, verdict), verdict)) {
-    problem.criteria.max_effects = 0;  // the machine is as it was
-  }
-  SearchEffort& effort = problem.effort;
-  double rows = 1;  // small problems can afford a longer list
-  for (const std::size_t r : training) rows += static_cast<double>(setup.bound.recordings[r].rows());
-  const auto fewest = static_cast<double>(effort.shortlist), most = static_cast<double>(effort.max_shortlist);
-  effort.shortlist = static_cast<std::size_t>(std::clamp(fewest * effort.shortlist_rows / rows, fewest, most));
-  effort.compared_shortlist = effort.compared_shortlist * effort.shortlist / static_cast<std::size_t>(fewest);
-  const bool final_poses = setup.noise == NoiseKind::final_pose;
-  problem.screened = some_by_error(setup.bound, training, calibration.training_runs,
-                                   final_poses ? effort.screening_final_poses : effort.screening);
-  problem.on_progress = [run](const std::string& stage, double share) {
-    run.progress(stage, progress_search + (progress_evaluation - progress_search) * share);
-  };
-  problem.stopped = [run] { return run.search_has_ended(); };
-  problem.structured = [&setup, run, criteria = problem.criteria](const Hypothesis& hypothesis, const FitProblem& fit) {
-    return holds_structure(setup, hypothesis, fit, criteria, run.parallel);
-  };
-  return problem;
-}
-
 SUREFOOT_ONCE void describe_models(const EstimationSetup& setup, const FittedModels& models, const Selection& selection,
                                    const RunContext& run, Diagnosis& diagnosis) {
   const BoundSimulator& bound = setup.bound;
@@ -222,8 +93,8 @@ SUREFOOT_ONCE void describe_models(const EstimationSetup& setup, const FittedMod
   const std::vector<InputHold>& found = bound.integration.inputs;
   for (std::size_t i = 0; i < bound.info.inputs.size(); ++i) {
     const InputInfo& input = bound.info.inputs[i];
-    diagnosis.input_holds.push_back(input.hold.value_or(i < found.size() ? found[i] : InputHold::held));
-    const bool otherwise = !input.hold && diagnosis.input_holds[i] != InputHold::held;
+    diagnosis.input_holds.push_back(input.hold.value_or(i < found.size() ? found[i] : InputHold::zero_order));
+    const bool otherwise = !input.hold && diagnosis.input_holds[i] != InputHold::zero_order;
     if (otherwise) diagnosis.remarks.push_back({"", hold_sentence(input.name, diagnosis.input_holds[i])});
   }
   for (std::size_t e = 0; e < chosen.effects.size(); ++e) {
@@ -335,83 +206,6 @@ SUREFOOT_ONCE std::string no_time_to_begin_anew_sentence() {
          "repair the recording, or give more time (max_seconds, --budget)";
 }
 
-/// Takes out single readings that are far from a model while their neighbours are not: no physics lasts for one row.
-SUREFOOT_ONCE void remove_outliers_from(EstimationSetup& setup, const Hypothesis& model, const RunContext& run,
-                                        Diagnosis& diagnosis) {
-  if (setup.noise != NoiseKind::measurement) return;
-  BoundSimulator& bound = setup.bound;
-  const auto runs = simulate_all(bound, model, setup.split.training, bound.integration, run.parallel);
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (!runs[i].finite) continue;
-    const auto removed = remove_outliers(bound.info, bound.recordings[setup.split.training[i]], runs[i].outputs);
-    diagnosis.remarks.insert(diagnosis.remarks.end(), removed.begin(), removed.end());
-  }
-}
-
-/// A search and what led to it.
-struct Searched {
-  Calibration calibration;
-  SearchProblem problem;
-  std::vector<AttachedEffect> candidates;
-  Selection selection;
-};
-
-SUREFOOT_ONCE Searched search_effects(EstimationSetup& setup, const RunContext& run, Diagnosis& diagnosis) {
-  run.progress("calibrating", progress_calibration);
-  Searched found{calibrate_model(setup, run), {}, {}, {}};
-  remove_outliers_from(setup, found.calibration.calibrated.hypothesis, run, diagnosis);
-  found.problem = search_problem(setup, found.calibration, run);
-  found.candidates = candidate_effects(setup, found.calibration, run);
-  found.selection =
-      select_effects(setup.bound, found.calibration.calibrated, found.problem, found.candidates, run.parallel);
-  return found;
-}
-
-/// Fits the model without effects once more: the search found that inputs or initial states are otherwise.
-SUREFOOT_ONCE void calibrate_again(EstimationSetup& setup, Searched& found, const RunContext& run) {
-  Fit& calibrated = found.calibration.calibrated;
-  calibrated = fit(setup.bound, calibrated.hypothesis, found.selection.fit, run.parallel);
-  const std::size_t known = calibrated.hypothesis.effects.size();
-  found.selection.nominal.hypothesis = calibrated.hypothesis;
-  EvaluatedHypothesis& chosen = found.selection.chosen;
-  if (chosen.hypothesis.effects.size() == known) chosen.hypothesis = calibrated.hypothesis;
-}
-
-/// With what was found recordings may refute more initial states, which asks for another search, or those freed before
-/// may be known after all.
-SUREFOOT_ONCE void revise_initial_states(EstimationSetup& setup, Searched& found, const RunContext& run,
-                                         Diagnosis& diagnosis) {
-  const auto chosen = [&] { return Fit{found.selection.chosen.hypothesis, found.selection.chosen.loss, true}; };
-  const auto any_effect = [&] {
-    return found.selection.chosen.hypothesis.effects.size() > run.options.known.size();
-  };
-  const auto with_present_weights = [&] {
-    SearchProblem problem = found.problem;
-    problem.fit = found.selection.fit;
-    return problem;
-  };
-  if (!any_effect() || run.search_has_ended()) return;
-  Fit fitted = chosen();
-  if (free_more_states(setup, fitted, with_present_weights(), run.parallel)) {
-    found = search_effects(setup, run, diagnosis);
-    if (!any_effect() || run.search_has_ended()) return;
-    fitted = chosen();
-  }
-  const std::vector<bool> before = setup.freed;
-  restore_initial_states(setup.bound, setup.freed, fitted, with_present_weights(), run.parallel);
-  if (setup.freed == before) return;
-  found.selection.chosen.hypothesis = fitted.hypothesis;
-  Hypothesis& calibrated = found.calibration.calibrated.hypothesis;
-  for (std::size_t r = 0; r < setup.bound.recordings.size(); ++r) {
-    for (std::size_t i = 0; i < before.size(); ++i) {
-      const auto state = static_cast<Eigen::Index>(i);
-      const bool restored = before[i] && !setup.freed[i];
-      if (restored) calibrated.initial[r][state] = setup.bound.recordings[r].initial[state];
-    }
-  }
-  calibrate_again(setup, found, run);
-}
-
 SUREFOOT_ONCE void remark_on_freed_states(const EstimationSetup& setup, const Hypothesis& chosen,
                                           Diagnosis& diagnosis) {
   diagnosis.freed_states = setup.freed;
@@ -433,9 +227,7 @@ SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vec
   EstimationSetup setup = hold_out_recordings(bind, std::move(recordings), run);
   name_recordings(setup, diagnosis);
   Searched found = search_effects(setup, run, diagnosis);
-  const bool inputs_changed = found.selection.fit.integration.inputs != setup.bound.integration.inputs;
-  setup.bound.integration.inputs = found.selection.fit.integration.inputs;
-  if (inputs_changed) calibrate_again(setup, found, run);
+  take_over_inputs(setup, found, run);
   revise_initial_states(setup, found, run, diagnosis);
   auto& [calibration, problem, candidates, selection] = found;
   diagnosis.complete = !run.search_has_ended();

@@ -19,6 +19,9 @@ using BindSimulator = std::function<BoundSimulator(std::vector<Recording>)>;
 /// Of the time that is given: what calibration and search may take.
 inline constexpr double search_share = 0.85;
 
+/// Shares of the work done at the begin of a stage, as far as it is known beforehand.
+inline constexpr double progress_calibration = 0.05, progress_search = 0.15, progress_evaluation = 0.85;
+
 /// How a diagnosis is run: what every stage may ask for.
 struct RunContext {
   const DiagnoseOptions& options;

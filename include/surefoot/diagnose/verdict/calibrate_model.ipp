@@ -1,0 +1,78 @@
+// Definitions of surefoot/diagnose/verdict/calibrate_model.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/calibrate.hpp"
+#include "surefoot/diagnose/estimation/choose_integration.hpp"
+#include "surefoot/diagnose/estimation/recording_error.hpp"
+#include "surefoot/diagnose/selection/choose_holds.hpp"
+#include "surefoot/diagnose/selection/choose_initial_states.hpp"
+#include "surefoot/diagnose/verdict/calibrate_model.hpp"
+#include "surefoot/diagnose/verdict/examine_recordings.hpp"
+#include "surefoot/diagnose/verdict/prepare.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_ONCE Weighting error_scale_of(const EstimationSetup& setup) {
+  return {.sigma = error_scale(setup.bound), .whitening = setup.problem.weighting.whitening};
+}
+
+SUREFOOT_ONCE bool free_more_states(EstimationSetup& setup, Fit& fitted, const SearchProblem& problem,
+                                    const Parallel& parallel) {
+  if (setup.noise != NoiseKind::measurement) return false;
+  const std::vector<bool> more = free_initial_states(setup.bound, fitted, problem, parallel);
+  setup.freed.resize(more.size(), false);
+  for (std::size_t i = 0; i < more.size(); ++i) setup.freed[i] = setup.freed[i] || more[i];
+  return std::find(more.begin(), more.end(), true) != more.end();
+}
+
+/// Inputs that are not held, and states that do not begin as the model says; true if recordings show any.
+SUREFOOT_ONCE bool revise_what_was_said(EstimationSetup& setup, Fit& calibrated, const Parallel& parallel) {
+  SearchProblem problem;
+  problem.fit = setup.problem;
+  problem.scale = error_scale_of(setup);
+  const bool holds = choose_holds(setup.bound, calibrated, problem, parallel);
+  setup.bound.integration = setup.problem.integration = problem.fit.integration;
+  return free_more_states(setup, calibrated, problem, parallel) || holds;
+}
+
+SUREFOOT_ONCE Calibration calibrate_model(EstimationSetup& setup, const RunContext& run) {
+  auto& [bound, split, noise, problem, freed] = setup;
+  const Parallel& parallel = run.parallel;
+  const Hypothesis nominal = nominal_with_known(bound, run.options);
+  noise = noise_kind(bound, nominal, split.training);
+  bound.integration.restart = noise == NoiseKind::process ? 1 : 0;
+  if (noise == NoiseKind::measurement) free_measured_initial_states(bound, split.training);
+  problem.integration = bound.integration;
+  problem.stopped = [run] { return run.search_has_ended(); };
+  if (!nominal.effects.empty()) {  // the bounds of their parameters are multiples of these
+    bound.sizes = measure_sizes(bound, nominal, split.training,
+                                simulate_all(bound, nominal, split.training, bound.integration, parallel));
+  }
+  Fit calibrated{nominal, 0, true};
+  std::vector<SimulatedRun> runs;
+  // One change shows the next: each input once, initial states, neither; errors of the integration show in the end.
+  const std::size_t most_rounds = bound.info.inputs.size() + 2;
+  bool changed = true;
+  for (std::size_t round = 0; round < most_rounds && changed; ++round) {
+    calibrated = calibrate(bound, calibrated.hypothesis, problem, run.options.starts, run.seed, parallel);
+    bound.integration = choose_integration(bound, calibrated.hypothesis, problem.weighting.sigma, bound.integration,
+                                           split.training, parallel);
+    problem.integration = bound.integration;
+    if (noise == NoiseKind::final_pose) {
+      problem.weighting.whitening =
+          final_pose_whitening(bound, calibrated.hypothesis, split.training, bound.integration);
+    }
+    calibrated = fit(bound, calibrated.hypothesis, problem, parallel);
+    runs = simulate_all(bound, calibrated.hypothesis, split.training, bound.integration, parallel);
+    bound.sizes = measure_sizes(bound, calibrated.hypothesis, split.training, runs);
+    changed = revise_what_was_said(setup, calibrated, parallel);
+  }
+  return {with_estimated_initial_states(bound, nominal, split.training, problem, parallel), calibrated, runs};
+}
+
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,155 @@
+// Definitions of surefoot/diagnose/verdict/search_stage.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/screening.hpp"
+#include "surefoot/diagnose/selection/choose_initial_states.hpp"
+#include "surefoot/diagnose/verdict/evidence.hpp"
+#include "surefoot/diagnose/verdict/examine_recordings.hpp"
+#include "surefoot/diagnose/verdict/prepare.hpp"
+#include "surefoot/diagnose/verdict/search_stage.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_ONCE std::vector<AttachedEffect> candidate_effects(const EstimationSetup& setup,
+                                                            const Calibration& calibration, const RunContext& run) {
+  const auto& names = run.options.effects;
+  std::vector<Effect> effects = nameable_effects(run.options);
+  std::erase_if(effects, [&](const Effect& effect) {
+    return !names.empty() && std::find(names.begin(), names.end(), effect.name) == names.end();
+  });
+  if (setup.noise == NoiseKind::process) {  // each row starts from readings, so that a sensor's faults cannot be told
+    std::erase_if(effects, [](const Effect& effect) { return effect.place == Place::output; });
+  }
+  std::vector<AttachedEffect> candidates = attachments(
+      setup.bound, effects,
+      distinct_inputs(setup.bound, calibration.calibrated.hypothesis, setup.split.training, calibration.training_runs));
+  const bool map = setup.bound.info.kind == SimulatorKind::map;  // whose first row is the first command
+  const std::vector<bool> zero = zero_at_first(setup.bound, setup.split.training);
+  std::erase_if(candidates, [&](const AttachedEffect& one) {
+    return one.effect->from_rest && (map || zero[static_cast<std::size_t>(one.at)]);
+  });
+  return candidates;
+}
+
+/// Whether the residuals of a hypothesis hold what noise does not; final poses are too few to tell. Recordings that it
+/// was not fitted to would tell of parameters.
+SUREFOOT_ONCE bool holds_structure(const EstimationSetup& setup, const Hypothesis& hypothesis, const FitProblem& fit,
+                                   const SelectionCriteria& criteria, const Parallel& parallel) {
+  if (setup.noise == NoiseKind::final_pose) return true;
+  const auto runs = simulate_all(setup.bound, hypothesis, fit.recordings, fit.integration, parallel);
+  const Mismatch mismatch =
+      measure_mismatch(setup.bound, fit.recordings, runs, setup.problem.weighting.sigma, setup.noise);
+  return mismatch.p_value < criteria.structure_significance && mismatch.share > criteria.structure_share;
+}
+
+SUREFOOT_ONCE SearchProblem search_problem(const EstimationSetup& setup, const Calibration& calibration,
+                                           const RunContext& run) {
+  const auto& training = setup.split.training;
+  SearchProblem problem;
+  problem.fit = setup.problem;
+  problem.scale = error_scale_of(setup);
+  problem.nominal = calibration.nominal;
+  problem.known = run.options.known.size();
+  problem.criteria.max_effects = run.options.max_effects;
+  const VerdictCriteria verdict;
+  if (within_process_noise(process_ratio(setup, calibration.training_runs, verdict), verdict)) {
+    problem.criteria.max_effects = 0;  // the machine is as it was
+  }
+  SearchEffort& effort = problem.effort;
+  double rows = 1;  // small problems can afford a longer list
+  for (const std::size_t r : training) rows += static_cast<double>(setup.bound.recordings[r].rows());
+  const auto fewest = static_cast<double>(effort.shortlist), most = static_cast<double>(effort.max_shortlist);
+  effort.shortlist = static_cast<std::size_t>(std::clamp(fewest * effort.shortlist_rows / rows, fewest, most));
+  effort.compared_shortlist = effort.compared_shortlist * effort.shortlist / static_cast<std::size_t>(fewest);
+  const bool final_poses = setup.noise == NoiseKind::final_pose;
+  problem.screened = some_by_error(setup.bound, training, calibration.training_runs,
+                                   final_poses ? effort.screening_final_poses : effort.screening);
+  problem.on_progress = [run](const std::string& stage, double share) {
+    run.progress(stage, progress_search + (progress_evaluation - progress_search) * share);
+  };
+  problem.stopped = [run] { return run.search_has_ended(); };
+  problem.structured = [&setup, run, criteria = problem.criteria](const Hypothesis& hypothesis, const FitProblem& fit) {
+    return holds_structure(setup, hypothesis, fit, criteria, run.parallel);
+  };
+  return problem;
+}
+
+SUREFOOT_ONCE void remove_outliers_from(EstimationSetup& setup, const Hypothesis& model, const RunContext& run,
+                                        Diagnosis& diagnosis) {
+  if (setup.noise != NoiseKind::measurement) return;
+  BoundSimulator& bound = setup.bound;
+  const auto runs = simulate_all(bound, model, setup.split.training, bound.integration, run.parallel);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!runs[i].finite) continue;
+    const auto removed = remove_outliers(bound.info, bound.recordings[setup.split.training[i]], runs[i].outputs);
+    diagnosis.remarks.insert(diagnosis.remarks.end(), removed.begin(), removed.end());
+  }
+}
+
+SUREFOOT_ONCE Searched search_effects(EstimationSetup& setup, const RunContext& run, Diagnosis& diagnosis) {
+  run.progress("calibrating", progress_calibration);
+  Searched found{calibrate_model(setup, run), {}, {}, {}};
+  remove_outliers_from(setup, found.calibration.calibrated.hypothesis, run, diagnosis);
+  found.problem = search_problem(setup, found.calibration, run);
+  found.candidates = candidate_effects(setup, found.calibration, run);
+  found.selection =
+      select_effects(setup.bound, found.calibration.calibrated, found.problem, found.candidates, run.parallel);
+  return found;
+}
+
+/// Fits the model without effects once more: the search found that inputs or initial states are otherwise.
+SUREFOOT_ONCE void calibrate_again(EstimationSetup& setup, Searched& found, const RunContext& run) {
+  Fit& calibrated = found.calibration.calibrated;
+  calibrated = fit(setup.bound, calibrated.hypothesis, found.selection.fit, run.parallel);
+  const std::size_t known = calibrated.hypothesis.effects.size();
+  found.selection.nominal.hypothesis = calibrated.hypothesis;
+  EvaluatedHypothesis& chosen = found.selection.chosen;
+  if (chosen.hypothesis.effects.size() == known) chosen.hypothesis = calibrated.hypothesis;
+}
+
+SUREFOOT_ONCE void take_over_inputs(EstimationSetup& setup, Searched& found, const RunContext& run) {
+  const std::vector<InputHold>& inputs = found.selection.fit.integration.inputs;
+  if (inputs == setup.bound.integration.inputs) return;
+  setup.bound.integration.inputs = inputs;
+  calibrate_again(setup, found, run);
+}
+
+SUREFOOT_ONCE void revise_initial_states(EstimationSetup& setup, Searched& found, const RunContext& run,
+                                         Diagnosis& diagnosis) {
+  const auto chosen = [&] { return Fit{found.selection.chosen.hypothesis, found.selection.chosen.loss, true}; };
+  const auto any_effect = [&] { return found.selection.chosen.hypothesis.effects.size() > run.options.known.size(); };
+  const auto with_present_weights = [&] {
+    SearchProblem problem = found.problem;
+    problem.fit = found.selection.fit;
+    return problem;
+  };
+  if (!any_effect() || run.search_has_ended()) return;
+  Fit fitted = chosen();
+  if (free_more_states(setup, fitted, with_present_weights(), run.parallel)) {
+    found = search_effects(setup, run, diagnosis);
+    if (!any_effect() || run.search_has_ended()) return;
+    fitted = chosen();
+  }
+  const std::vector<bool> before = setup.freed;
+  restore_initial_states(setup.bound, setup.freed, fitted, with_present_weights(), run.parallel);
+  if (setup.freed == before) return;
+  found.selection.chosen.hypothesis = fitted.hypothesis;
+  Hypothesis& calibrated = found.calibration.calibrated.hypothesis;
+  for (std::size_t r = 0; r < setup.bound.recordings.size(); ++r) {
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const auto state = static_cast<Eigen::Index>(i);
+      const bool restored = before[i] && !setup.freed[i];
+      if (restored) calibrated.initial[r][state] = setup.bound.recordings[r].initial[state];
+    }
+  }
+  calibrate_again(setup, found, run);
+}
+
+}  // namespace surefoot::diagnosis
