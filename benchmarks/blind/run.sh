@@ -1,22 +1,23 @@
 #!/usr/bin/env bash
 # The blind benchmark: machines with physics that their model files leave out; what does surefoot-diagnose find?
 #   benchmarks/blind/run.sh [--cases N] [--seed S] [--families LIST | --machines development|examination] [--jobs N]
-#                           [--budget SECONDS]
-# --machines draws machines from a grammar, --families those of the five families. --budget is that of a diagnosis.
+#                           [--inputs held|linear|before] [--budget SECONDS]
+# --machines draws machines from a grammar, --families those of the five families. --inputs: what inputs of the former are
+# between rows, which model files do not say (by default held). --budget is that of a diagnosis.
 # Without --seed a new one is drawn from the clock. Interrupt it at any time; the same --cases and --seed resume it.
 # Results go to $SUREFOOT_RESULTS_DIR/concealed_<seed>, by default under results; the build to $SUREFOOT_BUILD_DIR, by
 # default build/release.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
-cases=200 seed=$(date +%s) families=servo,carriage,tanks,walk,walk_final jobs=2 machines= budget=
+cases=200 seed=$(date +%s) families=servo,carriage,tanks,walk,walk_final jobs=2 machines= inputs=held budget=
 while (($#)); do
   case $1 in
-    --cases | --seed | --families | --jobs | --machines | --budget)
+    --cases | --seed | --families | --jobs | --machines | --inputs | --budget)
       (($# > 1)) || { echo "run.sh: $1 needs a value" >&2; exit 2; }
       declare "${1#--}=$2"
       shift 2 ;;
-    *) echo "run.sh: unknown option $1; known: --cases N, --seed S, --families LIST, --machines WHICH, --jobs N, --budget SECONDS" >&2; exit 2 ;;
+    *) echo "run.sh: unknown option $1; known: --cases N, --seed S, --families LIST, --machines WHICH, --inputs WHICH, --jobs N, --budget SECONDS" >&2; exit 2 ;;
   esac
 done
 for number in cases seed jobs; do
@@ -25,7 +26,7 @@ done
 
 case $machines in
   "") draw=(concealed_plants --families "$families") what=$families ;;
-  development | examination) draw=(concealed_machines --machines "$machines") what="$machines machines" ;;
+  development | examination) draw=(concealed_machines --machines "$machines" --inputs "$inputs") what="$machines machines, inputs $inputs" ;;
   *) echo "run.sh: --machines is development or examination, not '$machines'" >&2; exit 2 ;;
 esac
 

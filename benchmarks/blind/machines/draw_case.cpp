@@ -287,7 +287,8 @@ Drawn draw_case(Random& random, const Grammar& grammar, const std::string& famil
   for (int i = 0; i < machines_per_case; ++i) {
     // A band that no effect of this machine falls in is given up in the end.
     const Band band = i < machines_per_case / 2 ? draw_band(random) : Band{visible.held_out, 10 * visible.most};
-    const Draft draft = draw_machine(random, grammar, family);
+    Draft draft = draw_machine(random, grammar, family);
+    draft.machine.linear_inputs = grammar.linear_inputs;
     if (auto drawn = try_machine(random, grammar, draft, kind, band)) return *drawn;
   }
   throw std::runtime_error("no case of family " + family + " was strong enough");

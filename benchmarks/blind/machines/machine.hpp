@@ -67,6 +67,7 @@ struct Machine {
   double period = 0.01;     // between rows [s]
   double time_scale = 0.1;  // of its motion [s]
   bool at_rest = true;      // recordings begin at rest
+  bool linear_inputs = false;  // straight from row to row; else held
 };
 
 enum class Where { speed, state, input, signal, sensor, parameter, link };

@@ -12,6 +12,7 @@ namespace {
 
 constexpr const char* usage =
     "usage: concealed_machines --out DIR --cases N --seed S [--machines development|examination]\n"
+    "                          [--inputs held|linear|before]   between rows, which model files do not say\n"
     "writes DIR/cases/case_0001/{model.toml,rec_01.csv,...} and DIR/truth/case_0001.json\n";
 
 struct Options {
@@ -19,6 +20,7 @@ struct Options {
   std::size_t cases = 0;
   std::uint64_t seed = 1;
   machines::Grammar grammar;
+  bool logged_late = false;  // each row holds the inputs that acted before it
 };
 
 std::uint64_t whole_number(const std::string& option, const std::string& given) {
@@ -43,6 +45,11 @@ Options parse(int argc, char** argv) {
       if (given != "development" && given != "examination")
         throw std::invalid_argument("--machines is development or examination, not '" + given + "'");
       options.grammar.examination = given == "examination";
+    } else if (option == "--inputs") {
+      if (given != "held" && given != "linear" && given != "before")
+        throw std::invalid_argument("--inputs is held, linear or before, not '" + given + "'");
+      options.grammar.linear_inputs = given == "linear";
+      options.logged_late = given == "before";
     } else {
       throw std::invalid_argument("unknown option " + option);
     }
@@ -63,6 +70,12 @@ std::vector<plants::Kind> kinds(std::size_t count, plants::Random& random) {
   return list;
 }
 
+// Every row gets the inputs of the row before it.
+void log_late(std::vector<plants::Recording>& recordings) {
+  for (plants::Recording& recording : recordings)
+    for (plants::Column& column : recording.inputs) std::shift_right(column.begin(), column.end(), 1);
+}
+
 void generate(const Options& options) {
   plants::Random plan(options.seed);
   const std::vector<plants::Kind> planned = kinds(options.cases, plan);
@@ -76,6 +89,7 @@ void generate(const Options& options) {
     char name[32];
     std::snprintf(name, sizeof name, "case_%04zu", i + 1);
     drawn.one.name = name;
+    if (options.logged_late) log_late(drawn.one.system.recordings);
     plants::write_case(drawn.one, options.out / "cases");
     plants::write_truth(drawn.one, options.out / "truth" / (drawn.one.name + ".json"));
     if ((i + 1) % 20 == 0) std::printf("machines: %zu of %zu cases\n", i + 1, options.cases);

@@ -94,6 +94,15 @@ class Run {
     return readings;
   }
 
+  // An input during a fine step: as in its row, or at the step's middle on the way to the next one.
+  double input(std::size_t i, std::size_t step) const {
+    const std::size_t row = step / at(how_.substeps), within = step % at(how_.substeps);
+    const Column& column = recording_.inputs[i];
+    if (!compiled_.machine.linear_inputs) return column[row];
+    const double share = (static_cast<double>(within) + 0.5) / how_.substeps;
+    return column[row] + share * (column[row + 1] - column[row]);
+  }
+
   std::vector<Column> fine_inputs() const {
     Column times;
     for (std::size_t row = 0; row + 1 < recording_.time.size(); ++row) {
@@ -102,7 +111,7 @@ class Run {
     }
     std::vector<Column> inputs(recording_.inputs.size());
     for (std::size_t i = 0; i < inputs.size(); ++i) {
-      for (std::size_t k = 0; k < times.size(); ++k) inputs[i].push_back(recording_.inputs[i][k / at(how_.substeps)]);
+      for (std::size_t k = 0; k < times.size(); ++k) inputs[i].push_back(input(i, k));
       for (const Hidden& one : hidden_)
         if (one.where == Where::input && at(one.target) == i) change_input(one, times, inputs[i]);
     }
