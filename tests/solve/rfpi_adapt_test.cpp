@@ -25,13 +25,20 @@ TEST_CASE("without noise one sample is enough") {
   CHECK(options.backup_runs == 1);
   CHECK(options.backup_steps > RfpiOptions{}.backup_steps);
   CHECK(options.replace_short_runs);
+  CHECK(options.value_forest.model_score);
 }
 
-TEST_CASE("without noise a run is no more than ten backups, in steps of any length") {
-  CHECK(without_noise({.horizon = 20}).backup_steps == 6);
-  CHECK(without_noise({.horizon = 200}).backup_steps == 20);
-  CHECK(without_noise({.horizon = 2000}).backup_steps == 200);
-  CHECK(without_noise({.horizon = 200, .backup_steps = 30}).backup_steps == 30);
+TEST_CASE("without noise a run is no more than ten backups, in steps of any length and however early it ends") {
+  const RfpiOptions options = without_noise({.horizon = 2000});
+  CHECK(backup_steps_for(20, options) == 6);
+  CHECK(backup_steps_for(200, options) == 20);
+  CHECK(backup_steps_for(2000, options) == 200);
+  CHECK(backup_steps_for(200, without_noise({.backup_steps = 30})) == 30);
+}
+
+TEST_CASE("with noise, and where nothing adapts, backups are as long as the options say") {
+  CHECK(backup_steps_for(200, {.backup_steps = 3}) == 3);
+  CHECK(backup_steps_for(200, {.backup_steps = 3, .backup_weight = 1, .adapt = false}) == 3);
 }
 
 TEST_CASE("sizes of policies are tried in turn, and stay in bounds") {
@@ -61,6 +68,7 @@ TEST_CASE("the cost of a policy is the one that evaluate() finds") {
   const RolloutOptions runs{.runs = 70, .horizon = 30};
   CHECK(cost.cost.mean == doctest::Approx(-evaluate(problem, policy, runs, Serial{}, 5).mean).epsilon(1e-12));
   const RolloutOptions discounted{.runs = 70, .horizon = 30, .discount = 0.9};
+  CHECK(cost.length == 30);
   CHECK(cost.discounted == doctest::Approx(-evaluate(problem, policy, discounted, Serial{}, 5).mean).epsilon(1e-12));
 }
 

@@ -22,6 +22,8 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/policy.hpp"
 #include "surefoot/core/rollout.hpp"
+#include "surefoot/forest/dataset.hpp"
+#include "surefoot/forest/extra_trees.hpp"
 #include "tests/solve/temporary_file.hpp"
 #include "tests/support/double_integrator.hpp"
 #include "tests/support/pendulum.hpp"
@@ -210,6 +212,48 @@ TEST_CASE("a training stopped after any iteration and resumed gives the bits of 
     check_same(whole, rfpi(noisy, options, Threads(1), 1));
   }
   check_same(whole, rfpi(noisy, options, Threads(1), 1));  // nothing is left to do
+}
+
+TEST_CASE("a resumed training without noise knows how long its runs were") {
+  const toy::DoubleIntegrator problem;
+  RfpiOptions options = tiny();
+  options.horizon = 150;  // no run ends earlier: 15 steps of backups
+  const toy::TemporaryFile file("lengths");
+  const auto whole = rfpi(problem, options, Threads(1), 1);
+  options.checkpoint = file.path.string();
+  options.max_iterations = 5;
+  rfpi(problem, options, Threads(1), 1);
+  options.max_iterations = 9;
+  options.resume = true;
+  check_same(whole, rfpi(problem, options, Threads(2), 1));
+}
+
+TEST_CASE("no state outside of the box is learnt from, however unstable the runs") {
+  struct Unstable : toy::DoubleIntegrator {
+    Step<State> step(const State& state, const Action& action, Rng& rng) const {
+      Step<State> step = DoubleIntegrator::step(state, action, rng);
+      step.next *= 1.5;
+      return step;
+    }
+  };
+  const Unstable problem;
+  const RfpiOptions options = detail::without_noise(tiny());
+  const auto states_of = [&](const RfpiState<Unstable>& before) {
+    RfpiWork work;
+    return detail::choose_states(problem, options, before, 500, {}, Serial{}, Rng(1), work, {});
+  };
+  RfpiState<Unstable> before;
+  const auto first = states_of(before);
+  Dataset<2, 1> data;  // a policy that pushes away
+  data.inputs = Eigen::MatrixXf::Random(2, 50);
+  data.outputs = Eigen::MatrixXd::Constant(1, 50, 1.5);
+  before.policy = train_extra_trees<LinearLeaf>(data, {.trees = 2}, Serial{}, 1);
+  before.iteration = options.initial_iterations;
+  const auto later = states_of(before);
+  for (const auto* states : {&first, &later}) {
+    CHECK(states->size() >= 250);
+    CHECK(std::ranges::all_of(*states, [&](const auto& state) { return problem.state_box().contains(state); }));
+  }
 }
 
 TEST_CASE("a training that resumes from nothing starts anew") {

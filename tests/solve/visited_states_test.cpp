@@ -136,6 +136,36 @@ TEST_CASE("runs that go to their end are those that visited_states gives") {
   CHECK(enough_visited_states(problem, pull_back, 101, 20, 0.3, Serial{}, Rng(1)) == whole);
 }
 
+TEST_CASE("a run may end where it leaves the state box") {
+  const DoubleIntegrator problem;
+  const auto away = [](std::span<const Vec<2>> states) { return std::vector<Vec<1>>(states.size(), Vec<1>(1.5)); };
+  const auto all = visited_states(problem, away, 50, 30, 0.0, Serial{}, Rng(1));
+  CHECK(all.size() == 50 * 30);
+  const auto inside = visited_states(problem, away, 50, 30, 0.0, Serial{}, Rng(1), {}, RunEnd::state_box);
+  CHECK(inside.size() > 50 * 5);
+  CHECK(std::ranges::all_of(inside, [&](const auto& state) { return problem.state_box().contains(state); }));
+  CHECK(std::ranges::count_if(all, [&](const auto& state) { return problem.state_box().contains(state); }) ==
+        static_cast<std::ptrdiff_t>(inside.size()));
+  CHECK(visited_states(problem, away, 50, 30, 0.0, Threads(3), Rng(1), {}, RunEnd::state_box) == inside);
+  const auto enough = enough_visited_states(problem, away, 900, 30, 0.0, Serial{}, Rng(1), {}, RunEnd::state_box);
+  CHECK(enough.size() >= 900);
+}
+
+TEST_CASE("a run that starts outside of the box ends further out only") {
+  const Box<2> box({-1, 0}, {3, 0});  // the second dimension has no width
+  CHECK(detail::half_widths_out<2>(box, Vec<2>(3, 7)) == 1);
+  CHECK(detail::half_widths_out<2>(box, Vec<2>(-2, 0)) == doctest::Approx(1.5));
+  CHECK(detail::half_widths_out<2>(box, Vec<2>(7, 0)) == doctest::Approx(3));
+  struct Far : DoubleIntegrator {
+    State initial_state(Rng&) const { return {6, 0}; }
+  };
+  const Far problem;
+  const auto home = visited_states(problem, pull_back, 1, 20, 0.0, Serial{}, Rng(1), {}, RunEnd::state_box);
+  CHECK(home.size() == 20);
+  const auto away = [](std::span<const Vec<2>> states) { return std::vector<Vec<1>>(states.size(), Vec<1>(1.5)); };
+  CHECK(visited_states(problem, away, 1, 20, 0.0, Serial{}, Rng(1), {}, RunEnd::state_box).size() == 2);
+}
+
 TEST_CASE("nothing more is simulated after a stop") {
   std::stop_source stop;
   stop.request_stop();

@@ -57,7 +57,7 @@ concept VecLike = std::derived_from<T, Vec<N>> && sizeof(T) == sizeof(Vec<N>) &&
 ///   };
 ///
 /// `step` must be const, draw all its randomness from the Rng it is given, and be safe to call from several threads.
-/// `state_box` is where states normally are (it scales exploration and checks); a state may leave it.
+/// `state_box` is where states normally are (it scales exploration, and RFPI learns inside it); a state may leave it.
 /// Optional members, used where present: `features(state)` (see HasFeatures), `state_names()`, `action_names()`.
 template <class P>
 concept Problem =

@@ -46,18 +46,28 @@ bool is_deterministic(const P& problem, int horizon, const Rng& rng) {
 }
 
 /// The options with what a simulator without noise allows: single samples, and so values of longer runs of the policy,
-/// and more iterations. Short runs are replaced; with noise (the ball approach) that gained nothing.
+/// and more iterations. Values are then as exact as the forest before, and it pays to split where affine leaves do not
+/// fit, not where values differ most. Short runs are replaced; with noise (the ball approach) that gained nothing.
 inline RfpiOptions without_noise(RfpiOptions options) {
-  constexpr int least_steps = 6;        // of backups: information comes from so many transitions away in an iteration
-  constexpr int backups_of_a_run = 10;  // a run has no more of them: each adds the errors of a value forest, however
-                                        // finely the simulator steps
-  constexpr double growth = 1.1;        // iterations are cheap, and values need many where runs are long
+  constexpr int least_steps = 6;  // of backups: information comes from so many transitions away in an iteration
+  constexpr double growth = 1.1;  // iterations are cheap, and values need many where runs are long
   options.lookahead.samples = options.lookahead.refined_samples = options.backup_runs = 1;
-  options.backup_steps = std::max({options.backup_steps, least_steps, options.horizon / backups_of_a_run});
+  options.backup_steps = std::max(options.backup_steps, least_steps);
   options.replace_short_runs = true;
   options.backup_weight = 1;
+  options.value_forest.model_score = true;
   options.growth = std::min(options.growth, growth);
   return options;
+}
+
+/// Steps of backups where runs last `length` transitions on average. Where backups alone give the values, a run has no
+/// more than ten of them, however finely the simulator steps: each adds the errors of a value forest. Runs, not the
+/// horizon, which they may end long before: steps past what is left of a run make its value what the policy is worth
+/// and not what the best actions are.
+inline int backup_steps_for(double length, const RfpiOptions& options) {
+  constexpr int backups_of_a_run = 10;
+  if (!options.adapt || options.backup_weight < 1) return options.backup_steps;
+  return std::max(options.backup_steps, static_cast<int>(length / backups_of_a_run));
 }
 
 /// Runs that tell how good a policy is.
@@ -70,6 +80,7 @@ inline int evaluation_runs(const RfpiOptions& options) {
 struct PolicyCost {
   Estimate cost;          // as they are
   double discounted = 0;  // mean of the discounted ones, which is what the values are about
+  double length = 0;      // mean length of the runs [transitions]
 };
 
 /// Over runs that are the same for every policy; in lockstep, so that a forest sees many states at once.
@@ -80,7 +91,7 @@ PolicyCost policy_cost(const P& problem, const typename ForestPolicy<P>::ActionF
   constexpr std::size_t runs_per_job = 64;
   const ForestPolicy<P> policy(problem, forest, options.agreement);
   const auto count = static_cast<std::size_t>(runs);
-  std::vector<double> plain(count, 0.0), discounted(count, 0.0);
+  std::vector<double> plain(count, 0.0), discounted(count, 0.0), length(count, 0.0);
   const auto job = [&](std::size_t chunk) {
     std::vector<std::size_t> live;
     std::vector<State> states;
@@ -97,6 +108,7 @@ PolicyCost policy_cost(const P& problem, const typename ForestPolicy<P>::ActionF
         Rng noise = Rng(seed, live[k]).stream(1).stream(static_cast<std::uint64_t>(t));
         const Step<State> step = problem.step(states[k], actions[k], noise);
         plain[live[k]] -= step.reward;
+        length[live[k]] += 1;
         discounted[live[k]] -= weight * step.reward;
         if (step.terminal) continue;
         live[kept] = live[k];
@@ -107,8 +119,8 @@ PolicyCost policy_cost(const P& problem, const typename ForestPolicy<P>::ActionF
     }
   };
   fill(executor, (count + runs_per_job - 1) / runs_per_job, job, {}, Results<double>{plain, runs_per_job},
-       Results<double>{discounted, runs_per_job});
-  return {estimate(plain), estimate(discounted).mean};
+       Results<double>{discounted, runs_per_job}, Results<double>{length, runs_per_job});
+  return {estimate(plain), estimate(discounted).mean, estimate(length).mean};
 }
 
 /// The other size of policy, in leaves per tree, that an iteration tries: three times smaller and larger in turn,

@@ -41,7 +41,9 @@ std::vector<T> random_subset(std::vector<T> items, std::size_t count, Rng& rng) 
   return items;
 }
 
-/// The states of an iteration: some from the whole box, some that the policy visits now, some from before.
+/// The states of an iteration: some from the whole box, some that the policy visits now, some from before. Runs end
+/// where they leave the box: a policy that is not stable yet would fill the samples with states from ever further away,
+/// whose values are so large that what a forest gets wrong about them hides the differences where it matters.
 template <Problem P, Executor E>
 std::vector<typename P::State> choose_states(const P& problem, const RfpiOptions& options, const RfpiState<P>& before,
                                              std::size_t count, std::span<const typename P::State> seed_states,
@@ -54,9 +56,11 @@ std::vector<typename P::State> choose_states(const P& problem, const RfpiOptions
   const auto visit = [&](const ActOnBatch<P>& acting, double exploration) {
     if (!options.replace_short_runs) {
       const std::size_t runs = wanted / static_cast<std::size_t>(options.horizon) + 1;
-      return visited_states(problem, acting, runs, options.horizon, exploration, executor, rng.stream(1), stop);
+      return visited_states(problem, acting, runs, options.horizon, exploration, executor, rng.stream(1), stop,
+                            RunEnd::state_box);
     }
-    return enough_visited_states(problem, acting, wanted, options.horizon, exploration, executor, rng.stream(1), stop);
+    return enough_visited_states(problem, acting, wanted, options.horizon, exploration, executor, rng.stream(1), stop,
+                                 RunEnd::state_box);
   };
   if (!initial) {
     const ForestPolicy<P> policy(problem, before.policy, options.agreement);
@@ -216,12 +220,14 @@ void learn_policy(const P& problem, const RfpiOptions& options, const RfpiState<
   after.policy = learn(after.leaves);
   const PolicyCost usual = cost_of(after.policy);
   after.cost = usual.cost.mean;
+  after.length = usual.length;
   if (most == 0 || !options.adapt) return;
   const int other = other_size(after.leaves, most, before.iteration);
   auto another = learn(other);
   if (const PolicyCost cost = cost_of(another); cost.discounted < usual.discounted) {
     after.policy = std::move(another);
     after.cost = cost.cost.mean;
+    after.length = cost.length;
     after.leaves = other;
   }
 }
@@ -232,6 +238,7 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& given, const
                                std::size_t count, std::span<const typename P::State> seed_states, const E& executor,
                                const Rng& rng, std::uint64_t evaluation_seed, std::stop_token stop) {
   RfpiOptions options = given;
+  options.backup_steps = backup_steps_for(before.length, options);
   RfpiState<P> after;
   after.work = before.work;
   StateSamples<P>& samples = after.samples;

@@ -13,6 +13,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/rollout.hpp"
 #include "surefoot/solve/rfpi_options.hpp"
+#include "surefoot/solve/visited_states.hpp"
 
 namespace surefoot {
 
@@ -24,10 +25,12 @@ struct LearningSigns {
   double greatest_reward = 0;
   double ended_share = 0;  // of the learnt policy's runs that a terminal step ended
   double mean_length = 0;  // of the learnt policy's runs [transitions]
+  double outside_share = 0;  // of the states they lead to that are outside the state box and further than the start
 };
 
 struct HintCriteria {
   double short_sight = 0.5;  // [runs]: a discount that looks less far ahead than this share of a run hides what follows
+  double outside = 0.1;  // of the states: so many outside the box that states are learnt in show that it is too small
   double no_gain = 0.02;     // of the random policy's cost: less is no learning
 };
 
@@ -40,21 +43,25 @@ namespace detail {
 template <Problem P, Policy<P> F>
 double add_runs(const P& problem, const F& policy, int horizon, std::uint64_t seed, LearningSigns& signs) {
   constexpr std::size_t runs = 100;
-  double cost = 0, length = 0, ended = 0;
+  double cost = 0, length = 0, ended = 0, outside = 0;
+  const Box<P::state_dim> box = problem.state_box();
   for (std::size_t i = 0; i < runs; ++i) {
     const Rng rng(seed, i);
-    Rng start = rng.stream(0);
-    run(problem, policy, problem.initial_state(start), horizon, rng.stream(1),
-        [&](const auto&, const auto&, const auto& step) {
-          cost -= step.reward;
-          length += 1;
-          ended += step.terminal ? 1 : 0;
-          signs.least_reward = std::min(signs.least_reward, step.reward);
-          signs.greatest_reward = std::max(signs.greatest_reward, step.reward);
-        });
+    Rng drawn = rng.stream(0);
+    const typename P::State start = problem.initial_state(drawn);
+    const double reach = half_widths_out<P::state_dim>(box, start);
+    run(problem, policy, start, horizon, rng.stream(1), [&](const auto&, const auto&, const auto& step) {
+      cost -= step.reward;
+      length += 1;
+      ended += step.terminal ? 1 : 0;
+      outside += half_widths_out<P::state_dim>(box, step.next) > reach ? 1 : 0;
+      signs.least_reward = std::min(signs.least_reward, step.reward);
+      signs.greatest_reward = std::max(signs.greatest_reward, step.reward);
+    });
   }
   signs.ended_share = ended / runs;
   signs.mean_length = length / runs;
+  signs.outside_share = outside / length;
   return cost / runs;
 }
 

@@ -39,6 +39,11 @@ SUREFOOT_INLINE std::vector<std::string> hints(const LearningSigns& signs, const
                     " of them away hardly counts: set discount to " + text(1 - 1 / signs.mean_length) +
                     ", or to 0 for one that fits the horizon");
   }
+  if (signs.outside_share > criteria.outside) {
+    found.push_back(text(100 * signs.outside_share) +
+                    " % of the states that the policy leads to are outside state_box(), where nothing is learnt: make "
+                    "it as large as states normally get");
+  }
   return found;
 }
 

@@ -63,6 +63,7 @@ struct RfpiState {
   LinearValue value;
   ActionForest policy;  // empty: none yet
   double cost = 0;      // of that policy over the evaluation runs
+  double length = 0;    // of its evaluation runs, mean [transitions]
   int leaves = 0;       // per tree, the size of policy that did best; 0: none yet
   ActionForest best_policy;
   double best_cost = 0;
@@ -72,7 +73,7 @@ struct RfpiState {
 
 namespace detail {
 
-constexpr FileFormat checkpoint_format{"SURERFPI", 2, "a checkpoint of RFPI"};
+constexpr FileFormat checkpoint_format{"SURERFPI", 3, "a checkpoint of RFPI"};
 constexpr FileFormat first_checkpoint_format{"SURERFPI", 1, "a checkpoint of RFPI"};  // no trend, no sizes
 
 template <class Vector>
@@ -159,6 +160,7 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const R
   detail::write_value(out, state.value);
   detail::write_optional(out, state.policy);
   out.f64(state.cost);
+  out.f64(state.length);
   out.u32(static_cast<std::uint32_t>(state.leaves));
   detail::write_optional(out, state.best_policy);
   out.f64(state.best_cost);
@@ -199,6 +201,7 @@ RfpiState<P> load_checkpoint(std::span<const std::byte> bytes, const std::string
   state.policy = detail::read_optional<typename RfpiState<P>::ActionForest>(in);
   if (!first) {
     state.cost = in.f64();
+    state.length = in.f64();
     state.leaves = static_cast<int>(in.u32() & 0x7FFFFFFFU);
   }
   state.best_policy = detail::read_optional<typename RfpiState<P>::ActionForest>(in);
