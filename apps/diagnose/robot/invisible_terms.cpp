@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "choose_terms.hpp"
 #include "findings.hpp"
@@ -7,24 +6,18 @@
 namespace diagnose_robot {
 namespace {
 
-// Even the largest size that is possible would not be named: it takes less off every joint's error than a name needs, or
-// all that it takes off, if nothing else explained any of it, would not pay for a further term. Errors are linear in
-// bodies and offsets of encoders, so that the derivative tells of all sizes.
+// The largest size that is possible takes less off every joint's error than a name needs. Errors are linear in bodies and
+// offsets of encoders, so that the derivative tells of all sizes.
 bool is_invisible(const Evidence& evidence, const LinearModel& model, const Eigen::VectorXd& left, Eigen::Index t) {
   const Term& term = evidence.terms[static_cast<std::size_t>(t)];
   if (!is_of_body(term.property) && term.property != Property::sensor_bias) return false;
   const double remaining = 1 - ChoiceCriteria().smallest_gain;
   const double least = 1 / (remaining * remaining) - 1;  // of the squares that are left
   const double largest = std::max(std::abs(term.low), std::abs(term.high));
-  bool large = false;
-  double likelihood = 0;  // -2 log of the likelihood ratio, at most
   for (std::size_t j = 0; j < model.whole.size(); ++j) {
-    const auto at = static_cast<Eigen::Index>(j);
-    const double share = largest * largest * model.whole[j].gram(t, t) / std::max(1e-300, left[at]);
-    large = large || share > least;
-    likelihood += model.independent[at] * std::log1p(share);
+    if (largest * largest * model.whole[j].gram(t, t) > least * left[static_cast<Eigen::Index>(j)]) return false;
   }
-  return !large || likelihood < model.cost[t] + ChoiceCriteria().needed;
+  return true;
 }
 
 }  // namespace

@@ -19,25 +19,11 @@ constexpr double stated_prior = 2;  // typical sizes: a gain or mass that is sta
 // A recording says no more about time than when in its rows something was read or told.
 constexpr double row_share = 0.25;
 
-// A program computes the torque of a drive once a step, at the latest a step after it read the angle. A proportional
-// gain that acts late by a time is a derivative gain that is lower by its product with that time: no fault of the
-// drive.
-double late_share(const Evidence& evidence, const Term& term) {
-  const double step = evidence.robot.model.model->opt.timestep;
-  double most = 0;
-  for (const int j : term.joints) {
-    const JointSetup& stated = evidence.robot.joints[static_cast<std::size_t>(j)].setup;
-    if (stated.kd > 0) most = std::max(most, stated.kp * step / stated.kd);
-  }
-  return most;
-}
-
 double smallest_size(const Evidence& evidence, const Term& term, double of_group) {
   double smallest = smallest_share * term.typical;
   if (term.group == single_joint) smallest = std::max(smallest, ordinary_spread * std::abs(of_group));
   if (term.property == Property::delay || term.property == Property::lag)
     smallest = std::max(smallest, row_share * evidence.recordings.front().row_period());
-  if (term.property == Property::kd_error) smallest = std::max(smallest, late_share(evidence, term));
   return smallest;
 }
 
