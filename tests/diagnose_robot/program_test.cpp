@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "apps/diagnose/robot/stuck_sensor.hpp"
 #include "tests/diagnose_robot/small_robots.hpp"
 
 using approach_program::Outcome;
@@ -99,6 +100,25 @@ TEST_CASE("what no recording could show of an arm on a vertical axis is said to 
     CHECK(one["joint"] != "lower");
   }
   CHECK(upper);
+}
+
+TEST_CASE("a sensor that is stuck while the model moves is refused in one sentence, a joint that stands still is not") {
+  const ScratchFolder folder;
+  auto arm = robot_test::small_arm();
+  robot_test::write_files(folder, arm, 23, 1);
+  const diagnose_robot::Robot robot = robot_test::load(folder);
+  diagnose_robot::Evidence evidence(robot);
+  robot_test::add_recording(evidence, folder.file("rec_1.csv"));
+  CHECK(diagnose_robot::stuck_sensor(evidence, 0).empty());
+  evidence.recordings[0].angle.col(1).setConstant(0.25);
+  evidence.motions[0] = diagnose_robot::smooth(evidence.recordings[0]);
+  const std::string sentence = diagnose_robot::stuck_sensor(evidence, 0);
+  CHECK(sentence.find("'lower_rad' is stuck at 0.25 rad, while the model moves by") != std::string::npos);
+  CHECK(sentence.find("list 'lower' under held") != std::string::npos);
+  evidence.recordings[0].goal.setZero();
+  evidence.recordings[0].angle.setZero();
+  evidence.motions[0] = diagnose_robot::smooth(evidence.recordings[0]);
+  CHECK(diagnose_robot::stuck_sensor(evidence, 0).empty());  // hangs, and is told to
 }
 
 TEST_CASE("the same seed gives the same result for any number of threads") {

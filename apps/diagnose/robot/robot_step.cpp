@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "inverse_dynamics.hpp"
 
 namespace diagnose_robot {
 namespace {
@@ -50,6 +53,7 @@ RobotStep::RobotStep(const Robot& robot_, const RobotRecording& recording_, cons
   momentum.resize(n);
   friction.resize(n);
   drives.resize(robot.joints.size());
+  for (std::vector<int>& joints : joints_by_tree(robot)) trees.push_back({std::move(joints), {}, {}, {}, {}, {}});
   lagging.setConstant(n, std::numeric_limits<double>::quiet_NaN());
 }
 
@@ -148,25 +152,41 @@ double RobotStep::share_until_rest() {
     any = any || (friction[i] > 0 && start_.v[i] != 0 && v[i] * start_.v[i] <= 0);
   if (!any) return 1;
   // Speeds if all went on slipping as they did.
-  Eigen::MatrixXd free_mass = mass;
-  Eigen::VectorXd right = momentum;
-  for (Eigen::Index i = 0; i < v.size(); ++i) {
-    right[i] -= friction[i] * sign_of(start_.v[i]);
-    if (friction[i] == 0 || start_.v[i] != 0) continue;
-    free_mass.row(i).setZero();
-    free_mass.col(i).setZero();
-    free_mass(i, i) = 1;
-    right[i] = 0;
-  }
-  const Eigen::VectorXd slipping = free_mass.llt().solve(right);
-  for (Eigen::Index i = 0; i < v.size(); ++i) {
-    if (friction[i] == 0 || start_.v[i] == 0 || slipping[i] * start_.v[i] >= 0) continue;
-    const double share = start_.v[i] / (start_.v[i] - slipping[i]);
-    if (share >= first) continue;
-    first = share;
-    stopped = static_cast<int>(i);
+  for (StepTree& tree : trees) {
+    const auto size = static_cast<Eigen::Index>(tree.joints.size());
+    Eigen::MatrixXd free_mass = mass(tree.joints, tree.joints);
+    Eigen::VectorXd right = momentum(tree.joints);
+    for (Eigen::Index r = 0; r < size; ++r) {
+      const Eigen::Index i = tree.joints[static_cast<std::size_t>(r)];
+      right[r] -= friction[i] * sign_of(start_.v[i]);
+      if (friction[i] == 0 || start_.v[i] != 0) continue;
+      free_mass.row(r).setZero();
+      free_mass.col(r).setZero();
+      free_mass(r, r) = 1;
+      right[r] = 0;
+    }
+    const Eigen::VectorXd slipping = free_mass.llt().solve(right);
+    for (Eigen::Index r = 0; r < size; ++r) {
+      const Eigen::Index i = tree.joints[static_cast<std::size_t>(r)];
+      if (friction[i] == 0 || start_.v[i] == 0 || slipping[r] * start_.v[i] >= 0) continue;
+      const double share = start_.v[i] / (start_.v[i] - slipping[r]);
+      if (share >= first) continue;
+      first = share;
+      stopped = static_cast<int>(i);
+    }
   }
   return first;
+}
+
+// Tree by tree: the cost of a step grows with the number of joints, not with its third power.
+void RobotStep::solve_friction() {
+  for (StepTree& tree : trees) {
+    tree.mass = mass(tree.joints, tree.joints);
+    tree.momentum = momentum(tree.joints);
+    tree.friction = friction(tree.joints);
+    surefoot::solve_coupled_dry_friction(tree.mass, tree.momentum, tree.friction, tree.work, tree.speed);
+    next_(tree.joints) = tree.speed;
+  }
 }
 
 void RobotStep::advance(Eigen::Index row, double t, double h) {
@@ -193,7 +213,7 @@ void RobotStep::advance(Eigen::Index row, double t, double h) {
     friction[i] = h * (p[Property::coulomb] + p[Property::breakaway] * stribeck_share(middle[i]) +
                        p[Property::load_friction] * std::abs(torque.constant - torque.damping * middle[i]));
   }
-  surefoot::solve_coupled_dry_friction(mass, momentum, friction, work, next_);
+  solve_friction();
   // Friction by load follows the torque, and that the speed, which turns where goals jump: not as it was extrapolated.
   bool by_load = false;
   for (Eigen::Index i = 0; i < q.size(); ++i) {
@@ -204,7 +224,7 @@ void RobotStep::advance(Eigen::Index row, double t, double h) {
         (std::abs(torque.constant - torque.damping * mean) - std::abs(torque.constant - torque.damping * middle[i]));
     by_load = by_load || share > 0;
   }
-  if (by_load) surefoot::solve_coupled_dry_friction(mass, momentum, friction, work, next_);
+  if (by_load) solve_friction();
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     const DriveTorque& torque = drives[static_cast<std::size_t>(i)];
     if (joint(i)[Property::lag] > 0) lagging[i] = torque.constant - torque.damping * next_[i];

@@ -1,6 +1,8 @@
 // One step of the simulation of a robot, and what its derivatives need to know of it.
 #pragma once
 
+#include <vector>
+
 #include "simulate_robot.hpp"
 #include "surefoot/optimize/coupled_dry_friction.hpp"
 
@@ -11,6 +13,14 @@ struct DriveTorque {
   double goal = 0, constant = 0, damping = 0;
   double told = 0;         // before limit and lag, at the speed of mid-step
   bool saturated = false;  // at its limit: what it is told does not matter
+};
+
+/// Joints that move each other; those of different trees share nothing but time.
+struct StepTree {
+  std::vector<int> joints;
+  Eigen::MatrixXd mass;
+  Eigen::VectorXd momentum, friction, speed;
+  surefoot::CoupledDryFriction work;
 };
 
 /// The robot between two steps, and the last step's inside.
@@ -25,7 +35,7 @@ struct RobotStep {
   Eigen::VectorXd momentum, friction, seen, lagging;
   Eigen::VectorXd dissipation, implicit;  // of the step: damping of joint and drive, and its implicit share
   std::vector<DriveTorque> drives;        // of the step
-  surefoot::CoupledDryFriction work;
+  std::vector<StepTree> trees;
 
   RobotStep(const Robot& robot, const RobotRecording& recording, const StartState& start, const RobotPhysics& physics);
 
@@ -58,6 +68,7 @@ struct RobotStep {
   void restore(const State& state);
   void advance(Eigen::Index row, double t, double h);
   double share_until_rest();
+  void solve_friction();
 
   void rigid_bodies();
   DriveTorque drive(Eigen::Index i, Eigen::Index row, double t, double h);

@@ -12,6 +12,7 @@
 #include "numerical_error.hpp"
 #include "robot_files.hpp"
 #include "setup_guess.hpp"
+#include "stuck_sensor.hpp"
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/error.hpp"
 #include "swapped_joints.hpp"
@@ -48,6 +49,8 @@ void load_recordings(const diagnose_program::CommandLine& line, Evidence& eviden
     for (const std::string& remark : check_recording(evidence.robot, evidence.recordings.back()))
       remarks.push_back(remark);
     evidence.motions.push_back(smooth(evidence.recordings.back()));
+    const std::string stuck = stuck_sensor(evidence, evidence.motions.size() - 1);
+    if (!stuck.empty()) throw surefoot::DiagnoseError(stuck);
   }
   prepare(evidence);
   evidence.numerical = numerical_error(evidence, line.model.parent_path());

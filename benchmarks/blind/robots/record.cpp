@@ -14,7 +14,7 @@
 namespace blind_robots {
 namespace {
 
-constexpr double seconds = 6, settle = 1, row_period = 0.005;
+constexpr double settle = 1;  // [s]
 
 /// Where a joint is sent: a few sines about a posture.
 struct Goal {
@@ -51,7 +51,7 @@ mjModel* compile(const std::string& xml) {
 
 }  // namespace
 
-std::string record(const RobotCase& robot, plants::Random& random) {
+std::string record(const RobotCase& robot, plants::Random& random, const RecordingLength& length) {
   const std::unique_ptr<mjModel, void (*)(mjModel*)> model(compile(robot_xml(robot, true)), mj_deleteModel);
   mjModel* m = model.get();
   const std::unique_ptr<mjData, void (*)(mjData*)> data(mj_makeData(m), mj_deleteData);
@@ -72,9 +72,11 @@ std::string record(const RobotCase& robot, plants::Random& random) {
     text += robot.torque_driven ? ",torque_" + joint.name + "_N_m" : ",goal_" + joint.name + "_rad";
   for (const Joint& joint : robot.joints) text += "," + joint.name + "_rad";
   text += "\n";
-  const auto steps_per_row = static_cast<int>(std::lround(row_period / m->opt.timestep));
-  for (int row = -static_cast<int>(settle / row_period); row < static_cast<int>(seconds / row_period); ++row) {
-    const double t = row * row_period;
+  const auto steps_per_row = static_cast<int>(std::lround(length.row_period / m->opt.timestep));
+  const auto before = static_cast<int>(std::lround(settle / length.row_period));
+  const auto rows = static_cast<int>(std::lround(length.seconds / length.row_period));
+  for (int row = -before; row < rows; ++row) {
+    const double t = row * length.row_period;
     std::vector<double> goal(n), reading(n);
     for (std::size_t j = 0; j < n; ++j) {
       goal[j] = goals[j](std::max(0.0, t));

@@ -46,7 +46,12 @@ std::string robot_xml(const RobotCase& robot, bool real);
 /// As the setup file of surefoot-diagnose.
 std::string robot_setup(const RobotCase& robot);
 
+struct RecordingLength {
+  double seconds = 6;
+  double row_period = 0.005;  // [s], a multiple of the simulation's step of 0.0005 s
+};
+
 /// One recording as CSV: the robot follows random goals, in MuJoCo with small explicit steps.
-std::string record(const RobotCase& robot, plants::Random& random);
+std::string record(const RobotCase& robot, plants::Random& random, const RecordingLength& length = {});
 
 }  // namespace blind_robots
