@@ -14,7 +14,7 @@ struct Grammar {
   bool examination = false;
   /// Share of the draws of an examination that take a production of its own where there is one.
   double own_productions = 0.6;
-  bool linear_inputs = false;  // inputs go straight from row to row instead of being held
+  bool linear_inputs = false;  // inputs that move in most rows go straight from row to row, not held
 
   bool draw_own(Random& random) const { return examination && random.chance(own_productions); }
 };

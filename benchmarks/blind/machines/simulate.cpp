@@ -94,11 +94,17 @@ class Run {
     return readings;
   }
 
+  // Whether an input changes from most rows to the next: steps stay steps.
+  static bool moves(const Column& column) {
+    std::size_t changes = 0;
+    for (std::size_t row = 1; row < column.size(); ++row) changes += column[row] != column[row - 1] ? 1 : 0;
+    return 2 * changes > column.size();
+  }
+
   // An input during a fine step: as in its row, or at the step's middle on the way to the next one.
-  double input(std::size_t i, std::size_t step) const {
+  double input(const Column& column, bool linear, std::size_t step) const {
     const std::size_t row = step / at(how_.substeps), within = step % at(how_.substeps);
-    const Column& column = recording_.inputs[i];
-    if (!compiled_.machine.linear_inputs) return column[row];
+    if (!linear) return column[row];
     const double share = (static_cast<double>(within) + 0.5) / how_.substeps;
     return column[row] + share * (column[row + 1] - column[row]);
   }
@@ -111,7 +117,9 @@ class Run {
     }
     std::vector<Column> inputs(recording_.inputs.size());
     for (std::size_t i = 0; i < inputs.size(); ++i) {
-      for (std::size_t k = 0; k < times.size(); ++k) inputs[i].push_back(input(i, k));
+      const Column& rows = recording_.inputs[i];
+      const bool linear = compiled_.machine.linear_inputs && moves(rows);
+      for (std::size_t k = 0; k < times.size(); ++k) inputs[i].push_back(input(rows, linear, k));
       for (const Hidden& one : hidden_)
         if (one.where == Where::input && at(one.target) == i) change_input(one, times, inputs[i]);
     }
