@@ -9,7 +9,7 @@
 
 namespace surefoot::diagnosis {
 
-/// Frees initial states of an ODE that are said to be known (`Recording::initial_scale` 0) in all of its recordings and
+/// Frees initial states of an ODE that are said to be known (`initial_scale` 0) in all of its recordings and
 /// that no sensor reads, one state after the other, where the fit `fitted` then predicts recordings better at the odds
 /// that name an effect, beyond what as many free numbers would do by chance (BIC). By state: freed. `fitted` is then
 /// the fit with them. Cost: by state a fit of initial states alone, and a whole one if that helps.

@@ -16,6 +16,7 @@ struct ProposalCriteria {
   double visible_share = 0.05;          // of the residuals' squares, that an effect must take away to be seen
   double negligible_signature = 1e-12;  // of the residuals' squares: rounding, the effect does nothing here
   double ridge = 1e-12;                 // of the signatures' squares: where two strengths do the same
+  double order_matters = 0.01;          // of the residuals' squares, explained more in front of others: not by rounding
 };
 
 /// An effect that is worth a fit, with the parameters to start it from.

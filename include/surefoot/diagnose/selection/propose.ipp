@@ -150,9 +150,23 @@ SUREFOOT_ONCE Proposal predict_gain(const BoundSimulator& bound, const OpenResid
   return proposal;
 }
 
-/// The best proposal of each effect, with its other starts in their order.
-SUREFOOT_ONCE std::vector<Proposal> best_of_each_effect(std::vector<Proposal> tried) {
+/// The best proposal of each effect, with its other starts in their order; behind the effects of the base, of which
+/// there are `behind`, unless it clearly does more in front of them.
+SUREFOOT_ONCE std::vector<Proposal> best_of_each_effect(std::vector<Proposal> tried, std::size_t behind,
+                                                        const ProposalCriteria& criteria) {
   std::erase_if(tried, [](const Proposal& one) { return !one.effect.effect; });
+  std::vector<Proposal> in_front;
+  for (const Proposal& one : tried) {
+    if (one.before < behind) in_front.push_back(one);
+  }
+  std::erase_if(tried, [&](const Proposal& one) { return one.before < behind; });
+  for (Proposal& one : in_front) {
+    const bool clearly = std::none_of(tried.begin(), tried.end(), [&](const Proposal& other) {
+      return other.before == behind && same_effect(other.effect, one.effect) &&
+             !(one.gain > other.gain + criteria.order_matters);
+    });
+    if (clearly) tried.push_back(std::move(one));
+  }
   sort_items(tried, [](const Proposal& a, const Proposal& b) { return a.gain > b.gain; });
   std::vector<Proposal> best;
   for (const Proposal& one : tried) {
@@ -243,7 +257,7 @@ SUREFOOT_ONCE std::vector<Proposal> propose(const BoundSimulator& bound, const H
                             signatures(bound, base, problem, open.residuals, candidates[c], start, before), criteria);
     tried[j].before = before;
   });
-  return best_of_each_effect(std::move(tried));
+  return best_of_each_effect(std::move(tried), base.effects.size(), criteria);
 }
 
 }  // namespace surefoot::diagnosis
