@@ -32,6 +32,11 @@ std::string one_line(std::string value) {
   return value;
 }
 
+std::string hold_value(surefoot::InputHold hold) {
+  const bool zero_order = hold == surefoot::InputHold::zero_order;  // a model file calls it otherwise
+  return "surefoot::InputHold::" + (zero_order ? "zero_order" : std::string(hold_name(hold)));
+}
+
 void write_info(std::ostream& out, const ModelFile& model, const EquationPlan& plan) {
   out << "  surefoot::SimulatorInfo info() const {\n    surefoot::SimulatorInfo info;\n    info.name = "
       << string_literal(model.name)
@@ -44,7 +49,7 @@ void write_info(std::ostream& out, const ModelFile& model, const EquationPlan& p
   out << "};\n    info.inputs = {";
   for (const auto& input : model.inputs) {
     out << "{" << string_literal(input.name) << ", " << string_literal(input.unit) << ", "
-        << (input.hold ? "surefoot::InputHold::" + std::string(hold_name(*input.hold)) : "{}") << "}, ";
+        << (input.hold ? hold_value(*input.hold) : "{}") << "}, ";
   }
   out << "};\n    info.outputs = {";
   for (const auto& output : model.outputs) {

@@ -112,8 +112,7 @@ SUREFOOT_ONCE std::string hold_sentence(const std::string& input, InputHold hold
          (linear ? " goes straight from row to row"
                  : " of each row acts since the row before, not from its own row on,") +
          " in what follows: recordings fit better so than with values held until the next row; say in the model which "
-         "it "
-         "is (a model file by hold = " +
+         "it is (a model file by hold = " +
          (linear ? "\"linear\"" : "\"before\"") + " or \"held\", C++ by InputInfo::hold)";
 }
 
