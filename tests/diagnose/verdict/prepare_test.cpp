@@ -3,25 +3,32 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "tests/diagnose/verdict/tank_setup.hpp"
 #include "tests/support/servo_pendulum.hpp"
 
 namespace surefoot::diagnosis {
 namespace {
 
-TEST_CASE("cuts keep every row once, and parts start from what was measured there") {
+TEST_CASE("cuts compare every reading once, and parts start a quarter earlier from what was measured there") {
   const BoundSimulator bound = bind_simulator(toys::LeakyTank{}, toys::noisy_tanks({}, 0.01, 1));
+  const Recording& whole = bound.recordings[0];
   const Hypothesis nominal = nominal_hypothesis(bound);
   const auto runs = simulate_all(bound, nominal, {0}, {}, serially());
   const std::vector<Recording> parts = cut_recordings(bound, nominal, runs, 5);
   REQUIRE(parts.size() == 5);
-  Eigen::Index rows = 0;
+  Eigen::Index next = 0;  // row that no part has compared yet
   for (const Recording& part : parts) {
-    if (rows > 0) CHECK(part.initial[0] == bound.recordings[0].outputs(0, rows));
-    CHECK((part.initial_scale[0] > 0) == (rows > 0));  // the first start is known
-    rows += part.rows();
+    const Eigen::Index lead_in = next == 0 ? 0 : 6;  // of 24 rows
+    REQUIRE(part.rows() == 24 + lead_in);
+    CHECK(part.time[0] == whole.time[next - lead_in]);
+    if (next > 0) CHECK(part.initial[0] == whole.outputs(0, next - lead_in));
+    CHECK((part.initial_scale[0] > 0) == (next > 0));  // the first start is known
+    for (Eigen::Index row = 0; row < lead_in; ++row) CHECK(std::isnan(part.outputs(0, row)));
+    for (Eigen::Index row = lead_in; row < part.rows(); ++row) CHECK(part.outputs(0, row) == whole.outputs(0, next++));
   }
-  CHECK(rows == 120);
+  CHECK(next == 120);
   CHECK(cut_recordings(bound, nominal, runs, 7).empty());  // of 17 rows each: too short
 }
 

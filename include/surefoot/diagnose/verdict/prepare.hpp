@@ -15,13 +15,15 @@ struct PreparationCriteria {
   std::size_t parts = 5;        // at least, of all recordings together
   std::size_t fewest = 3;       // parts that are of more use than whole recordings
   Eigen::Index part_rows = 20;  // least rows of a part
+  double lead_in = 0.25;        // of a part: rows before it, simulated and not compared (effects forget their start)
   double initial_share = 0.2;   // of a state's root mean square: by how much it may be off at a cut
   double least_initial = 1e-6;  // the same in units of the model, for a state that is always 0
   double least_noise = 1e-6;    // of an output's standard deviation: a sensor without noise reads the state itself
 };
 
-/// Cuts few recordings into parts, so that some can be held out. States at the cuts are those of the calibrated
-/// simulation, to be estimated from there on; where an output reads a state it starts from the measurement.
+/// Cuts few recordings into parts, so that some can be held out. A part begins a little earlier, at rows without
+/// readings: hidden states of effects are at rest there, and forget it on the way. Its states are those of the
+/// calibrated simulation, to be estimated from there on; where an output reads a state it starts from the measurement.
 std::vector<Recording> cut_recordings(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                       const std::vector<SimulatedRun>& trajectories, std::size_t parts,
                                       const PreparationCriteria& criteria = {});

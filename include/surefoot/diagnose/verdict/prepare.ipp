@@ -6,6 +6,7 @@
 #include <cmath>
 #include <compare>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,9 +20,15 @@
 
 namespace surefoot::diagnosis {
 
+/// Rows before a part that are simulated and not compared; in a map each row starts from readings or a known pose.
+SUREFOOT_ONCE Eigen::Index lead_in_rows(SimulatorKind kind, Eigen::Index rows, const PreparationCriteria& criteria) {
+  return kind == SimulatorKind::map ? 0 : static_cast<Eigen::Index>(criteria.lead_in * static_cast<double>(rows));
+}
+
 SUREFOOT_ONCE std::vector<Recording> cut_recordings(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                                     const std::vector<SimulatedRun>& trajectories, std::size_t parts,
                                                     const PreparationCriteria& criteria) {
+  constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
   std::vector<Recording> result;
   for (std::size_t r = 0; r < bound.recordings.size(); ++r) {
     const Recording& whole = bound.recordings[r];
@@ -30,16 +37,18 @@ SUREFOOT_ONCE std::vector<Recording> cut_recordings(const BoundSimulator& bound,
       const auto count = static_cast<Eigen::Index>(parts), k = static_cast<Eigen::Index>(part);
       const Eigen::Index from = whole.rows() * k / count, to = whole.rows() * (k + 1) / count;
       if (to - from < criteria.part_rows) continue;
-      Eigen::VectorXd initial = surefoot::detail::column_of(states, from), scale(initial.size());
+      const Eigen::Index begin = from - std::min(from, lead_in_rows(bound.info.kind, to - from, criteria));
+      Eigen::VectorXd initial = surefoot::detail::column_of(states, begin), scale(initial.size());
       for (Eigen::Index i = 0; i < initial.size(); ++i) {
         const double typical = root_mean_square(surefoot::detail::row_of(states, i));
         scale[i] = std::max(criteria.initial_share * typical, criteria.least_initial);
         const int output = bound.structure.output_of[static_cast<std::size_t>(i)];
         if (output < 0) continue;
-        const double measured = whole.outputs(output, from);
+        const double measured = whole.outputs(output, begin);
         if (std::isfinite(measured)) initial[i] = measured;
       }
-      Recording one = part_of(whole, from, to, initial, scale);
+      Recording one = part_of(whole, begin, to, initial, scale);
+      for (Eigen::Index row = 0; row < from - begin; ++row) one.outputs.col(row).fill(not_measured);
       if (part == 0) one.initial = hypothesis.initial[r];
       result.push_back(std::move(one));
     }
