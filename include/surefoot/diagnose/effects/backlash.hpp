@@ -3,7 +3,8 @@
 // operator: M. A. Krasnosel'skii, A. V. Pokrovskii: "Systems with hysteresis", 1989, section 2.
 // Forms: "" - the equations see the position through the gap; "gap" - a second inertia is coupled through a stiff
 // spring that engages at either end of the gap; "motor" - the drive acts on an inertia before the gap, and what the
-// equations and the sensor see is behind it; "sensor" - the sensor sees its quantity through the gap.
+// equations and the sensor see is behind it; "sensor" - the sensor sees its quantity through the gap; "coupling" - a force
+// that the equations have between two bodies acts at either end of the gap only.
 // Confusable with a delay (at one amplitude and frequency), with dry friction and hysteresis, which also lose motion at
 // each reversal, and with elasticity, which gives way but without a gap.
 #pragma once
@@ -110,6 +111,27 @@ inline Effect backlash_motor() {
               +[](const EffectContext&, Values p, HiddenStates hidden) {
                 MotorBehindBacklash{p[0], p[1]}.advance(hidden);
               }};
+}
+
+/// A force between two bodies that is not passed on while the parts are within the gap; the gap is as wide as the
+/// displacement to which that force belongs.
+inline Effect backlash_coupling() {
+  return {.name = "backlash",
+          .sentence = "backlash in {at}: nothing is passed on below {force} to either side",
+          .place = Place::input,
+          .parameters = parameters_of({{.name = "force",
+                                        .measure = {.value = 1},
+                                        .low = 0,
+                                        .high = 2,
+                                        .starts = {0.003, 0.05, 0.2, 0.6},
+                                        .strength = true}}),
+          .confusable_with = names_of({"joint_elasticity", "cubic_stiffness", "hysteresis", "sensor_delay"}),
+          .experiment = "slow reversals at two amplitudes: lost motion is the same for both",
+          .form = "coupling",
+          .needs_coupling = true,
+          .signal = +[](const EffectContext& m, Values p, Values) {
+            return std::max(m.value - p[0], 0.0) + std::min(m.value + p[0], 0.0);
+          }};
 }
 
 inline Effect backlash_sensor() {

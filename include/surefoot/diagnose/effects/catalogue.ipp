@@ -38,6 +38,7 @@
 #include "surefoot/diagnose/effects/sensor_drift.hpp"
 #include "surefoot/diagnose/effects/sensor_scale.hpp"
 #include "surefoot/diagnose/effects/slip_saturation.hpp"
+#include "surefoot/diagnose/effects/smooth_friction.hpp"
 #include "surefoot/diagnose/effects/stribeck_friction.hpp"
 #include "surefoot/diagnose/effects/supply_sag.hpp"
 #include "surefoot/diagnose/effects/viscous_friction.hpp"
@@ -48,14 +49,19 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
   return {effects::viscous_friction(),
           effects::coulomb_friction(),
           effects::coulomb_friction_presliding(),
+          effects::smoothed(effects::coulomb_friction()),
           effects::stribeck_friction(),
           effects::stribeck_friction_tailed(),
+          effects::smoothed(effects::stribeck_friction()),
           effects::load_dependent_friction(),
           effects::load_dependent_friction_under_load(),
           effects::load_dependent_friction_in_gears(),
           effects::with_presliding(effects::load_dependent_friction()),
           effects::with_presliding(effects::load_dependent_friction_under_load()),
           effects::with_presliding(effects::load_dependent_friction_in_gears()),
+          effects::smoothed(effects::load_dependent_friction()),
+          effects::smoothed(effects::load_dependent_friction_under_load()),
+          effects::smoothed(effects::load_dependent_friction_in_gears()),
           effects::quadratic_drag(),
           effects::constant_force(),
           effects::cubic_stiffness(),
@@ -78,7 +84,8 @@ SUREFOOT_ONCE std::vector<Effect> input_effects() {
   std::vector<Effect> all = {
       effects::input_gain(),  effects::input_asymmetry(), effects::dead_zone(),          effects::dead_zone_step(),
       effects::saturation(),  effects::saturation_soft(), effects::saturation_gradual(), effects::rate_limit(),
-      effects::input_delay(), effects::first_order_lag(), effects::supply_sag()};
+      effects::input_delay(), effects::first_order_lag(), effects::supply_sag(),         effects::backlash_coupling(),
+      effects::cubic_stiffness_coupling()};
   for (std::size_t i = 0, count = all.size(); i < count; ++i) {
     if (all[i].start || all[i].delay) all.push_back(effects::from_rest(all[i]));
   }

@@ -1,4 +1,5 @@
-// A spring that hardens (or, negative, softens) away from position 0: force = -stiffness * q^3.
+// A spring that hardens (or, negative, softens) away from position 0: force = -stiffness * q^3. Form "coupling": a force
+// that the equations have between two bodies grows with its cube, force + hardening * force^3.
 // G. Duffing: "Erzwungene Schwingungen bei veraenderlicher Eigenfrequenz", 1918.
 // Confusable with a linear spring of the model at one amplitude, and with a soft end stop.
 #pragma once
@@ -22,6 +23,23 @@ inline Effect cubic_stiffness() {
       .confusable_with = names_of({"end_stop", "gravity_offset", "saturation"}),
       .experiment = "free oscillations, or slow sweeps, at a small and at the largest amplitude",
       .force = +[](const EffectContext& m, Values p, Values) { return -p[0] * m.position * m.position * m.position; }};
+}
+
+inline Effect cubic_stiffness_coupling() {
+  return {.name = "cubic_stiffness",
+          .sentence = "{at} hardens: {hardening} times its cube is added to it",
+          .place = Place::input,
+          .parameters = parameters_of({{.name = "hardening",
+                                        .measure = {.value = -2},
+                                        .low = -0.1,
+                                        .high = 3,
+                                        .starts = {0.003, 0.1},
+                                        .strength = true}}),
+          .confusable_with = names_of({"backlash", "joint_elasticity"}),
+          .experiment = "free oscillations, or slow sweeps, at a small and at the largest amplitude",
+          .form = "coupling",
+          .needs_coupling = true,
+          .signal = +[](const EffectContext& m, Values p, Values) { return m.value * (1 + p[0] * m.value * m.value); }};
 }
 
 }  // namespace surefoot::effects

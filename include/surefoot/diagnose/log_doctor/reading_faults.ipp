@@ -123,19 +123,37 @@ SUREFOOT_ONCE bool ends_in_jump(const LogFit& fit, std::size_t r, Eigen::Index o
   return std::abs(step) > jump * high_value(steps);
 }
 
-/// The stretches of one output and recording that no sensor and no machine explains: clipped or stuck.
+/// How far the model is off elsewhere in this recording: root mean square.
+SUREFOOT_ONCE double error_elsewhere(const LogFit& fit, std::size_t r, Eigen::Index output,
+                                     const std::vector<ConstantStretch>& stretches) {
+  double sum = 0, count = 0;
+  for (Eigen::Index row = 0; row < fit.residuals[r].cols(); ++row) {
+    const double off = fit.residuals[r](output, row);
+    const bool within = std::any_of(stretches.begin(), stretches.end(), [&](const ConstantStretch& one) {
+      return row >= one.rows.first && row < one.rows.second;
+    });
+    if (within || !std::isfinite(off)) continue;
+    sum += off * off;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+/// The stretches of one output and recording that no sensor and no machine explains: clipped or stuck. A model that is
+/// off moves on where the machine turns.
 SUREFOOT_ONCE std::optional<FoundFault> constant_fault(const LogFit& fit, std::size_t r, Eigen::Index output,
                                                        const std::vector<ConstantStretch>& stretches) {
   LogRepair clipped{.kind = LogFaultKind::clipped, .channel = {false, output}};
   LogRepair stuck{.kind = LogFaultKind::stuck, .channel = {false, output}};
   double clipped_rows = 0, stuck_rows = 0;
   const bool steps = fit.bound.integration.restart > 0;  // then the model is never far beyond
+  const double off = std::max(fit.typical[output], error_elsewhere(fit, r, output, stretches));
   for (const ConstantStretch& one : stretches) {
     const bool jump = ends_in_jump(fit, r, output, one.rows);
     if ((one.beyond || (one.extreme && steps)) && !jump) {
       clipped.rows.push_back(one.rows);
       clipped_rows += static_cast<double>(one.readings);
-    } else if (jump || one.missed > fit.typical[output]) {
+    } else if (jump || one.missed > off) {
       stuck.rows.push_back(one.rows);
       stuck_rows += static_cast<double>(one.readings);
     }

@@ -10,13 +10,14 @@
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
+#include "surefoot/diagnose/estimation/sensor_noise.hpp"
 
 namespace surefoot::diagnosis {
 
 /// How much of the residuals of one output is not noise.
 struct WhitenessTest {
   double share = 0;       // of the mean square that is still correlated after the noise has forgotten itself
-  double remembered = 0;  // correlation just after that: what slow errors, which fade later, make of the mean square
+  double predicted = 0;   // share of it that residuals from before then predict: slow errors, oscillations
   double p_value = 1;     // one-sided, that there is none
   double rms = 0;         // of the residuals, in the unit of the output
   double typical = 0;     // the same of the median recording: what is off in a few is not everywhere
@@ -28,6 +29,11 @@ Eigen::VectorXd series_of(const BoundSimulator& bound, std::size_t r, const Simu
 
 /// Sums of products of neighbours `lag` rows apart, by lag, over all series.
 Eigen::VectorXd lagged_products(const std::vector<Eigen::VectorXd>& series, Eigen::Index from, Eigen::Index to);
+
+/// Share of the mean square of residuals that a linear prediction explains (Yule and Walker's equations) which knows
+/// them up to `gap` rows before. Never below 0; noise that forgets itself within the gap is not predicted. `series`
+/// without NaN. Cost: rows * 5 gap + gap^3.
+double predicted_share(const std::vector<Eigen::VectorXd>& series, Eigen::Index gap);
 
 /// Upper tail of a sum of squares with this mean and variance, as a scaled chi-square (Wilson & Hilferty 1931).
 double chi_square_tail(double value, double mean, double variance);
@@ -42,16 +48,6 @@ double chi_square_score(double value, double mean, double variance);
 WhitenessTest test_whiteness(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
                              const std::vector<SimulatedRun>& trajectories, Eigen::Index output, Eigen::Index from,
                              Eigen::Index to);
-
-/// Standard deviation of noise that differs from row to row, from third differences of what was measured (they remove
-/// motion that is smooth over four rows); noise that is correlated from row to row is underestimated.
-double fast_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings, Eigen::Index output);
-
-/// Standard deviation of the noise of one output: as stated, or as far as it is fast.
-inline double noise_of(const BoundSimulator& bound, const std::vector<std::size_t>& recordings, Eigen::Index output) {
-  const double stated = bound.info.outputs[static_cast<std::size_t>(output)].noise;
-  return stated > 0 ? stated : fast_noise(bound, recordings, output);
-}
 
 }  // namespace surefoot::diagnosis
 

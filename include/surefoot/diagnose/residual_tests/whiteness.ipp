@@ -38,6 +38,22 @@ SUREFOOT_INLINE Eigen::VectorXd lagged_products(const std::vector<Eigen::VectorX
   return sums;
 }
 
+SUREFOOT_INLINE double predicted_share(const std::vector<Eigen::VectorXd>& series, Eigen::Index gap) {
+  constexpr double ridge = 1e-6;  // of the mean square: residuals without noise predict themselves
+  const Eigen::Index known = 4 * gap;  // rows that predict
+  const Eigen::VectorXd products = lagged_products(series, 0, gap + known);
+  if (!(products[0] > 0)) return 0;
+  Eigen::MatrixXd among(known, known);
+  Eigen::VectorXd ahead(known);
+  for (Eigen::Index i = 0; i < known; ++i) {
+    for (Eigen::Index j = 0; j < known; ++j) among(i, j) = products[std::abs(i - j)] / products[0];
+    among(i, i) += ridge;
+    ahead[i] = products[gap + i] / products[0];
+  }
+  const Eigen::VectorXd weights = surefoot::detail::solve_symmetric(among, ahead);
+  return std::clamp(surefoot::detail::dot(weights.data(), ahead.data(), known), 0.0, 1.0);
+}
+
 SUREFOOT_INLINE double chi_square_score(double value, double mean, double variance) {
   const double relative = variance / (9 * mean * mean);  // 2 / (9 k), for k = 2 mean^2 / variance degrees of freedom
   return (std::cbrt(value / mean) - (1 - relative)) / std::sqrt(relative);
@@ -93,7 +109,6 @@ SUREFOOT_INLINE WhitenessTest test_whiteness(const BoundSimulator& bound, const 
   if (!(squares > 0)) return result;
   Eigen::VectorXd correlation = lagged_products(all, from, to);
   correlation /= squares;
-  result.remembered = std::max(0.0, correlation[0]);
   Rng rng(1);
   double mean = 0, variance = 0;
   std::vector<double> nulls;
@@ -118,23 +133,8 @@ SUREFOOT_INLINE WhitenessTest test_whiteness(const BoundSimulator& bound, const 
   double largest = 0;
   for (const double value : correlation) largest = std::max(largest, std::abs(value));
   result.share = std::min(std::sqrt(2 * excess), largest);  // of a sine: half its square
+  result.predicted = predicted_share(all, from);
   return result;
-}
-
-SUREFOOT_INLINE double fast_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                  Eigen::Index output) {
-  std::vector<double> third;
-  for (const std::size_t r : recordings) {
-    const Eigen::VectorXd y = surefoot::detail::row_of(bound.recordings[r].outputs, output);
-    for (Eigen::Index i = 0; i + 3 < y.size(); ++i) {
-      const double d = y[i + 3] - 3 * y[i + 2] + 3 * y[i + 1] - y[i];
-      if (std::isfinite(d)) third.push_back(std::abs(d));
-    }
-  }
-  if (third.size() < 20) return 0;
-  const auto middle = third.begin() + static_cast<std::ptrdiff_t>(third.size() / 2);
-  std::nth_element(third.begin(), middle, third.end());
-  return *middle / 0.6745 / std::sqrt(20.0);
 }
 
 }  // namespace surefoot::diagnosis

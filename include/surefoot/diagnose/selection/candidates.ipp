@@ -43,7 +43,8 @@ SUREFOOT_ONCE std::vector<bool> distinct_inputs(const BoundSimulator& bound, con
   std::vector<bool> distinct(count, false);
   for (std::size_t k = 0; k < count; ++k) {
     const auto a = static_cast<Eigen::Index>(k);
-    distinct[k] = changes[k] && (k < inputs || bound.structure.driven_signal[k - inputs]);
+    distinct[k] = changes[k] && (k < inputs || bound.structure.driven_signal[k - inputs] ||
+                                 bound.structure.coupling[k - inputs]);
     for (std::size_t j = 0; j < k; ++j) {
       const auto b = static_cast<Eigen::Index>(j);
       if (!distinct[j]) continue;
@@ -129,7 +130,8 @@ SUREFOOT_ONCE std::vector<AttachedEffect> attachments(const BoundSimulator& boun
         break;
       case Place::input:
         for (std::size_t i = 0; i < distinct.size(); ++i) {
-          if (!distinct[i]) continue;
+          const bool coupling = i >= info.inputs.size() && bound.structure.coupling[i - info.inputs.size()];
+          if (!distinct[i] || coupling != effect.needs_coupling) continue;
           attach(i, i < info.inputs.size() ? info.inputs[i].name : info.signals[i - info.inputs.size()]);
         }
         break;

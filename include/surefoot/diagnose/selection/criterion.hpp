@@ -141,6 +141,9 @@ std::size_t best_of(const std::vector<EvaluatedHypothesis>& evaluated, const Sel
 /// Log of the posterior odds of `a` against `b` [nat], all recordings taken as they are.
 double log_odds(const EvaluatedHypothesis& a, const EvaluatedHypothesis& b, const SelectionCriteria& criteria);
 
+/// The same of two forms of one structure: what may be an error of form counts as well.
+double log_odds_of_forms(EvaluatedHypothesis a, EvaluatedHypothesis b, const SelectionCriteria& criteria);
+
 /// Posterior probabilities, which add up to 1. Cost: rounds * recordings * hypotheses.
 std::vector<double> probabilities(const std::vector<EvaluatedHypothesis>& evaluated, const SelectionCriteria& criteria);
 

@@ -43,9 +43,17 @@ SUREFOOT_INLINE EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, co
   return result;
 }
 
+/// Whether a variable is a strength of an effect that has another one before it.
+SUREFOOT_INLINE bool is_spare_strength(const Hypothesis& hypothesis, const Variable& variable) {
+  const auto& parameters = hypothesis.effects[variable.index].effect->parameters;
+  const auto own = parameters.begin() + static_cast<std::ptrdiff_t>(variable.item);
+  return own->strength &&
+         std::any_of(parameters.begin(), own, [](const EffectParameter& one) { return one.strength; });
+}
+
 SUREFOOT_INLINE double log_prior(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t known,
                                  std::size_t candidates, const SelectionCriteria& criteria) {
-  constexpr double middle = 0.5;  // of a range
+  constexpr double middle = 0.5, nothing = 1e-3;  // of a range
   double sum = 0;
   for (std::size_t e = known; e < hypothesis.effects.size(); ++e) {
     const Effect& effect = *hypothesis.effects[e].effect;
@@ -58,6 +66,7 @@ SUREFOOT_INLINE double log_prior(const BoundSimulator& bound, const Hypothesis& 
     Hypothesis copy = hypothesis;
     const double low = to_search(variable, variable.low), high = to_search(variable, variable.high);
     const double share = (to_search(variable, value_of(copy, variable)) - low) / (high - low);
+    if (is_spare_strength(hypothesis, variable) && share < nothing) sum -= criteria.bound_cost;  // a simpler effect does
     const bool natural = variable.low == 0 && share < middle;  // a strength near zero is told by the densities
     if (!natural && (share < criteria.bound_share || share > 1 - criteria.bound_share)) sum -= criteria.bound_cost;
   }
@@ -135,6 +144,12 @@ SUREFOOT_INLINE double log_odds(const EvaluatedHypothesis& a, const EvaluatedHyp
   double sum = a.log_prior - b.log_prior;
   for (std::size_t r = 0; r < of_a.size(); ++r) sum += of_a[r] - of_b[r];
   return sum;
+}
+
+SUREFOOT_INLINE double log_odds_of_forms(EvaluatedHypothesis a, EvaluatedHypothesis b,
+                                         const SelectionCriteria& criteria) {
+  a.errors.least = b.errors.least = {};
+  return log_odds(a, b, criteria);
 }
 
 SUREFOOT_INLINE std::vector<double> probabilities(const std::vector<EvaluatedHypothesis>& evaluated,

@@ -35,7 +35,8 @@ SUREFOOT_ONCE bool keep_best_form(std::vector<EvaluatedHypothesis>& pool, const 
                                   const SelectionCriteria& criteria) {
   for (EvaluatedHypothesis& other : pool) {
     if (!same_structure(other.hypothesis, one.hypothesis)) continue;
-    const bool better = dominates(one, other) || (!dominates(other, one) && log_odds(one, other, criteria) > 0);
+    const bool better =
+        dominates(one, other) || (!dominates(other, one) && log_odds_of_forms(one, other, criteria) > 0);
     if (better) other = one;
     return better;
   }

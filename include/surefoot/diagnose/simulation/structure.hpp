@@ -22,6 +22,7 @@ struct SimulatorStructure {
   std::vector<bool> remembers;      // by state of a map: only keeps inputs, of this step or of earlier ones
   std::vector<int> output_of;       // by state: the output that reads it directly, or -1
   std::vector<bool> driven_signal;  // by signal: changes with the inputs
+  std::vector<bool> coupling;       // by signal: not driven, and moves several bodies: what holds them together
   bool all_states_measured = false;  // but for those that only keep inputs, and are known with them
 };
 
@@ -116,6 +117,8 @@ struct SimulatorAnswers {
   std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::vector<double>* signals)>
       rates;
   std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u)> outputs;
+  /// Rates where one of the signals is a little larger.
+  std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::size_t signal)> rates_beside;
   /// What generalized forces add to the rates; empty: the simulator has no response to them.
   std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u, const Eigen::VectorXd& forces)>
       response;
@@ -145,6 +148,12 @@ SimulatorStructure find_structure(const S& simulator, const SimulatorInfo& info,
       return value;
     };
     return converted<Eigen::VectorXd>(State(evaluate(s, at, input, parameters, record)));
+  };
+  answers.rates_beside = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::size_t signal) {
+    const auto larger = [signal](int i, double value) {
+      return static_cast<std::size_t>(i) == signal ? value + 1e-3 * (1 + std::abs(value)) : value;
+    };
+    return converted<Eigen::VectorXd>(State(evaluate(s, converted<State>(x), converted<Input>(u), parameters, larger)));
   };
   answers.outputs = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& u) {
     const typename S::Output y = s.observe(converted<State>(x), converted<Input>(u), parameters);

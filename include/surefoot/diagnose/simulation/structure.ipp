@@ -183,6 +183,24 @@ SUREFOOT_ONCE std::vector<int> moved_together(const SimulatorAnswers& answers, c
   return result;
 }
 
+/// Signals that do not depend on the inputs and change the speeds of several positions.
+SUREFOOT_ONCE std::vector<bool> couplings(const SimulatorAnswers& answers, const SimulatorStructure& structure,
+                                          const Eigen::VectorXd& x, const Eigen::VectorXd& u) {
+  std::vector<bool> result(structure.driven_signal.size(), false);
+  const Eigen::VectorXd rate = answers.rates(x, u, nullptr);
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    if (structure.driven_signal[k]) continue;
+    const Eigen::VectorXd beside = answers.rates_beside(x, u, k);
+    int moved = 0;
+    for (std::size_t i = 0; i < structure.position_of.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      if (structure.position_of[i] >= 0 && !nearly_equal(rate[row], beside[row])) ++moved;
+    }
+    result[k] = moved > 1;
+  }
+  return result;
+}
+
 SUREFOOT_ONCE SimulatorStructure find_structure(const SimulatorAnswers& answers, const SimulatorInfo& info,
                                                 const Recording& example) {
   const auto n = info.states.size(), m = info.inputs.size(), k = info.outputs.size();
@@ -218,6 +236,9 @@ SUREFOOT_ONCE SimulatorStructure find_structure(const SimulatorAnswers& answers,
   const Eigen::VectorXd first = example.inputs.cols() > 0 && m > 0
                                     ? surefoot::detail::column_of(example.inputs, 0)
                                     : Eigen::VectorXd::Zero(static_cast<Eigen::Index>(m));
+  Eigen::VectorXd beside = example.initial;  // where nothing is 0 by chance
+  for (double& value : beside) value += 0.1 + rng.uniform();
+  structure.coupling = couplings(answers, structure, beside, first);
   if (structure.pushed.empty()) {
     structure.moved_together = moved_together(answers, structure.velocity, example.initial, first);
   }

@@ -24,6 +24,11 @@ Calibration calibrate_model(EstimationSetup& setup, const RunContext& run);
 /// The weights by which errors are compared.
 Weighting error_scale_of(const EstimationSetup& setup);
 
+/// Whether the residuals of a hypothesis hold what noise does not; final poses are too few to tell. Recordings that it
+/// was not fitted to would tell of parameters.
+bool holds_structure(const EstimationSetup& setup, const Hypothesis& hypothesis, const FitProblem& fit,
+                     const SelectionCriteria& criteria, const Parallel& parallel);
+
 /// Frees initial states that recordings refute, beside those before; true if there are any.
 bool free_more_states(EstimationSetup& setup, Fit& fitted, const SearchProblem& problem, const Parallel& parallel);
 

@@ -1,6 +1,7 @@
 // Definitions of surefoot/diagnose/verdict/calibrate_model.hpp.
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
+#include "surefoot/diagnose/estimation/sensor_noise.hpp"
 #include "surefoot/diagnose/selection/choose_holds.hpp"
 #include "surefoot/diagnose/selection/choose_initial_states.hpp"
 #include "surefoot/diagnose/verdict/calibrate_model.hpp"
@@ -30,6 +32,33 @@ SUREFOOT_ONCE bool free_more_states(EstimationSetup& setup, Fit& fitted, const S
   return std::find(more.begin(), more.end(), true) != more.end();
 }
 
+SUREFOOT_ONCE bool holds_structure(const EstimationSetup& setup, const Hypothesis& hypothesis, const FitProblem& fit,
+                                   const SelectionCriteria& criteria, const Parallel& parallel) {
+  if (setup.noise == NoiseKind::final_pose) return true;
+  const auto runs = simulate_all(setup.bound, hypothesis, fit.recordings, fit.integration, parallel);
+  const Mismatch mismatch =
+      measure_mismatch(setup.bound, fit.recordings, runs, setup.problem.weighting.sigma, setup.noise);
+  return mismatch.p_value < criteria.structure_significance && mismatch.share > criteria.structure_share;
+}
+
+/// Frees initial states only if nothing else is missing then: beside other physics, which the search has yet to find,
+/// they would absorb some of it.
+SUREFOOT_ONCE bool free_states_alone(EstimationSetup& setup, Fit& calibrated, const SearchProblem& problem,
+                                     const Parallel& parallel) {
+  const std::vector<bool> before = setup.freed;
+  std::vector<Eigen::VectorXd> scales;
+  for (const Recording& one : setup.bound.recordings) scales.push_back(one.initial_scale);
+  Fit freed = calibrated;
+  if (!free_more_states(setup, freed, problem, parallel)) return false;
+  if (!holds_structure(setup, freed.hypothesis, problem.fit, problem.criteria, parallel)) {
+    calibrated = freed;
+    return true;
+  }
+  setup.freed = before;
+  for (std::size_t r = 0; r < scales.size(); ++r) setup.bound.recordings[r].initial_scale = scales[r];
+  return false;
+}
+
 /// Inputs that are not held, and states that do not begin as the model says; true if recordings show any.
 SUREFOOT_ONCE bool revise_what_was_said(EstimationSetup& setup, Fit& calibrated, const Parallel& parallel) {
   SearchProblem problem;
@@ -37,7 +66,7 @@ SUREFOOT_ONCE bool revise_what_was_said(EstimationSetup& setup, Fit& calibrated,
   problem.scale = error_scale_of(setup);
   const bool holds = choose_holds(setup.bound, calibrated, problem, parallel);
   setup.bound.integration = setup.problem.integration = problem.fit.integration;
-  return free_more_states(setup, calibrated, problem, parallel) || holds;
+  return free_states_alone(setup, calibrated, problem, parallel) || holds;
 }
 
 SUREFOOT_ONCE Calibration calibrate_model(EstimationSetup& setup, const RunContext& run) {

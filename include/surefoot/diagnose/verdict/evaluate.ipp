@@ -17,6 +17,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/estimation/marginal_likelihood.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
+#include "surefoot/diagnose/estimation/sensor_noise.hpp"
 #include "surefoot/diagnose/residual_tests/forest_correction.hpp"
 #include "surefoot/diagnose/residual_tests/whiteness.hpp"
 #include "surefoot/diagnose/verdict/evaluate.hpp"
@@ -102,8 +103,7 @@ SUREFOOT_ONCE double output_noise(const BoundSimulator& bound, const std::vector
   constexpr double significance = 0.01;  // of structure in the residuals
   const double stated = bound.info.outputs[static_cast<std::size_t>(output)].noise;
   if (stated > 0) return stated;
-  const double largest = std::min(1.0, std::max(residuals.share, residuals.remembered));
-  const double structured = residuals.p_value < significance ? largest : 0;
+  const double structured = residuals.p_value < significance ? residuals.predicted : 0;
   const double unpredictable = residuals.typical * std::sqrt(1 - structured);
   return std::min(std::max(fast_noise(bound, recordings, output), unpredictable), error);
 }

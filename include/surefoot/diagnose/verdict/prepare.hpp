@@ -18,7 +18,6 @@ struct PreparationCriteria {
   double lead_in = 0.25;        // of a part: rows before it, simulated and not compared (effects forget their start)
   double initial_share = 0.2;   // of a state's root mean square: by how much it may be off at a cut
   double least_initial = 1e-6;  // the same in units of the model, for a state that is always 0
-  double least_noise = 1e-6;    // of an output's standard deviation: a sensor without noise reads the state itself
 };
 
 /// Cuts few recordings into parts, so that some can be held out. A part begins a little earlier, at rows without
@@ -27,11 +26,6 @@ struct PreparationCriteria {
 std::vector<Recording> cut_recordings(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                       const std::vector<SimulatedRun>& trajectories, std::size_t parts,
                                       const PreparationCriteria& criteria = {});
-
-/// An initial state that was read off a sensor is known as well as that sensor reads: it is estimated, within its
-/// noise.
-void free_measured_initial_states(BoundSimulator& bound, const std::vector<std::size_t>& training,
-                                  const PreparationCriteria& criteria = {});
 
 /// Puts recordings in the order of their names, those of one name in that of their times and inputs: what is concluded
 /// does not depend on the order in which they are given.

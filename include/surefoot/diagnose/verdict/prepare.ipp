@@ -13,8 +13,6 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
-#include "surefoot/diagnose/estimation/typical_sizes.hpp"
-#include "surefoot/diagnose/residual_tests/whiteness.hpp"
 #include "surefoot/diagnose/verdict/prepare.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
 
@@ -54,21 +52,6 @@ SUREFOOT_ONCE std::vector<Recording> cut_recordings(const BoundSimulator& bound,
     }
   }
   return result;
-}
-
-SUREFOOT_ONCE void free_measured_initial_states(BoundSimulator& bound, const std::vector<std::size_t>& training,
-                                                const PreparationCriteria& criteria) {
-  const Eigen::VectorXd deviations = output_deviations(bound, training);
-  for (std::size_t i = 0; i < bound.info.states.size(); ++i) {
-    const int output = bound.structure.output_of[i];
-    if (output < 0) continue;
-    const double noise = noise_of(bound, training, output), deviation = deviations[output];
-    for (Recording& recording : bound.recordings) {
-      const auto state = static_cast<Eigen::Index>(i);
-      if (recording.initial_scale[state] > 0 || recording.initial[state] != recording.outputs(output, 0)) continue;
-      if (noise > criteria.least_noise * deviation) recording.initial_scale[state] = noise;
-    }
-  }
 }
 
 SUREFOOT_ONCE void sort_recordings(std::vector<Recording>& recordings) {

@@ -38,17 +38,6 @@ SUREFOOT_ONCE std::vector<AttachedEffect> candidate_effects(const EstimationSetu
   return candidates;
 }
 
-/// Whether the residuals of a hypothesis hold what noise does not; final poses are too few to tell. Recordings that it
-/// was not fitted to would tell of parameters.
-SUREFOOT_ONCE bool holds_structure(const EstimationSetup& setup, const Hypothesis& hypothesis, const FitProblem& fit,
-                                   const SelectionCriteria& criteria, const Parallel& parallel) {
-  if (setup.noise == NoiseKind::final_pose) return true;
-  const auto runs = simulate_all(setup.bound, hypothesis, fit.recordings, fit.integration, parallel);
-  const Mismatch mismatch =
-      measure_mismatch(setup.bound, fit.recordings, runs, setup.problem.weighting.sigma, setup.noise);
-  return mismatch.p_value < criteria.structure_significance && mismatch.share > criteria.structure_share;
-}
-
 SUREFOOT_ONCE SearchProblem search_problem(const EstimationSetup& setup, const Calibration& calibration,
                                            const RunContext& run) {
   const auto& training = setup.split.training;
@@ -130,7 +119,11 @@ SUREFOOT_ONCE void revise_initial_states(EstimationSetup& setup, Searched& found
     problem.fit = found.selection.fit;
     return problem;
   };
-  if (!any_effect() || run.search_has_ended()) return;
+  const auto explained = [&] {
+    const Hypothesis& all = found.selection.chosen.hypothesis;
+    return !any_effect() && !holds_structure(setup, all, found.selection.fit, found.problem.criteria, run.parallel);
+  };
+  if (run.search_has_ended() || explained()) return;
   Fit fitted = chosen();
   if (free_more_states(setup, fitted, with_present_weights(), run.parallel)) {
     found = search_effects(setup, run, diagnosis);

@@ -1,0 +1,25 @@
+// Dry friction that grows smoothly from rest on, as of lubricated bearings, and as most simulators write it:
+// level(v) * tanh(v / onset), after L. Marton, B. Lantos: "Modeling, identification, and compensation of stick-slip
+// friction", IEEE Trans. Industrial Electronics 54(1), 2007, and many before. It creeps where plain dry friction
+// sticks. A form of each dry friction; with an `onset` far below the motion it is the plain one.
+#pragma once
+
+#include <cmath>
+#include <utility>
+
+#include "surefoot/diagnose/effects/effect.hpp"
+
+namespace surefoot::effects {
+
+/// The same friction, with 76 % of its level at the speed `onset`.
+inline Effect smoothed(Effect friction) {
+  friction.sentence += ", which grows from rest on up to speeds of about {onset}";
+  friction.parameters.push_back({.name = "onset", .measure = {.value = 1}, .low = 0.001, .high = 0.2, .starts = {0.01, 0.05}});
+  friction.form += friction.form.empty() ? "smooth" : ", smooth";
+  friction.force = [level = std::exchange(friction.dry, {})](const EffectContext& m, Values p, Values /*hidden*/) {
+    return -level(m, p) * std::tanh(m.value / p.back());
+  };
+  return friction;
+}
+
+}  // namespace surefoot::effects

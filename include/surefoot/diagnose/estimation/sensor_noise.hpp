@@ -1,0 +1,30 @@
+// Noise of sensors, from readings alone; and initial states that were read off a sensor.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "surefoot/diagnose/simulation/bound_simulator.hpp"
+
+namespace surefoot::diagnosis {
+
+/// Standard deviation of noise that differs from row to row, from third differences of what was measured (they remove
+/// motion that is smooth over four rows); noise that is correlated from row to row is underestimated.
+double fast_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings, Eigen::Index output);
+
+/// Standard deviation of the noise of one output: as stated, or as far as it is fast.
+inline double noise_of(const BoundSimulator& bound, const std::vector<std::size_t>& recordings, Eigen::Index output) {
+  const double stated = bound.info.outputs[static_cast<std::size_t>(output)].noise;
+  return stated > 0 ? stated : fast_noise(bound, recordings, output);
+}
+
+/// An initial state that was read off a sensor is known as well as that sensor reads: it is estimated, within its
+/// noise.
+void free_measured_initial_states(BoundSimulator& bound, const std::vector<std::size_t>& training);
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/estimation/sensor_noise.ipp"
+#endif

@@ -1,0 +1,48 @@
+// Definitions of surefoot/diagnose/estimation/sensor_noise.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/sensor_noise.hpp"
+#include "surefoot/diagnose/estimation/typical_sizes.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_INLINE double fast_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                  Eigen::Index output) {
+  std::vector<double> third;
+  for (const std::size_t r : recordings) {
+    const Eigen::VectorXd y = surefoot::detail::row_of(bound.recordings[r].outputs, output);
+    for (Eigen::Index i = 0; i + 3 < y.size(); ++i) {
+      const double d = y[i + 3] - 3 * y[i + 2] + 3 * y[i + 1] - y[i];
+      if (std::isfinite(d)) third.push_back(std::abs(d));
+    }
+  }
+  if (third.size() < 20) return 0;
+  const auto middle = third.begin() + static_cast<std::ptrdiff_t>(third.size() / 2);
+  std::nth_element(third.begin(), middle, third.end());
+  return *middle / 0.6745 / std::sqrt(20.0);
+}
+
+SUREFOOT_ONCE void free_measured_initial_states(BoundSimulator& bound, const std::vector<std::size_t>& training) {
+  constexpr double least_noise = 1e-6;  // of an output's standard deviation: a sensor without noise reads the state
+  const Eigen::VectorXd deviations = output_deviations(bound, training);
+  for (std::size_t i = 0; i < bound.info.states.size(); ++i) {
+    const int output = bound.structure.output_of[i];
+    if (output < 0) continue;
+    const double noise = noise_of(bound, training, output), deviation = deviations[output];
+    for (Recording& recording : bound.recordings) {
+      const auto state = static_cast<Eigen::Index>(i);
+      if (recording.initial_scale[state] > 0 || recording.initial[state] != recording.outputs(output, 0)) continue;
+      if (noise > least_noise * deviation) recording.initial_scale[state] = noise;
+    }
+  }
+}
+
+}  // namespace surefoot::diagnosis
