@@ -66,13 +66,12 @@ TEST_CASE("a coarse sensor does not hide what a fine one shows") {
 
 TEST_CASE("the noise of an output is what no lag predicts, unless it is stated") {
   EstimationSetup setup = toys::tank_setup(toys::noisy_tanks({}, 0.01));
-  const auto noise = [&](double share, double p) {
-    return output_noise(setup.bound, setup.split.training, 0, {.share = share, .p_value = p, .typical = 0.1}, 0.2);
+  const auto noise = [&](double predicted, double p) {
+    const WhitenessTest residuals{.share = 0.2, .predicted = predicted, .p_value = p, .typical = 0.1};
+    return output_noise(setup.bound, setup.split.training, 0, residuals, 0.2);
   };
   CHECK(noise(0.75, 1e-6) == doctest::Approx(0.05));
   CHECK(noise(0.75, 0.5) == doctest::Approx(0.1));              // by chance
-  const WhitenessTest slow{.share = 0.2, .remembered = 0.75, .p_value = 1e-6, .typical = 0.1};
-  CHECK(output_noise(setup.bound, setup.split.training, 0, slow, 0.2) == doctest::Approx(0.05));
   CHECK(noise(1, 1e-6) == doctest::Approx(0.01).epsilon(0.2));  // what differs from row to row is left
   CHECK(output_noise(setup.bound, setup.split.training, 0, {.typical = 0.1}, 0.02) == 0.02);  // never more than the error
   setup.bound.info.outputs[0].noise = 0.03;

@@ -3,10 +3,10 @@
 // operator: M. A. Krasnosel'skii, A. V. Pokrovskii: "Systems with hysteresis", 1989, section 2.
 // Forms: "" - the equations see the position through the gap; "gap" - a second inertia is coupled through a stiff
 // spring that engages at either end of the gap; "motor" - the drive acts on an inertia before the gap, and what the
-// equations and the sensor see is behind it; "sensor" - the sensor sees its quantity through the gap; "coupling" - a force
-// that the equations have between two bodies acts at either end of the gap only.
-// Confusable with a delay (at one amplitude and frequency), with dry friction and hysteresis, which also lose motion at
-// each reversal, and with elasticity, which gives way but without a gap.
+// equations and the sensor see is behind it; "sensor" - the sensor sees its quantity through the gap; "coupling" - a
+// force that the equations have between two bodies acts at either end of the gap only. Confusable with a delay (at one
+// amplitude and frequency), with dry friction and hysteresis, which also lose motion at each reversal, and with
+// elasticity, which gives way but without a gap.
 #pragma once
 
 #include <algorithm>

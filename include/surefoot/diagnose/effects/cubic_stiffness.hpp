@@ -1,7 +1,7 @@
-// A spring that hardens (or, negative, softens) away from position 0: force = -stiffness * q^3. Form "coupling": a force
-// that the equations have between two bodies grows with its cube, force + hardening * force^3.
-// G. Duffing: "Erzwungene Schwingungen bei veraenderlicher Eigenfrequenz", 1918.
-// Confusable with a linear spring of the model at one amplitude, and with a soft end stop.
+// A spring that hardens (or, negative, softens) away from position 0: force = -stiffness * q^3. Form "coupling": a
+// force that the equations have between two bodies grows with its cube, force + hardening * force^3. G. Duffing:
+// "Erzwungene Schwingungen bei veraenderlicher Eigenfrequenz", 1918. Confusable with a linear spring of the model at
+// one amplitude, and with a soft end stop.
 #pragma once
 
 #include "surefoot/diagnose/effects/detail/constants.hpp"

@@ -85,6 +85,7 @@ struct Effect {
       false;              // its signature does not grow in proportion: starts are ranked as they are, and not scaled
   bool needs_angle = false;  // says nothing of a velocity that is not the speed of an angle
   bool needs_coupling = false;  // of a signal: it holds bodies together, and depends on their states alone
+  std::string needs_unit = {};  // of the velocity it is attached to
   bool from_rest = false;    // what it is attached to was 0 before the first row, and not as in it (Place::input)
   bool at_start = false;  // a sensor's fault that an initial state read off that sensor has, too
   bool needs_conserved_state =

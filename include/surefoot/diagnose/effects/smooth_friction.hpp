@@ -14,7 +14,8 @@ namespace surefoot::effects {
 /// The same friction, with 76 % of its level at the speed `onset`.
 inline Effect smoothed(Effect friction) {
   friction.sentence += ", which grows from rest on up to speeds of about {onset}";
-  friction.parameters.push_back({.name = "onset", .measure = {.value = 1}, .low = 0.001, .high = 0.2, .starts = {0.01, 0.05}});
+  friction.parameters.push_back(
+      {.name = "onset", .measure = {.value = 1}, .low = 0.001, .high = 0.2, .starts = {0.01, 0.05}});
   friction.form += friction.form.empty() ? "smooth" : ", smooth";
   friction.force = [level = std::exchange(friction.dry, {})](const EffectContext& m, Values p, Values /*hidden*/) {
     return -level(m, p) * std::tanh(m.value / p.back());

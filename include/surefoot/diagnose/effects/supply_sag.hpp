@@ -1,5 +1,6 @@
 // A supply that gives way under load: u (1 - sag |u|), never the other way round. For an input that is a duty or a
 // voltage, sag is what its source loses per unit of it (inner resistance times current per unit).
+// Form "current": at a current that is a state, drive (1 - sag |i|), as an inner resistance makes it.
 // Confusable with a limit of the input, which also costs most where it is largest, and with a lower gain.
 #pragma once
 
@@ -23,6 +24,23 @@ inline Effect supply_sag() {
       .signal = +[](const EffectContext& m, Values p, Values) {
         return m.value * std::max(0.0, 1 - p[0] * std::abs(m.value));
       }};
+}
+
+/// At a current that is a state: its drive loses a share that grows with it, whoever draws it.
+inline Effect supply_sag_current() {
+  return {
+      .name = "supply_sag",
+      .sentence = "the supply sags by a share of {sag} of the current {at}",
+      .place = Place::velocity,
+      .parameters = parameters_of(
+          {{.name = "sag", .measure = {.value = -1}, .low = 0, .high = 1, .starts = {0.003, 0.1}, .strength = true}}),
+      .confusable_with = names_of({"saturation", "input_gain", "quadratic_drag"}),
+      .experiment = "long pushes of several strengths, with the supply's voltage recorded",
+      .form = "current",
+      .needs_drive = true,
+      .needs_unit = "A",
+      .force =
+          +[](const EffectContext& m, Values p, Values) { return -m.drive * std::min(1.0, p[0] * std::abs(m.value)); }};
 }
 
 }  // namespace surefoot::effects

@@ -39,7 +39,7 @@ SUREFOOT_INLINE Eigen::VectorXd lagged_products(const std::vector<Eigen::VectorX
 }
 
 SUREFOOT_INLINE double predicted_share(const std::vector<Eigen::VectorXd>& series, Eigen::Index gap) {
-  constexpr double ridge = 1e-6;  // of the mean square: residuals without noise predict themselves
+  constexpr double ridge = 1e-6;       // of the mean square: residuals without noise predict themselves
   const Eigen::Index known = 4 * gap;  // rows that predict
   const Eigen::VectorXd products = lagged_products(series, 0, gap + known);
   if (!(products[0] > 0)) return 0;

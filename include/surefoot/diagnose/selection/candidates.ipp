@@ -43,8 +43,8 @@ SUREFOOT_ONCE std::vector<bool> distinct_inputs(const BoundSimulator& bound, con
   std::vector<bool> distinct(count, false);
   for (std::size_t k = 0; k < count; ++k) {
     const auto a = static_cast<Eigen::Index>(k);
-    distinct[k] = changes[k] && (k < inputs || bound.structure.driven_signal[k - inputs] ||
-                                 bound.structure.coupling[k - inputs]);
+    distinct[k] =
+        changes[k] && (k < inputs || bound.structure.driven_signal[k - inputs] || bound.structure.coupling[k - inputs]);
     for (std::size_t j = 0; j < k; ++j) {
       const auto b = static_cast<Eigen::Index>(j);
       if (!distinct[j]) continue;
@@ -81,6 +81,7 @@ SUREFOOT_ONCE bool fits_velocity(const BoundSimulator& bound, const Effect& effe
   if (effect.needs_angle && (position < 0 || is_length_unit(bound.info.states[static_cast<std::size_t>(position)].unit))) {
     return false;
   }
+  if (!effect.needs_unit.empty() && bound.info.states[state].unit != effect.needs_unit) return false;
   bool needs_position = effect.seen_position || effect.limit;
   for (const EffectParameter& parameter : effect.parameters) {
     needs_position = needs_position || parameter.measure.position != 0;

@@ -173,17 +173,32 @@ SUREFOOT_ONCE double needed_gain(const Search& search, const EvaluatedHypothesis
   return 1 - std::exp(-2 * std::max(0.0, cost + behind) / independent);
 }
 
-/// The parent with two effects more.
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> evaluate_pairs(const Search& search, const EvaluatedHypothesis& parent,
+                                                              std::vector<ProposedPair> proposed) {
+  std::vector<std::vector<Proposal>> pairs;
+  for (ProposedPair& pair : proposed) {
+    pairs.push_back({std::move(pair.first), std::move(pair.second)});
+  }
+  return evaluate_children(search, parent, pairs, search.problem.effort.pair_finalists);
+}
+
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> next_pairs(const Search& search, const EvaluatedHypothesis& parent,
                                                           const std::vector<Proposal>& proposals, double needed) {
   const SearchEffort& effort = search.problem.effort;
   std::vector<ProposedPair> proposed = propose_pairs(proposals, effort.pairs);
   drop_what_cannot_pay(proposed, needed, effort);
-  std::vector<std::vector<Proposal>> pairs;
-  for (ProposedPair& pair : proposed) {
-    pairs.push_back({std::move(pair.first), std::move(pair.second)});
-  }
-  return evaluate_children(search, parent, pairs, effort.pair_finalists);
+  return evaluate_pairs(search, parent, std::move(proposed));
+}
+
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> next_tied_pairs(const Search& search, const EvaluatedHypothesis& parent,
+                                                               const std::vector<Proposal>& proposals) {
+  std::vector<ProposedPair> tied = propose_pairs(proposals, proposals.size() * proposals.size());
+  std::erase_if(tied, [](const ProposedPair& pair) {
+    const Effect &a = *pair.first.effect.effect, &b = *pair.second.effect.effect;
+    return a.name != b.name || a.form != b.form;
+  });
+  if (tied.size() > search.problem.effort.pairs) tied.resize(search.problem.effort.pairs);
+  return evaluate_pairs(search, parent, std::move(tied));
 }
 
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> best_structures(std::vector<EvaluatedHypothesis> pool, std::size_t count,

@@ -47,8 +47,7 @@ SUREFOOT_INLINE EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, co
 SUREFOOT_INLINE bool is_spare_strength(const Hypothesis& hypothesis, const Variable& variable) {
   const auto& parameters = hypothesis.effects[variable.index].effect->parameters;
   const auto own = parameters.begin() + static_cast<std::ptrdiff_t>(variable.item);
-  return own->strength &&
-         std::any_of(parameters.begin(), own, [](const EffectParameter& one) { return one.strength; });
+  return own->strength && std::any_of(parameters.begin(), own, [](const EffectParameter& one) { return one.strength; });
 }
 
 SUREFOOT_INLINE double log_prior(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t known,
@@ -66,7 +65,8 @@ SUREFOOT_INLINE double log_prior(const BoundSimulator& bound, const Hypothesis& 
     Hypothesis copy = hypothesis;
     const double low = to_search(variable, variable.low), high = to_search(variable, variable.high);
     const double share = (to_search(variable, value_of(copy, variable)) - low) / (high - low);
-    if (is_spare_strength(hypothesis, variable) && share < nothing) sum -= criteria.bound_cost;  // a simpler effect does
+    if (is_spare_strength(hypothesis, variable) && share < nothing)
+      sum -= criteria.bound_cost;                              // a simpler effect does
     const bool natural = variable.low == 0 && share < middle;  // a strength near zero is told by the densities
     if (!natural && (share < criteria.bound_share || share > 1 - criteria.bound_share)) sum -= criteria.bound_cost;
   }

@@ -291,6 +291,33 @@ SUREFOOT_ONCE bool may_be_confused(const Effect& a, const Effect& b) {
   return says(a, b.name) || says(b, a.name);
 }
 
+/// Whether two effects have one name, or may be taken for each other.
+SUREFOOT_ONCE bool is_like(const Effect& a, const Effect& b) { return a.name == b.name || may_be_confused(a, b); }
+
+SUREFOOT_ONCE void swap_pairs_of_inputs(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
+  const SearchProblem& problem = search.problem;
+  const EvaluatedHypothesis best = pool[best_of(pool, problem.criteria)];
+  const auto acts_on_input = [](const AttachedEffect& one) { return one.effect->place == Place::input; };
+  const auto& effects = best.hypothesis.effects;
+  for (std::size_t e = problem.known; e < effects.size(); ++e) {
+    for (std::size_t f = e + 1; f < effects.size() && !problem.stopped(); ++f) {
+      if (!acts_on_input(effects[e]) || !acts_on_input(effects[f]) || !leaves_structure(search, best)) continue;
+      const Hypothesis rest = without_effect(without_effect(best.hypothesis, f), e);
+      const EvaluatedHypothesis parent =
+          evaluate_fit(search.bound, fit(search.bound, rest, problem.fit, search.parallel), problem, search.parallel);
+      std::vector<Proposal> proposals = proposals_for(search, parent);
+      std::erase_if(proposals, [&](const Proposal& one) {
+        const bool signal = one.effect.at >= static_cast<int>(search.bound.info.inputs.size());
+        return !acts_on_input(one.effect) || signal ||
+               (!is_like(*one.effect.effect, *effects[e].effect) && !is_like(*one.effect.effect, *effects[f].effect));
+      });
+      for (const EvaluatedHypothesis& other : next_tied_pairs(search, parent, proposals)) {
+        keep_best_form(pool, other, problem.criteria);
+      }
+    }
+  }
+}
+
 SUREFOOT_ONCE void try_confusable(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
   SearchProblem problem = search.problem;
   problem.scatter = false;  // the parameters are near enough
@@ -372,6 +399,7 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
     refit_best(search, pool);
     take_effects_away(search, pool);
     swap_effects(search, pool);
+    swap_pairs_of_inputs(search, pool);
     try_confusable(search, pool);
     begin_anew(search, pool);
     if (same_structure(pool[best_of(pool, criteria)].hypothesis, best)) break;
