@@ -19,7 +19,9 @@
 #include "surefoot/diagnose/effects/hysteresis.hpp"
 #include "surefoot/diagnose/effects/load_dependent_friction.hpp"
 #include "surefoot/diagnose/effects/quadratic_drag.hpp"
+#include "surefoot/diagnose/effects/smooth_friction.hpp"
 #include "surefoot/diagnose/effects/stribeck_friction.hpp"
+#include "surefoot/diagnose/effects/supply_sag.hpp"
 #include "surefoot/diagnose/effects/viscous_friction.hpp"
 #include "surefoot/diagnose/simulate_augmented.hpp"
 
@@ -143,6 +145,33 @@ TEST_CASE("a friction with presliding has all of its level after some travel, an
   effect.advance(m, p, hidden);
   m.position = 0.1;
   CHECK(effect.force(m, p, hidden) == doctest::Approx(1).epsilon(1e-3));
+}
+
+TEST_CASE("a smooth friction has three quarters of its level at its onset, and all of it above") {
+  const Effect effect = effects::smoothed(effects::coulomb_friction());
+  CHECK(effect.form == "smooth");
+  CHECK_FALSE(effect.dry);  // it holds nothing
+  CHECK_NOTHROW(check(effect));
+  const std::vector<double> p = {2, 0.1};
+  EffectContext m;
+  CHECK(effect.force(m, p, {}) == 0);
+  m.value = 0.1;
+  CHECK(effect.force(m, p, {}) == doctest::Approx(-2 * std::tanh(1.0)));
+  m.value = -1;
+  CHECK(effect.force(m, p, {}) == doctest::Approx(2));
+  CHECK(effects::smoothed(effects::load_dependent_friction()).form == "drive, smooth");
+}
+
+TEST_CASE("a supply gives way with the current that is drawn, and never turns round") {
+  const Effect effect = effects::supply_sag_current();
+  EffectContext m;
+  m.drive = 12;
+  m.value = 2;
+  CHECK(effect.force(m, std::vector<double>{0.1}, {}) == doctest::Approx(-2.4));
+  m.drive = -12;
+  CHECK(effect.force(m, std::vector<double>{0.1}, {}) == doctest::Approx(2.4));
+  m.value = -50;
+  CHECK(effect.force(m, std::vector<double>{0.1}, {}) == doctest::Approx(12));
 }
 
 TEST_CASE("friction never adds energy") {

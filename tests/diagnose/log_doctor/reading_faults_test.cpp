@@ -31,6 +31,30 @@ TEST_SUITE("log_doctor") {
     CHECK(constant_stretches(fit, 1, 0, 1e-4, inputs.criteria).empty());
   }
 
+  TEST_CASE(
+      "a coarse sensor that stands still where the machine turns is not stuck, though a model that is off moves on") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    auto log = toys::servo_log();
+    const LogFit fit = fit_log(inputs, log);
+    LogFit off = fit;  // in the first recording the model runs ahead by 20 rows
+    const Eigen::MatrixXd ahead = fit.runs[0].outputs;
+    for (Eigen::Index row = 0; row + 20 < ahead.cols(); ++row) off.runs[0].outputs.col(row) = ahead.col(row + 20);
+    off.residuals[0] = off.runs[0].outputs - log[0].outputs;
+    const auto with_stretch = [](LogFit some) {
+      for (Eigen::Index row = 100; row < 112; ++row) some.bound.recordings[0].outputs(0, row) = 0.1;
+      return some;
+    };
+    const auto found = [&](const LogFit& some) {
+      return find_reading_faults(with_stretch(some), inputs.criteria).size();
+    };
+    const auto stretches = constant_stretches(with_stretch(fit), 0, 0, 1e-4, inputs.criteria);
+    REQUIRE(stretches.size() == 1);
+    REQUIRE(stretches[0].missed > 2 * fit.typical[0]);
+    CHECK(found(fit) == 1);
+    CHECK(found(off) == 0);
+  }
+
   TEST_CASE("a gap is a gap only where other intervals are short") {
     auto log = toys::servo_log({}, 2);
     CHECK(find_gaps(bind_simulator(toys::Servo{}, log), {}).empty());

@@ -105,6 +105,30 @@ TEST_CASE("single outliers and gaps are no structure") {
   CHECK(structure_of(r).p_value > 0.01);
 }
 
+TEST_CASE("what residuals from before predict is no noise: vibrations, and slow errors among noise") {
+  const auto predicted = [](double memory, double sine) {
+    const Remains r = remains(memory, sine, 3);
+    std::vector<Eigen::VectorXd> series;
+    for (const std::size_t i : r.all) series.push_back(series_of(r.bound, i, r.runs[i], 0));
+    return predicted_share(series, 8);
+  };
+  CHECK(predicted(0, 0) < 0.03);
+  CHECK(predicted(0.6, 0) < 0.05);
+  CHECK(predicted(0.9, 0) < 0.25);  // 0.9^16, and little by chance
+  CHECK(predicted(0, 0.0141) == doctest::Approx(0.5).epsilon(0.1));
+  CHECK(predicted(0, 0.0424) == doctest::Approx(0.9).epsilon(0.05));
+  Rng rng(4);
+  Eigen::VectorXd ringing(2000);  // a mode that noise keeps going: no single lag says much of it
+  double now = 0, before = 0;
+  for (double& value : ringing) {
+    const double next = 1.9 * now - 0.98 * before + rng.normal();
+    before = now;
+    value = now = next;
+  }
+  CHECK(predicted_share({ringing}, 8) > 0.7);
+  CHECK(predicted_share({Eigen::VectorXd::Zero(100)}, 8) == 0);
+}
+
 TEST_CASE("recordings too short to tell are not judged") {
   Remains r = remains(0, 0.05, 1);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -114,14 +138,6 @@ TEST_CASE("recordings too short to tell are not judged") {
   }
   CHECK(structure_of(r).p_value == 1);
   CHECK(structure_of(r).rms > 0);
-}
-
-TEST_CASE("the noise of a sensor is seen through motion that is smooth") {
-  Remains r = remains(0, 0.5, 2);
-  CHECK(fast_noise(r.bound, r.all, 0) == doctest::Approx(0.01).epsilon(0.1));
-  r = remains(0.6, 0.5, 2);
-  CHECK(fast_noise(r.bound, r.all, 0) < 0.01);  // of correlated noise less is seen
-  CHECK(fast_noise(r.bound, {}, 0) == 0);
 }
 
 }  // namespace

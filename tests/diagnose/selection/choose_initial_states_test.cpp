@@ -32,8 +32,8 @@ struct SeenBlock : toys::SlidingBlock {
   Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return Output(x[0]); }
 };
 
-/// Six recordings of 4 s with noise of 2 mm that begin at these speeds, of which the model says 0; with friction.
-std::vector<Recording> block_logs(const std::vector<double>& speeds, double friction = 0) {
+/// Six recordings of 4 s with noise of 2 mm that begin at these speeds, of which the model says 0; with these effects.
+std::vector<Recording> block_logs(const std::vector<double>& speeds, const std::vector<NamedEffect>& effects = {}) {
   std::vector<Recording> recordings;
   Rng rng(5);
   for (std::size_t r = 0; r < speeds.size(); ++r) {
@@ -44,8 +44,6 @@ std::vector<Recording> block_logs(const std::vector<double>& speeds, double fric
       recording.inputs(0, i) = 6 * std::sin((1.5 + 0.3 * static_cast<double>(r)) * t) + (std::fmod(t, 2) < 1 ? 3 : -2);
     }
     recording.initial[1] = speeds[r];
-    std::vector<NamedEffect> effects;
-    if (friction > 0) effects.push_back({"coulomb_friction", "v", {}, {}, {friction}});
     recording.outputs = simulate_augmented(SeenBlock{}, toys::machine({2, 1, 10}, effects), recording).outputs;
     for (double& position : recording.outputs.reshaped()) position += 0.002 * rng.normal();
     recording.initial[1] = 0;
@@ -113,15 +111,24 @@ TEST_CASE("a diagnosis of recordings that begin in motion names what is missing,
   CHECK(has_remark(none));
   CHECK(none.freed_states == std::vector<bool>{false, true});
 
-  const Diagnosis rubs = diagnose(SeenBlock{}, block_logs(in_motion, 0.8), DiagnoseOptions{}, Threads{}, 1);
+  const NamedEffect friction{"coulomb_friction", "v", {}, {}, {0.8}};
+  const Diagnosis rubs = diagnose(SeenBlock{}, block_logs(in_motion, {friction}), DiagnoseOptions{}, Threads{}, 1);
   REQUIRE(rubs.effects.size() == 1);
   CHECK(rubs.effects[0].name == "coulomb_friction");
   CHECK(rubs.effects[0].parameters[0].value == doctest::Approx(0.8).epsilon(0.03));
   CHECK(has_remark(rubs));
 
-  const Diagnosis rests = diagnose(SeenBlock{}, block_logs(at_rest, 0.8), DiagnoseOptions{}, Threads{}, 1);
+  const Diagnosis rests = diagnose(SeenBlock{}, block_logs(at_rest, {friction}), DiagnoseOptions{}, Threads{}, 1);
   REQUIRE(rests.effects.size() == 1);
   CHECK_FALSE(has_remark(rests));
+}
+
+TEST_CASE("initial states are not freed for what the search has yet to find: its stop and bounces are told") {
+  const NamedEffect stop{"end_stop", "v", "upper", {}, {0.2, 0.5}};
+  const Diagnosis found = diagnose(SeenBlock{}, block_logs(at_rest, {stop}), DiagnoseOptions{}, Threads{}, 1);
+  CHECK(found.verdict == Verdict::missing_physics);
+  REQUIRE(found.effects.size() == 1);
+  CHECK(found.effects[0].name == "end_stop");
 }
 
 }  // namespace

@@ -106,6 +106,15 @@ TEST_CASE("odds are those of the densities and of the priors, and the other way 
   CHECK(log_odds(good, good, selection_criteria) == 0);
 }
 
+TEST_CASE("of two forms of one structure the closer one counts, even within what may be an error of form") {
+  EvaluatedHypothesis rough = evaluated({1.1, 1.1, 1.1, 1.1}), fine = evaluated({0.9, 0.9, 0.9, 0.9}, -12);
+  rough.errors.least = fine.errors.least = Eigen::VectorXd::Constant(1, 0.5);
+  CHECK(log_odds(fine, rough, selection_criteria) < -10);
+  CHECK(log_odds_of_forms(fine, rough, selection_criteria) > 10);
+  fine.log_prior = -60;
+  CHECK(log_odds_of_forms(fine, rough, selection_criteria) < 0);
+}
+
 TEST_CASE("the best one has the best of both: errors and prior") {
   CHECK(best_of({evaluated({2, 2, 2}), evaluated({1, 1, 1}, -1), evaluated({1, 1, 1}, -2)}, selection_criteria) == 1);
   CHECK(best_of({evaluated({2, 2, 2}), evaluated({1, 1, 1}, -1e4)}, selection_criteria) == 0);
@@ -252,6 +261,23 @@ TEST_CASE("a strength that cannot be negative may be small, but not at its upper
   const double plain = bench.of({0.3}, 0, 0);
   CHECK(bench.of({0.0}, 0, 0) == doctest::Approx(plain));
   CHECK(bench.of({1.0}, 0, 0) == doctest::Approx(plain - selection_criteria.bound_cost));
+}
+
+TEST_CASE("an effect of which a second strength does nothing is left to the simpler one") {
+  const EstimationSetup setup = toys::tank_setup(toys::noisy_tanks({}, 0.01));
+  const auto prior = [&](double first, double second) {
+    Effect effect;
+    effect.name = "wind";
+    effect.place = Place::state;
+    effect.parameters = {{.name = "mean", .low = 0, .high = 1, .starts = {0.1}, .strength = true},
+                         {.name = "gusts", .low = 0, .high = 1, .starts = {0.1}, .strength = true}};
+    Hypothesis hypothesis = nominal_hypothesis(setup.bound);
+    hypothesis.effects.push_back({std::make_shared<const Effect>(effect), 0, -1, "level", 0});
+    hypothesis.values.emplace_back(Eigen::Vector2d(first, second));
+    return log_prior(setup.bound, hypothesis, 0, 30, selection_criteria);
+  };
+  CHECK(prior(0.3, 0) == doctest::Approx(prior(0.3, 0.01) - selection_criteria.bound_cost));
+  CHECK(prior(0, 0.3) == doctest::Approx(prior(0.3, 0.3)));
 }
 
 TEST_CASE("a fit is evaluated on all its recordings, with what its parameters cost") {

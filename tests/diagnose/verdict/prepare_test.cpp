@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "tests/diagnose/verdict/tank_setup.hpp"
-#include "tests/support/servo_pendulum.hpp"
 
 namespace surefoot::diagnosis {
 namespace {
@@ -30,18 +29,6 @@ TEST_CASE("cuts compare every reading once, and parts start a quarter earlier fr
   }
   CHECK(next == 120);
   CHECK(cut_recordings(bound, nominal, runs, 7).empty());  // of 17 rows each: too short
-}
-
-TEST_CASE("an initial state that was read off a sensor is known as well as that sensor reads") {
-  auto recordings = toys::servo_recordings(toys::machine({1.4, 3.9, 0.014}), 3, 20);
-  for (const std::size_t r : {0U, 1U}) recordings[r].initial[0] = recordings[r].outputs(0, 0);
-  BoundSimulator bound = bind_simulator(toys::ServoPendulum{}, recordings);
-  free_measured_initial_states(bound, {0, 1, 2});
-  for (const std::size_t r : {0U, 1U}) {
-    CHECK(bound.recordings[r].initial_scale[0] == doctest::Approx(0.001).epsilon(0.5));
-    CHECK(bound.recordings[r].initial_scale[1] == 0);
-  }
-  CHECK(bound.recordings[2].initial_scale[0] == 0);  // known from elsewhere
 }
 
 TEST_CASE("recordings stand in the order of their names, those of one name in that of what they hold") {

@@ -402,7 +402,9 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
     swap_pairs_of_inputs(search, pool);
     try_confusable(search, pool);
     begin_anew(search, pool);
-    if (same_structure(pool[best_of(pool, criteria)].hypothesis, best)) break;
+    const EvaluatedHypothesis now = pool[best_of(pool, criteria)];
+    if (same_structure(now.hypothesis, best)) break;
+    if (leaves_structure(search, now)) grow(search, pool);  // what it lacks may not have helped the one before
   }
   if (search.problem.fit.recordings.size() < all.size()) {
     const bool finished = !leaves_structure(search, pool[best_of(pool, criteria)]);

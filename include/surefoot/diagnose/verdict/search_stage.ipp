@@ -121,15 +121,15 @@ SUREFOOT_ONCE void revise_initial_states(EstimationSetup& setup, Searched& found
   };
   const auto explained = [&] {
     const Hypothesis& all = found.selection.chosen.hypothesis;
-    return !any_effect() && !holds_structure(setup, all, found.selection.fit, found.problem.criteria, run.parallel);
+    return !holds_structure(setup, all, found.selection.fit, found.problem.criteria, run.parallel);
   };
-  if (run.search_has_ended() || explained()) return;
+  if (run.search_has_ended()) return;
   Fit fitted = chosen();
-  if (free_more_states(setup, fitted, with_present_weights(), run.parallel)) {
+  if (!explained() && free_more_states(setup, fitted, with_present_weights(), run.parallel)) {
     found = search_effects(setup, run, diagnosis);
-    if (!any_effect() || run.search_has_ended()) return;
     fitted = chosen();
   }
+  if (!any_effect() || run.search_has_ended()) return;
   const std::vector<bool> before = setup.freed;
   restore_initial_states(setup.bound, setup.freed, fitted, with_present_weights(), run.parallel);
   if (setup.freed == before) return;

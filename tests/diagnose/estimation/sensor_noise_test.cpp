@@ -1,0 +1,48 @@
+// Noise of sensors, and initial states that were read off one.
+#include "surefoot/diagnose/estimation/sensor_noise.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
+#include "tests/diagnose/small_simulators.hpp"
+#include "tests/support/servo_pendulum.hpp"
+
+namespace surefoot::diagnosis {
+namespace {
+
+TEST_CASE("the noise of a sensor is seen through motion that is smooth") {
+  const auto seen = [](double memory) {  // noise of 0.01, correlated by so much from row to row
+    Recording recording = toys::blank_recording(toys::LeakyTank{}.info(), 2400, 0.02);
+    Rng rng(2);
+    double noise = 0;
+    for (Eigen::Index i = 0; i < recording.rows(); ++i) {
+      noise = memory * noise + 0.01 * std::sqrt(1 - memory * memory) * rng.normal();
+      recording.outputs(0, i) = noise + 0.5 * std::sin(std::numbers::pi * recording.time[i]);
+    }
+    return fast_noise(bind_simulator(toys::LeakyTank{}, {recording}), {0}, 0);
+  };
+  CHECK(seen(0) == doctest::Approx(0.01).epsilon(0.1));
+  CHECK(seen(0.6) < 0.01);  // of correlated noise less is seen
+  CHECK(fast_noise(bind_simulator(toys::LeakyTank{}, {toys::tank_recording(0, 20)}), {}, 0) == 0);
+}
+
+TEST_CASE("an initial state that was read off a sensor is known as well as that sensor reads") {
+  auto recordings = toys::servo_recordings(toys::machine({1.4, 3.9, 0.014}), 3, 20);
+  for (const std::size_t r : {0U, 1U}) recordings[r].initial[0] = recordings[r].outputs(0, 0);
+  BoundSimulator bound = bind_simulator(toys::ServoPendulum{}, recordings);
+  free_measured_initial_states(bound, {0, 1, 2});
+  for (const std::size_t r : {0U, 1U}) {
+    CHECK(bound.recordings[r].initial_scale[0] == doctest::Approx(0.001).epsilon(0.5));
+    CHECK(bound.recordings[r].initial_scale[1] == 0);
+  }
+  CHECK(bound.recordings[2].initial_scale[0] == 0);  // known from elsewhere
+}
+
+}  // namespace
+}  // namespace surefoot::diagnosis
