@@ -12,6 +12,7 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/forest/extra_trees.hpp"
 #include "surefoot/forest/leaf.hpp"
+#include "surefoot/solve/forest_policy.hpp"
 
 namespace surefoot {
 namespace {
@@ -211,6 +212,39 @@ TEST_CASE("a reward that is no number is refused in words") {
   const LookaheadOptions options;
   Lookahead<Broken> lookahead(problem, no_value, 1, options);
   CHECK_THROWS_WITH_AS(lookahead(Vec<1>(0), nullptr, Rng(1)), doctest::Contains("not finite"), SolveError);
+}
+
+// A point that an action moves; its distance from 0 costs when the next action is taken.
+struct Point {
+  static constexpr int state_dim = 1, action_dim = 1;
+  using State = Vec<1>;
+  using Action = Vec<1>;
+
+  Box<1> state_box() const { return Box<1>::symmetric(State(1)); }
+  Box<1> action_box() const { return Box<1>::symmetric(Action(1)); }
+  State initial_state(Rng&) const { return State(0); }
+  Step<State> step(const State& state, const Action& action, Rng&) const {
+    return {state + action, -state.squaredNorm(), false};
+  }
+};
+
+TEST_CASE("a lookahead that follows the policy sees what comes after its action") {
+  const Dataset<1, 1> still{.inputs = Eigen::RowVector2f(-1, 1), .outputs = Eigen::RowVector2d(0, 0), .weights = {}};
+  const ForestPolicy<Point> policy(Point{}, train_extra_trees<LinearLeaf>(still, {.trees = 1}, Serial{}, 1));
+  const LookaheadOptions options{.samples = 1, .refined = 40, .refined_samples = 1, .softness = 0, .follow = 2};
+  const Vec<1> start(0.6);
+  const Point problem;
+  Lookahead<Point> follows(problem, no_value, 0.5, options, &policy);
+  const auto found = follows(start, nullptr, Rng(1));
+  CHECK(found.action[0] == doctest::Approx(-0.6).epsilon(0.1));
+  const double left = std::pow(0.6 + found.action[0], 2);
+  CHECK(found.value == doctest::Approx(-0.36 - 0.75 * left));  // discounts of 0.5 and 0.25
+  CHECK(follows.transitions() == 3 * (11 + 40));
+  CHECK(follows.policy_actions() == 2 * (11 + 40));
+
+  Lookahead<Point> alone(problem, no_value, 0.5, options);
+  CHECK(alone(start, nullptr, Rng(1)).value == doctest::Approx(-0.36));
+  CHECK(alone.policy_actions() == 0);
 }
 
 }  // namespace

@@ -25,6 +25,8 @@ TEST_CASE("without noise one sample is enough") {
   CHECK(options.backup_runs == 1);
   CHECK(options.backup_steps > RfpiOptions{}.backup_steps);
   CHECK(options.replace_short_runs);
+  CHECK(options.try_following);
+  CHECK_FALSE(without_noise({.lookahead = {.follow = 2}}).try_following);
   CHECK(options.value_forest.model_score);
 }
 

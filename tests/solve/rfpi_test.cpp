@@ -228,6 +228,16 @@ TEST_CASE("a resumed training without noise knows how long its runs were") {
   check_same(whole, rfpi(problem, options, Threads(2), 1));
 }
 
+TEST_CASE("a checkpoint keeps whether lookaheads follow the policy") {
+  const toy::TemporaryFile file("follows");
+  for (const bool follows : {false, true}) {
+    RfpiState<toy::DoubleIntegrator> state;
+    state.follows = follows;
+    save_checkpoint(file.path.string(), 7, state);
+    CHECK(load_checkpoint<toy::DoubleIntegrator>(file.path.string(), 7).follows == follows);
+  }
+}
+
 TEST_CASE("no state outside of the box is learnt from, however unstable the runs") {
   struct Unstable : toy::DoubleIntegrator {
     Step<State> step(const State& state, const Action& action, Rng& rng) const {
@@ -489,6 +499,7 @@ TEST_CASE("every bad option is refused in a sentence that names it") {
       {"lookahead.step", [](RfpiOptions& o) { o.lookahead.step = -1; }},
       {"lookahead.radius", [](RfpiOptions& o) { o.lookahead.radius = -1; }},
       {"lookahead.hold", [](RfpiOptions& o) { o.lookahead.hold = 0; }},
+      {"lookahead.follow", [](RfpiOptions& o) { o.lookahead.follow = -1; }},
       {"agreement", [](RfpiOptions& o) { o.agreement = 0; }},
       {"evaluation_runs", [](RfpiOptions& o) { o.evaluation_runs = 1; }},
       {"resume", [](RfpiOptions& o) { o.resume = true; }},

@@ -15,6 +15,7 @@
 
 #include "surefoot/core/problem.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/solve/forest_policy.hpp"
 #include "surefoot/solve/rfpi_options.hpp"
 
 namespace surefoot {
@@ -53,10 +54,18 @@ class Lookahead {
     double value = 0;  // mean of their Q
   };
 
-  /// `value`: see ValueFunction.
+  /// `value`: see ValueFunction. `policy`: what is followed for options.follow transitions; null: nothing. Both outlive
+  /// this.
   template <class Value>
-  Lookahead(const P& problem, const Value& value, double discount, const LookaheadOptions& options)
-      : problem_(problem), value_(value), discount_(discount), options_(options), box_(problem.action_box()) {}
+  Lookahead(const P& problem, const Value& value, double discount, const LookaheadOptions& options,
+            const ForestPolicy<P>* policy = nullptr)
+      : problem_(problem),
+        value_(value),
+        policy_(policy),
+        discount_(discount),
+        options_(options),
+        follow_(policy == nullptr ? 0 : options.follow),
+        box_(problem.action_box()) {}
 
   /// `incumbent`: an action that is probably good, always tried; may be null.
   Result operator()(const State& state, const Action* incumbent, const Rng& rng) {
@@ -71,7 +80,10 @@ class Lookahead {
   }
 
   /// Simulated transitions of one call.
-  std::size_t transitions() const { return static_cast<std::size_t>(options_.hold) * values(); }
+  std::size_t transitions() const { return static_cast<std::size_t>(options_.hold + follow_) * values(); }
+
+  /// Actions of the policy in one call.
+  std::size_t policy_actions() const { return static_cast<std::size_t>(follow_) * values(); }
 
   /// Values looked up in one call.
   std::size_t values() const {
@@ -153,12 +165,12 @@ class Lookahead {
         noise_.push_back(rng.stream(m).with_draws(std::span(draws_).subspan(m * noise_dims, noise_dims)));
       }
     }
-    const double last_discount = std::pow(discount_, options_.hold);
-    rows_.resize(candidates_.size() * count * width);
+    const double last_discount = std::pow(discount_, options_.hold + follow_);
     values_.resize(candidates_.size() * count);
     rewards_.resize(values_.size());
-    std::size_t living = 0;
     living_.clear();
+    at_.clear();
+    streams_.clear();
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
       const Action action = to_action(candidates_[c]);
       for (std::size_t m = 0; m < count; ++m) {
@@ -173,11 +185,17 @@ class Lookahead {
         }
         rewards_[c * count + m] = sum;
         if (step.terminal) continue;
-        Eigen::Map<Eigen::Matrix<float, width, 1>>(rows_.data() + living * width) =
-            features(problem_, step.next).template cast<float>();
         living_.push_back(c * count + m);
-        ++living;
+        at_.push_back(step.next);
+        streams_.push_back(noise);
       }
+    }
+    follow_policy();
+    const std::size_t living = living_.size();
+    rows_.resize(living * width);
+    for (std::size_t i = 0; i < living; ++i) {
+      Eigen::Map<Eigen::Matrix<float, width, 1>>(rows_.data() + i * width) =
+          features(problem_, at_[i]).template cast<float>();
     }
     if (value_.empty()) {
       std::fill_n(values_.begin(), living, 0.0);
@@ -193,6 +211,26 @@ class Lookahead {
       if (!std::isfinite(q_[c])) {
         throw SolveError("lookahead: a transition gave a reward or a state that is not finite: validate() tells where");
       }
+    }
+  }
+
+  /// Continues every candidate's run by the policy's actions.
+  void follow_policy() {
+    double weight = std::pow(discount_, options_.hold);
+    for (int t = 0; t < follow_ && !at_.empty(); ++t, weight *= discount_) {
+      const std::vector<Action> actions = policy_->act(std::span<const State>(at_));
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < at_.size(); ++i) {
+        const Step<State> step = problem_.step(at_[i], actions[i], streams_[i]);
+        rewards_[living_[i]] += weight * step.reward;
+        if (step.terminal) continue;
+        living_[kept] = living_[i];
+        streams_[kept] = streams_[i];
+        at_[kept++] = step.next;
+      }
+      living_.resize(kept);
+      streams_.resize(kept, Rng(0));
+      at_.resize(kept);
     }
   }
 
@@ -219,14 +257,17 @@ class Lookahead {
 
   const P& problem_;
   ValueFunction value_;
+  const ForestPolicy<P>* policy_;
   double discount_;
   const LookaheadOptions& options_;
+  int follow_;
   Box<P::action_dim> box_;
   std::vector<Unit> candidates_, scratch_;
   std::vector<double> q_, rewards_, values_, draws_;
   std::vector<float> rows_;
   std::vector<std::size_t> order_, living_;
-  std::vector<Rng> noise_;
+  std::vector<Rng> noise_, streams_;
+  std::vector<State> at_;  // where living runs are
 };
 
 }  // namespace surefoot

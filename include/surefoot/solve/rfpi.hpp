@@ -63,6 +63,7 @@ std::uint64_t rfpi_fingerprint(const P& problem, const RfpiOptions& o, std::uint
   }
   if (o.adapt || std::isfinite(o.agreement) || l.hold != 1) number(o.adapt, o.agreement, l.hold);  // not in version 0.1
   if (o.replace_short_runs) number(o.replace_short_runs);                                          // likewise
+  if (o.try_following || l.follow != 0) number(o.try_following, l.follow);                         // likewise
   for (const auto& state : seed_states) all.words(std::span<const double>(state.data(), P::state_dim));
   all.list(feature_probe(problem));
   Rng rng(seed, 0);

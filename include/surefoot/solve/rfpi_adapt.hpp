@@ -45,15 +45,19 @@ bool is_deterministic(const P& problem, int horizon, const Rng& rng) {
   return true;
 }
 
+/// Steps of backups without noise: information comes from so many transitions away in an iteration.
+constexpr int least_backup_steps = 6;
+
 /// The options with what a simulator without noise allows: single samples, and so values of longer runs of the policy,
 /// and more iterations. Values are then as exact as the forest before, and it pays to split where affine leaves do not
 /// fit, not where values differ most. Short runs are replaced; with noise (the ball approach) that gained nothing.
+/// Whether lookaheads follow the policy is tried; with noise they would need many samples of it.
 inline RfpiOptions without_noise(RfpiOptions options) {
-  constexpr int least_steps = 6;  // of backups: information comes from so many transitions away in an iteration
   constexpr double growth = 1.1;  // iterations are cheap, and values need many where runs are long
   options.lookahead.samples = options.lookahead.refined_samples = options.backup_runs = 1;
-  options.backup_steps = std::max(options.backup_steps, least_steps);
+  options.backup_steps = std::max(options.backup_steps, least_backup_steps);
   options.replace_short_runs = true;
+  options.try_following = options.lookahead.follow == 0;
   options.backup_weight = 1;
   options.value_forest.model_score = true;
   options.growth = std::min(options.growth, growth);

@@ -23,7 +23,9 @@
 #include "surefoot/solve/forest_policy.hpp"
 #include "surefoot/solve/lookahead.hpp"
 #include "surefoot/solve/rfpi_adapt.hpp"
+#include "surefoot/solve/rfpi_follow.hpp"
 #include "surefoot/solve/rfpi_hold.hpp"
+#include "surefoot/solve/rfpi_learn.hpp"
 #include "surefoot/solve/rfpi_options.hpp"
 #include "surefoot/solve/rfpi_state.hpp"
 #include "surefoot/solve/visited_states.hpp"
@@ -133,105 +135,6 @@ void backup_values(const P& problem, const RfpiOptions& options, const ForestPol
   }
 }
 
-/// Inputs of a regression over the states of both sets of samples.
-template <Problem P>
-auto feature_matrix(const P& problem, const StateSamples<P>& a, const StateSamples<P>& b) {
-  Eigen::Matrix<float, feature_dim<P>(), Eigen::Dynamic> inputs(feature_dim<P>(), a.size() + b.size());
-  Eigen::Index column = 0;
-  for (const auto* samples : {&a, &b}) {
-    for (const auto& state : samples->states) inputs.col(column++) = features(problem, state).template cast<float>();
-  }
-  return inputs;
-}
-
-/// What fitting a forest counts: every sample passes every level of every tree.
-inline std::uint64_t fit_work(std::size_t samples, std::size_t inputs, const ExtraTreesOptions& options) {
-  const double levels = std::log2(2 + static_cast<double>(samples) / options.min_leaf);
-  return static_cast<std::uint64_t>(static_cast<double>(samples * inputs) * options.trees * levels);
-}
-
-/// The forest of actions learnt from two sets of samples.
-template <Problem P, Executor E>
-auto fit_policy(const P& problem, const StateSamples<P>& a, const StateSamples<P>& b, const ExtraTreesOptions& options,
-                const E& executor, const Rng& rng, RfpiWork& work, std::stop_token stop) {
-  Dataset<feature_dim<P>(), P::action_dim> data;
-  data.inputs = feature_matrix(problem, a, b);
-  data.outputs.resize(P::action_dim, data.inputs.cols());
-  const Box<P::action_dim> box = problem.action_box();
-  const Vec<P::action_dim> half = 0.5 * box.width();
-  Eigen::Index column = 0;
-  for (const auto* samples : {&a, &b}) {
-    for (const auto& action : samples->actions) {
-      auto unit = data.outputs.col(column++);
-      for (int i = 0; i < P::action_dim; ++i) unit[i] = half[i] > 0 ? (action[i] - box.center()[i]) / half[i] : 0;
-    }
-  }
-  work.fits += fit_work(a.size() + b.size(), static_cast<std::size_t>(feature_dim<P>()), options);
-  Trees trees = train_extra_trees<ActionLeaf>(data, options, executor, Rng(rng).bits(), std::move(stop)).raw();
-  constexpr std::size_t numbers = feature_dim<P>() + 3;  // of a leaf, per dimension of the action
-  for (std::size_t i = 0; i < trees.parameters.size(); ++i) {
-    const auto dimension = static_cast<Eigen::Index>(i / numbers % P::action_dim);
-    const bool slope = i % numbers < feature_dim<P>();
-    trees.parameters[i] = static_cast<float>(static_cast<double>(trees.parameters[i]) * half[dimension] +
-                                             (slope ? 0.0 : box.center()[dimension]));
-  }
-  return typename ForestPolicy<P>::ActionForest(std::move(trees));
-}
-
-/// The forest of values, likewise.
-template <class Leaf, Problem P, Executor E>
-auto fit_value(const P& problem, const StateSamples<P>& a, const StateSamples<P>& b, const ExtraTreesOptions& options,
-               const E& executor, const Rng& rng, RfpiWork& work, std::stop_token stop) {
-  Dataset<feature_dim<P>(), 1> data;
-  data.inputs = feature_matrix(problem, a, b);
-  data.outputs.resize(1, data.inputs.cols());
-  std::copy(a.values.begin(), a.values.end(), data.outputs.data());
-  std::copy(b.values.begin(), b.values.end(), data.outputs.data() + a.size());
-  work.fits += fit_work(a.size() + b.size(), static_cast<std::size_t>(feature_dim<P>()), options);
-  if constexpr (std::is_same_v<Leaf, LinearLeaf>) {
-    ExtraTreesOptions compared = options;
-    compared.trees = std::min(options.trees, 2 * trend_trees);
-    const std::size_t few = std::min(trend_samples, a.size() + b.size());
-    work.fits += fit_work(few, static_cast<std::size_t>(feature_dim<P>()), compared);
-    return train_value_forest(std::move(data), options, executor, Rng(rng).bits(), std::move(stop));
-  } else {
-    return train_extra_trees<Leaf>(data, options, executor, Rng(rng).bits(), std::move(stop));
-  }
-}
-
-/// Learns the policy in two sizes and keeps the one that does better on the evaluation runs.
-template <Problem P, Executor E>
-void learn_policy(const P& problem, const RfpiOptions& options, const RfpiState<P>& before, RfpiState<P>& after,
-                  const E& executor, const Rng& rng, std::uint64_t evaluation_seed, std::stop_token stop) {
-  const int most = options.policy_forest.max_leaves;
-  const int runs = evaluation_runs(options);
-  const auto learn = [&](int leaves) {
-    ExtraTreesOptions forest = options.policy_forest;
-    forest.max_leaves = leaves;
-    return fit_policy(problem, after.samples, after.previous, forest, executor, rng, after.work, stop);
-  };
-  const auto cost_of = [&](const typename RfpiState<P>::ActionForest& policy) {
-    const std::uint64_t steps = static_cast<std::uint64_t>(runs) * static_cast<std::uint64_t>(options.horizon);
-    after.work.steps += steps;
-    after.work.lookups += steps * policy.trees();
-    return policy_cost(problem, policy, options, runs, executor, evaluation_seed);
-  };
-  after.leaves = !options.adapt ? most : before.leaves > 0 ? before.leaves : std::max(1, most / 10);
-  after.policy = learn(after.leaves);
-  const PolicyCost usual = cost_of(after.policy);
-  after.cost = usual.cost.mean;
-  after.length = usual.length;
-  if (most == 0 || !options.adapt) return;
-  const int other = other_size(after.leaves, most, before.iteration);
-  auto another = learn(other);
-  if (const PolicyCost cost = cost_of(another); cost.discounted < usual.discounted) {
-    after.policy = std::move(another);
-    after.cost = cost.cost.mean;
-    after.length = cost.length;
-    after.leaves = other;
-  }
-}
-
 /// The state of affairs after one more iteration over `count` states. Incomplete if `stop` was requested.
 template <Problem P, Executor E>
 RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& given, const RfpiState<P>& before,
@@ -239,6 +142,7 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& given, const
                                const Rng& rng, std::uint64_t evaluation_seed, std::stop_token stop) {
   RfpiOptions options = given;
   options.backup_steps = backup_steps_for(before.length, options);
+  if (before.follows) options.lookahead.follow = followed;
   RfpiState<P> after;
   after.work = before.work;
   StateSamples<P>& samples = after.samples;
@@ -247,12 +151,12 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& given, const
   samples.values.resize(samples.size());
   samples.actions.resize(samples.size());
   const bool initial = before.iteration < options.initial_iterations;
+  const ForestPolicy<P> policy(problem, before.policy, options.agreement);
   if (options.adapt) {
     const auto states = std::span<const typename P::State>(samples.states);
     options.lookahead.hold = initial ? std::max(initial_hold, options.lookahead.hold)
                                      : chosen_hold(problem, before.value, states, options, rng.stream(5), after.work);
   }
-  const ForestPolicy<P> policy(problem, before.policy, options.agreement);
   constexpr std::size_t states_per_job = 16;
   const std::size_t jobs = (samples.size() + states_per_job - 1) / states_per_job;
   std::vector<RfpiWork> done(jobs);
@@ -266,14 +170,15 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& given, const
         const auto values = std::span(samples.values).subspan(begin, size);
         const Rng noise = rng.stream(1, job);
         const auto incumbents = initial ? std::vector<typename P::Action>() : policy.act(states);
-        Lookahead<P> look(problem, before.value, options.discount, options.lookahead);
+        Lookahead<P> look(problem, before.value, options.discount, options.lookahead, initial ? nullptr : &policy);
         for (std::size_t i = 0; i < size; ++i) {
           const auto found = look(states[i], initial ? nullptr : &incumbents[i], noise.stream(i));
           actions[i] = found.action;
           values[i] = found.value;
         }
         done[job].steps = size * look.transitions();
-        done[job].lookups = size * look.values() * before.value.trees() + incumbents.size() * before.policy.trees();
+        done[job].lookups = size * look.values() * before.value.trees() +
+                            (incumbents.size() + size * look.policy_actions()) * before.policy.trees();
         if (!initial && options.backup_weight > 0) {
           backup_values(problem, options, policy, before.value, states, std::span<const typename P::Action>(actions),
                         values, noise.stream(size), done[job]);
@@ -291,7 +196,13 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& given, const
     after.previous = before.samples;
   after.value = fit_value<LinearLeaf>(problem, samples, after.previous, options.value_forest, executor, rng.stream(2),
                                       after.work, stop);
-  learn_policy(problem, options, before, after, executor, rng.stream(3), evaluation_seed, stop);
+  PolicyCost cost = learn_policy(problem, options, before, after, executor, rng.stream(3), evaluation_seed, stop);
+  after.follows = before.follows;
+  if (options.try_following && !initial && before.iteration % trial_every == 0) {
+    cost = try_other_way(problem, options, before, after, policy, cost, executor, rng.stream(6), evaluation_seed, stop);
+  }
+  after.cost = cost.cost.mean;
+  after.length = cost.length;
   return after;
 }
 

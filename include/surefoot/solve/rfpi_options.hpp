@@ -32,6 +32,7 @@ struct LookaheadOptions {
   double softness = 0.1;     // the action is the mean of those about as good as the best: scale of "about"
                              // [gap between the best and the median action]; 0: the best alone
   int hold = 1;              // transitions that each action is held for before the value counts
+  int follow = 0;            // transitions of the policy after those, before the value counts
   double radius = 0.6;       // and no further from the best than this [half widths of the action box, root mean square]
 };
 
@@ -64,6 +65,7 @@ struct RfpiOptions {
   double visited_share = 0.5;      // of the samples from runs of the newest policy; the rest stays from before
   bool replace_short_runs = false;  // more runs where runs end early, until visited_share is reached; false: as many as
                                     // whole runs would take
+  bool try_following = false;  // now and then, whether lookaheads do better that follow the policy for some transitions
   double exploration = 0.3;        // chance per step of those runs to hold a random action for 1 to 3 steps
   int backup_steps = 2;        // steps of the policy after the lookahead's action, before the last value forest counts
   int backup_runs = 4;         // simulated runs of those steps

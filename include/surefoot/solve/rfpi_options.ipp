@@ -19,6 +19,7 @@ SUREFOOT_ONCE void check(const LookaheadOptions& l) {
   require(l.refined == 0 || (l.refined_samples >= 1 && l.kept >= 1),
           "lookahead.kept and lookahead.refined_samples must be at least 1");
   require(l.hold >= 1, "lookahead.hold must be at least 1");
+  require(l.follow >= 0, "lookahead.follow must not be negative");
   require(l.softness >= 0 && l.step >= 0 && l.radius >= 0,
           "lookahead.softness, lookahead.step and lookahead.radius must not be negative");
 }

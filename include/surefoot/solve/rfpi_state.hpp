@@ -65,6 +65,7 @@ struct RfpiState {
   double cost = 0;      // of that policy over the evaluation runs
   double length = 0;    // of its evaluation runs, mean [transitions]
   int leaves = 0;       // per tree, the size of policy that did best; 0: none yet
+  bool follows = false;  // whether lookaheads follow the policy
   ActionForest best_policy;
   double best_cost = 0;
   int worse = 0;  // iterations in a row that gave a clearly worse policy than the best
@@ -73,7 +74,7 @@ struct RfpiState {
 
 namespace detail {
 
-constexpr FileFormat checkpoint_format{"SURERFPI", 3, "a checkpoint of RFPI"};
+constexpr FileFormat checkpoint_format{"SURERFPI", 4, "a checkpoint of RFPI"};
 constexpr FileFormat first_checkpoint_format{"SURERFPI", 1, "a checkpoint of RFPI"};  // no trend, no sizes
 
 template <class Vector>
@@ -162,6 +163,7 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const R
   out.f64(state.cost);
   out.f64(state.length);
   out.u32(static_cast<std::uint32_t>(state.leaves));
+  out.u8(state.follows ? 1 : 0);
   detail::write_optional(out, state.best_policy);
   out.f64(state.best_cost);
   out.u32(static_cast<std::uint32_t>(state.worse));
@@ -203,6 +205,7 @@ RfpiState<P> load_checkpoint(std::span<const std::byte> bytes, const std::string
     state.cost = in.f64();
     state.length = in.f64();
     state.leaves = static_cast<int>(in.u32() & 0x7FFFFFFFU);
+    state.follows = in.u8() != 0;
   }
   state.best_policy = detail::read_optional<typename RfpiState<P>::ActionForest>(in);
   state.best_cost = in.f64();
