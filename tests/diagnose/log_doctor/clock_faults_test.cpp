@@ -2,6 +2,11 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "tests/diagnose/log_doctor/servo_log.hpp"
 
 namespace {
@@ -41,6 +46,54 @@ TEST_SUITE("log_doctor") {
     CHECK_FALSE(is_like_others(clocks, 3, {}));
     clocks[0].error = 2;
     CHECK(is_like_others(clocks, 3, {}));
+  }
+
+  /// A ball that rolls on: nothing brings it back to where it should be.
+  struct Ball {
+    using State = surefoot::Vec<2>;
+    using Input = surefoot::Vec<1>;
+    using Output = surefoot::Vec<1>;
+    surefoot::SimulatorInfo info() const {
+      return {.name = "ball",
+              .states = {{"p", "m"}, {"v", "m/s"}},
+              .inputs = {{"tilt", "rad"}},
+              .outputs = {{"ball_m", "m"}},
+              .parameters = {{"roll", "m/s^2", 6, 3, 10}}};
+    }
+    State derivative(const State& x, const Input& u, const Eigen::VectorXd& p) const {
+      return {x[1], p[0] * std::sin(u[0])};
+    }
+    Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return Output(x[0]); }
+  };
+
+  TEST_CASE("a clock is fast only if a start within the noise of its first reading does not explain as much") {
+    std::vector<surefoot::Recording> log;
+    surefoot::Rng rng(2);
+    for (int r = 0; r < 4; ++r) {
+      surefoot::Recording one;
+      one.name = "roll " + std::to_string(r);
+      one.time.setLinSpaced(300, 0, 2.99);
+      one.inputs = 0.05 * ((2.0 + r) * one.time.transpose()).array().cos().matrix();
+      one.outputs.setZero(1, 300);
+      one.initial = one.initial_scale = Eigen::Vector2d::Zero();
+      one.outputs = simulate_augmented(Ball{}, {.parameters = {6}}, one).outputs;
+      for (double& reading : one.outputs.reshaped()) reading += 0.001 * rng.normal();
+      one.outputs(0, 0) = one.initial[0] = r == 1 ? 0.003 : 0.0005;  // three times the noise off
+      log.push_back(std::move(one));
+    }
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs{[](std::vector<surefoot::Recording> some) { return bind_simulator(Ball{}, some); },
+                                 [](const BoundSimulator& bound) { return nominal_hypothesis(bound); }, parallel};
+    const LogFit fit = fit_log(inputs, log);
+    CHECK(fit.error[1] > 3 * fit.error[0]);
+    for (const double rate : {-0.02, -0.01, 0.01, 0.02}) {
+      const auto cured = repaired(fit.bound, log[1], {.kind = LogFaultKind::time_skew, .amount = rate});
+      CHECK_FALSE(beats_other_start(inputs, fit, 1, cured));
+    }
+    log[2].time *= 1.05;
+    const LogFit fast = fit_log(inputs, log);
+    const auto cured = repaired(fast.bound, log[2], {.kind = LogFaultKind::time_skew, .amount = 0.05});
+    CHECK(beats_other_start(inputs, fast, 2, cured));
   }
 
   TEST_CASE("clocks of a map or of too few recordings are not compared") {

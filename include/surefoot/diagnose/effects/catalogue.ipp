@@ -81,13 +81,19 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
 }
 
 SUREFOOT_ONCE std::vector<Effect> input_effects() {
-  std::vector<Effect> all = {effects::input_gain(),         effects::input_asymmetry(),
-                             effects::dead_zone(),          effects::dead_zone_step(),
-                             effects::saturation(),         effects::saturation_soft(),
-                             effects::saturation_gradual(), effects::rate_limit(),
-                             effects::input_delay(),        effects::first_order_lag(),
-                             effects::supply_sag(),         effects::supply_sag_current(),
-                             effects::backlash_coupling(),  effects::cubic_stiffness_coupling()};
+  std::vector<Effect> all = {effects::input_gain(),
+                             effects::input_asymmetry(),
+                             effects::dead_zone(),
+                             effects::dead_zone_step(),
+                             effects::saturation(),
+                             effects::saturation_soft(),
+                             effects::saturation_gradual(),
+                             effects::rate_limit(),
+                             effects::input_delay(),
+                             effects::first_order_lag(),
+                             effects::supply_sag(),
+                             effects::backlash_coupling(),
+                             effects::cubic_stiffness_coupling()};
   for (std::size_t i = 0, count = all.size(); i < count; ++i) {
     if (all[i].start || all[i].delay) all.push_back(effects::from_rest(all[i]));
   }
@@ -115,6 +121,7 @@ SUREFOOT_ONCE std::vector<Effect> all_effects() {
                             parameter_effects()}) {
     all.insert(all.end(), place.begin(), place.end());
   }
+  all.push_back(effects::supply_sag_current());  // a form of an effect on inputs
   return all;
 }
 

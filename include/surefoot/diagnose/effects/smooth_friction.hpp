@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "surefoot/diagnose/effects/effect.hpp"
 
@@ -14,8 +15,10 @@ namespace surefoot::effects {
 /// The same friction, with 76 % of its level at the speed `onset`.
 inline Effect smoothed(Effect friction) {
   friction.sentence += ", which grows from rest on up to speeds of about {onset}";
+  std::vector<double> starts{0.01, 0.05};
+  if (friction.parameters.size() > 1) starts = {0.02};  // few combinations with those of the others
   friction.parameters.push_back(
-      {.name = "onset", .measure = {.value = 1}, .low = 0.001, .high = 0.2, .starts = {0.01, 0.05}});
+      {.name = "onset", .measure = {.value = 1}, .low = 0.001, .high = 0.2, .starts = std::move(starts)});
   friction.form += friction.form.empty() ? "smooth" : ", smooth";
   friction.force = [level = std::exchange(friction.dry, {})](const EffectContext& m, Values p, Values /*hidden*/) {
     return -level(m, p) * std::tanh(m.value / p.back());

@@ -33,6 +33,11 @@ bool is_like_others(const std::vector<ClockEstimate>& estimates, std::size_t r, 
 
 std::optional<ClockFault> find_clock_fault(const LogDoctorInputs& inputs, const LogFit& fit);
 
+/// Whether a recording's rate still explains it better if both begin anywhere within the noise of the reading that they
+/// begin with: what floats or rolls keeps that error for good, and a rate may make up for some of it.
+/// `cured`: recording r, repaired.
+bool beats_other_start(const LogDoctorInputs& inputs, const LogFit& fit, std::size_t r, Recording cured);
+
 }  // namespace surefoot::diagnosis
 
 #ifndef SUREFOOT_COMPILED

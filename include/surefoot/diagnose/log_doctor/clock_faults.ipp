@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/sensor_noise.hpp"
 #include "surefoot/diagnose/log_doctor/clock_faults.hpp"
 #include "surefoot/diagnose/log_doctor/tails.hpp"
 
@@ -214,13 +215,22 @@ SUREFOOT_ONCE ClockFault single_fault(const SingleClock& single, std::size_t rec
   return fault;
 }
 
-/// Whether a recording's offset explains it better than parameters of its own would, as physics may ask for that
-/// is missing and that it alone shows: friction where motions are small.
+SUREFOOT_ONCE bool beats_other_start(const LogDoctorInputs& inputs, const LogFit& fit, std::size_t r, Recording cured) {
+  BoundSimulator freed = fit.bound;
+  free_measured_initial_states(freed, {r});
+  const Recording& logged = freed.recordings[r];
+  cured.initial_scale = logged.initial_scale;
+  return mean_square(resimulate(fit, r, logged).residuals, fit.size) >
+         inputs.criteria.skew_gain * mean_square(resimulate(fit, r, cured).residuals, fit.size);
+}
+
+/// Whether a recording's clock explains it better than a start of its own or, an offset, than parameters of its own
+/// would, as physics may ask for that is missing and that it alone shows: friction where motions are small.
 SUREFOOT_ONCE bool beats_own_parameters(const LogDoctorInputs& inputs, const LogFit& fit, const SingleClock& single) {
-  if (single.kind != LogFaultKind::offset) return true;  // such parameters are a time scale of their own
   const std::size_t r = single.recording;
-  const LogFit own = fit_log(inputs, {fit.bound.recordings[r]}, fit.hypothesis.parameters);
   const Recording cured = repaired(fit.bound, fit.bound.recordings[r], {.kind = single.kind, .amount = single.amount});
+  if (single.kind != LogFaultKind::offset) return beats_other_start(inputs, fit, r, cured);
+  const LogFit own = fit_log(inputs, {fit.bound.recordings[r]}, fit.hypothesis.parameters);
   return mean_square(resimulate(fit, r, cured).residuals, fit.size) < mean_square(own.residuals.front(), fit.size);
 }
 

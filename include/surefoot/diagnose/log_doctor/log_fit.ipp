@@ -12,7 +12,6 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
-#include "surefoot/diagnose/estimation/sensor_noise.hpp"
 #include "surefoot/diagnose/log_doctor/log_fit.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
 
@@ -200,7 +199,6 @@ SUREFOOT_ONCE LogFit fit_log(const LogDoctorInputs& inputs, std::vector<Recordin
   problem.recordings = fitted_recordings(bound, criteria);
   result.noise = noise_kind(bound, result.hypothesis, problem.recordings);
   bound.integration.restart = result.noise == NoiseKind::process ? 1 : 0;
-  if (result.noise == NoiseKind::measurement) free_measured_initial_states(bound, problem.recordings);
   problem.integration = bound.integration;
   problem.max_iterations = criteria.fit_iterations;
   problem.stopped = inputs.stopped;
