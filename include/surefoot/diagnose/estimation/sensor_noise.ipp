@@ -14,8 +14,8 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE double fast_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                  Eigen::Index output) {
+SUREFOOT_ONCE double fast_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                Eigen::Index output) {
   std::vector<double> third;
   for (const std::size_t r : recordings) {
     const Eigen::VectorXd y = surefoot::detail::row_of(bound.recordings[r].outputs, output);

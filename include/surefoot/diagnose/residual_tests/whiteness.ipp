@@ -38,7 +38,7 @@ SUREFOOT_INLINE Eigen::VectorXd lagged_products(const std::vector<Eigen::VectorX
   return sums;
 }
 
-SUREFOOT_INLINE double predicted_share(const std::vector<Eigen::VectorXd>& series, Eigen::Index gap) {
+SUREFOOT_ONCE double predicted_share(const std::vector<Eigen::VectorXd>& series, Eigen::Index gap) {
   constexpr double ridge = 1e-6;       // of the mean square: residuals without noise predict themselves
   const Eigen::Index known = 4 * gap;  // rows that predict
   const Eigen::VectorXd products = lagged_products(series, 0, gap + known);
@@ -75,9 +75,9 @@ SUREFOOT_INLINE std::pair<double, double> squares_of(const Eigen::VectorXd& seri
   return {sum, count};
 }
 
-SUREFOOT_INLINE WhitenessTest test_whiteness(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                             const std::vector<SimulatedRun>& trajectories, Eigen::Index output,
-                                             Eigen::Index from, Eigen::Index to) {
+SUREFOOT_ONCE WhitenessTest test_whiteness(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                           const std::vector<SimulatedRun>& trajectories, Eigen::Index output,
+                                           Eigen::Index from, Eigen::Index to) {
   constexpr int draws = 40;
   WhitenessTest result;
   std::vector<Eigen::VectorXd> all;

@@ -44,7 +44,7 @@ SUREFOOT_INLINE EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, co
 }
 
 /// Whether a variable is a strength of an effect that has another one before it.
-SUREFOOT_INLINE bool is_spare_strength(const Hypothesis& hypothesis, const Variable& variable) {
+SUREFOOT_ONCE bool is_spare_strength(const Hypothesis& hypothesis, const Variable& variable) {
   const auto& parameters = hypothesis.effects[variable.index].effect->parameters;
   const auto own = parameters.begin() + static_cast<std::ptrdiff_t>(variable.item);
   return own->strength && std::any_of(parameters.begin(), own, [](const EffectParameter& one) { return one.strength; });
@@ -146,14 +146,14 @@ SUREFOOT_INLINE double log_odds(const EvaluatedHypothesis& a, const EvaluatedHyp
   return sum;
 }
 
-SUREFOOT_INLINE double log_odds_of_forms(EvaluatedHypothesis a, EvaluatedHypothesis b,
-                                         const SelectionCriteria& criteria) {
+SUREFOOT_ONCE double log_odds_of_forms(EvaluatedHypothesis a, EvaluatedHypothesis b,
+                                       const SelectionCriteria& criteria) {
   a.errors.least = b.errors.least = {};
   return log_odds(a, b, criteria);
 }
 
-SUREFOOT_INLINE std::vector<double> probabilities(const std::vector<EvaluatedHypothesis>& evaluated,
-                                                  const SelectionCriteria& criteria) {
+SUREFOOT_ONCE std::vector<double> probabilities(const std::vector<EvaluatedHypothesis>& evaluated,
+                                                const SelectionCriteria& criteria) {
   std::vector<double> result(evaluated.size(), 0.0);
   if (evaluated.empty()) return result;
   const ErrorSquares& reference = std::min_element(evaluated.begin(), evaluated.end(),

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <functional>
@@ -124,6 +125,16 @@ struct SimulatorAnswers {
       response;
 };
 
+/// Notes the values of signals, where given, and makes one a little larger, if any (-1: none).
+struct ProbingTap {
+  std::vector<double>* signals;
+  int larger;
+  double operator()(int i, double value) const {
+    if (signals != nullptr) (*signals)[static_cast<std::size_t>(i)] = value;
+    return i == larger ? value + 1e-3 * (1 + std::abs(value)) : value;
+  }
+};
+
 /// Asks at random points around a recording. Costs some hundred evaluations.
 SimulatorStructure find_structure(const SimulatorAnswers& answers, const SimulatorInfo& info, const Recording& example);
 
@@ -143,16 +154,10 @@ SimulatorStructure find_structure(const S& simulator, const SimulatorInfo& info,
     const auto at = converted<State>(x);
     const auto input = converted<Input>(u);
     if (signals == nullptr) return converted<Eigen::VectorXd>(State(evaluate(s, at, input, parameters, NoTap{})));
-    const auto record = [signals](int i, double value) {
-      (*signals)[static_cast<std::size_t>(i)] = value;
-      return value;
-    };
-    return converted<Eigen::VectorXd>(State(evaluate(s, at, input, parameters, record)));
+    return converted<Eigen::VectorXd>(State(evaluate(s, at, input, parameters, ProbingTap{signals, -1})));
   };
   answers.rates_beside = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::size_t signal) {
-    const auto larger = [signal](int i, double value) {
-      return static_cast<std::size_t>(i) == signal ? value + 1e-3 * (1 + std::abs(value)) : value;
-    };
+    const ProbingTap larger{nullptr, static_cast<int>(signal)};
     return converted<Eigen::VectorXd>(State(evaluate(s, converted<State>(x), converted<Input>(u), parameters, larger)));
   };
   answers.outputs = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& u) {
