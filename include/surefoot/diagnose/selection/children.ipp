@@ -197,7 +197,8 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> next_tied_pairs(const Search& sea
     const Effect &a = *pair.first.effect.effect, &b = *pair.second.effect.effect;
     return a.name != b.name || a.form != b.form;
   });
-  if (tied.size() > search.problem.effort.pairs) tied.resize(search.problem.effort.pairs);
+  // few are left out by their gains, which say little: what has no strength promises nothing before all else is settled
+  if (tied.size() > search.problem.effort.max_shortlist) tied.resize(search.problem.effort.max_shortlist);
   return evaluate_pairs(search, parent, std::move(tied));
 }
 

@@ -65,8 +65,8 @@ SUREFOOT_INLINE double log_prior(const BoundSimulator& bound, const Hypothesis& 
     Hypothesis copy = hypothesis;
     const double low = to_search(variable, variable.low), high = to_search(variable, variable.high);
     const double share = (to_search(variable, value_of(copy, variable)) - low) / (high - low);
-    if (is_spare_strength(hypothesis, variable) && share < nothing)
-      sum -= criteria.bound_cost;                              // a simpler effect does
+    const bool idle = is_spare_strength(hypothesis, variable) && share < nothing;  // a simpler effect does as well
+    if (idle) sum -= criteria.bound_cost;
     const bool natural = variable.low == 0 && share < middle;  // a strength near zero is told by the densities
     if (!natural && (share < criteria.bound_share || share > 1 - criteria.bound_share)) sum -= criteria.bound_cost;
   }
