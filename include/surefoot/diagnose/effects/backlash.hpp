@@ -11,6 +11,7 @@
 
 #include <algorithm>
 
+#include "surefoot/diagnose/effects/dead_zone.hpp"
 #include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/detail/motor_behind_backlash.hpp"
 #include "surefoot/diagnose/effects/detail/two_masses.hpp"
@@ -129,9 +130,7 @@ inline Effect backlash_coupling() {
           .experiment = "slow reversals at two amplitudes: lost motion is the same for both",
           .form = "coupling",
           .needs_coupling = true,
-          .signal = +[](const EffectContext& m, Values p, Values) {
-            return std::max(m.value - p[0], 0.0) + std::min(m.value + p[0], 0.0);
-          }};
+          .signal = +[](const EffectContext& m, Values p, Values) { return beyond_dead_zone(m.value, p[0]); }};
 }
 
 inline Effect backlash_sensor() {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <initializer_list>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -47,42 +46,31 @@
 
 namespace surefoot {
 
-namespace effects {
-
-/// By functions and not by values: a list of so many of these costs the compiler a great deal.
-SUREFOOT_ONCE std::vector<Effect> made(std::initializer_list<Effect (*)()> effects) {
-  std::vector<Effect> all;
-  for (Effect (*const make)() : effects) all.push_back(make());
-  return all;
-}
-
-}  // namespace effects
-
 SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
-  std::vector<Effect> all = effects::made({effects::viscous_friction,
-                                           effects::coulomb_friction,
-                                           effects::coulomb_friction_presliding,
-                                           effects::stribeck_friction,
-                                           effects::stribeck_friction_tailed,
-                                           effects::load_dependent_friction,
-                                           effects::load_dependent_friction_under_load,
-                                           effects::load_dependent_friction_in_gears,
-                                           effects::quadratic_drag,
-                                           effects::constant_force,
-                                           effects::cubic_stiffness,
-                                           effects::hysteresis,
-                                           effects::hysteresis_squared,
-                                           effects::hysteresis_asymmetric,
-                                           effects::backlash,
-                                           effects::backlash_gap,
-                                           effects::backlash_motor,
-                                           effects::joint_elasticity,
-                                           effects::cogging,
-                                           effects::gravity_offset,
-                                           effects::end_stop_upper,
-                                           effects::end_stop_lower,
-                                           +[] { return effects::elastic_end_stop(true); },
-                                           +[] { return effects::elastic_end_stop(false); }});
+  std::vector<Effect> all = {effects::viscous_friction(),
+                             effects::coulomb_friction(),
+                             effects::coulomb_friction_presliding(),
+                             effects::stribeck_friction(),
+                             effects::stribeck_friction_tailed(),
+                             effects::load_dependent_friction(),
+                             effects::load_dependent_friction_under_load(),
+                             effects::load_dependent_friction_in_gears(),
+                             effects::quadratic_drag(),
+                             effects::constant_force(),
+                             effects::cubic_stiffness(),
+                             effects::hysteresis(),
+                             effects::hysteresis_squared(),
+                             effects::hysteresis_asymmetric(),
+                             effects::backlash(),
+                             effects::backlash_gap(),
+                             effects::backlash_motor(),
+                             effects::joint_elasticity(),
+                             effects::cogging(),
+                             effects::gravity_offset(),
+                             effects::end_stop_upper(),
+                             effects::end_stop_lower(),
+                             effects::elastic_end_stop(true),
+                             effects::elastic_end_stop(false)};
   for (std::size_t i = 0, count = all.size(); i < count; ++i) {
     if (!all[i].dry || all[i].form == "tailed") continue;
     if (all[i].needs_drive) all.push_back(effects::with_presliding(all[i]));
@@ -92,10 +80,19 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
 }
 
 SUREFOOT_ONCE std::vector<Effect> input_effects() {
-  std::vector<Effect> all = effects::made(
-      {effects::input_gain, effects::input_asymmetry, effects::dead_zone, effects::dead_zone_step, effects::saturation,
-       effects::saturation_soft, effects::saturation_gradual, effects::rate_limit, effects::input_delay,
-       effects::first_order_lag, effects::supply_sag, effects::backlash_coupling, effects::cubic_stiffness_coupling});
+  std::vector<Effect> all = {effects::input_gain(),
+                             effects::input_asymmetry(),
+                             effects::dead_zone(),
+                             effects::dead_zone_step(),
+                             effects::saturation(),
+                             effects::saturation_soft(),
+                             effects::saturation_gradual(),
+                             effects::rate_limit(),
+                             effects::input_delay(),
+                             effects::first_order_lag(),
+                             effects::supply_sag(),
+                             effects::backlash_coupling(),
+                             effects::cubic_stiffness_coupling()};
   for (std::size_t i = 0, count = all.size(); i < count; ++i) {
     if (all[i].start || all[i].delay) all.push_back(effects::from_rest(all[i]));
   }
@@ -103,12 +100,18 @@ SUREFOOT_ONCE std::vector<Effect> input_effects() {
 }
 
 SUREFOOT_ONCE std::vector<Effect> planar_effects() {
-  return effects::made({effects::slip_saturation_forward, effects::slip_saturation_lateral,
-                        effects::slip_saturation_turn, effects::body_drift, effects::ground_slope,
-                        effects::ground_slope_distance, effects::cross_coupling_forward_to_turn,
-                        effects::cross_coupling_forward_to_lateral, effects::cross_coupling_lateral_to_turn,
-                        effects::cross_coupling_lateral_to_forward, effects::cross_coupling_turn_to_forward,
-                        effects::cross_coupling_turn_to_lateral});
+  return {effects::slip_saturation_forward(),
+          effects::slip_saturation_lateral(),
+          effects::slip_saturation_turn(),
+          effects::body_drift(),
+          effects::ground_slope(),
+          effects::ground_slope_distance(),
+          effects::cross_coupling_forward_to_turn(),
+          effects::cross_coupling_forward_to_lateral(),
+          effects::cross_coupling_lateral_to_turn(),
+          effects::cross_coupling_lateral_to_forward(),
+          effects::cross_coupling_turn_to_forward(),
+          effects::cross_coupling_turn_to_lateral()};
 }
 
 SUREFOOT_ONCE std::vector<Effect> all_effects() {
@@ -122,18 +125,18 @@ SUREFOOT_ONCE std::vector<Effect> all_effects() {
 }
 
 SUREFOOT_ONCE std::vector<Effect> state_effects() {
-  return effects::made(
-      {effects::leak, effects::leak_hole, effects::constant_rate, effects::overflow, effects::overflow_spill});
+  return {effects::leak(), effects::leak_hole(), effects::constant_rate(), effects::overflow(),
+          effects::overflow_spill()};
 }
 
 SUREFOOT_ONCE std::vector<Effect> sensor_effects() {
-  return effects::made({effects::sensor_bias, effects::sensor_scale, effects::sensor_delay, effects::sensor_drift,
-                        effects::sensor_drift_settling, effects::quantization, effects::quantization_floor,
-                        effects::backlash_sensor});
+  return {effects::sensor_bias(),        effects::sensor_scale(),          effects::sensor_delay(),
+          effects::sensor_drift(),       effects::sensor_drift_settling(), effects::quantization(),
+          effects::quantization_floor(), effects::backlash_sensor()};
 }
 
 SUREFOOT_ONCE std::vector<Effect> parameter_effects() {
-  return effects::made({effects::parameter_drift, effects::parameter_drift_settling});
+  return {effects::parameter_drift(), effects::parameter_drift_settling()};
 }
 
 }  // namespace surefoot

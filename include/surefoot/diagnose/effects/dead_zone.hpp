@@ -14,6 +14,11 @@
 
 namespace surefoot::effects {
 
+/// What exceeds a dead zone of this width to either side.
+inline double beyond_dead_zone(double value, double width) {
+  return std::max(value - width, 0.0) + std::min(value + width, 0.0);
+}
+
 inline Effect dead_zone() {
   return {.name = "dead_zone",
           .sentence = "a dead zone of {width} to either side of {at}",
@@ -26,9 +31,7 @@ inline Effect dead_zone() {
                                         .strength = true}}),
           .confusable_with = names_of({"coulomb_friction", "input_gain", "backlash"}),
           .experiment = "small inputs that grow slowly from zero, both ways",
-          .signal = +[](const EffectContext& m, Values p, Values) {
-            return std::max(m.value - p[0], 0.0) + std::min(m.value + p[0], 0.0);
-          }};
+          .signal = +[](const EffectContext& m, Values p, Values) { return beyond_dead_zone(m.value, p[0]); }};
 }
 
 inline Effect dead_zone_step() {

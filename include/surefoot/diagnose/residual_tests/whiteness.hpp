@@ -10,7 +10,6 @@
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
-#include "surefoot/diagnose/estimation/sensor_noise.hpp"
 
 namespace surefoot::diagnosis {
 

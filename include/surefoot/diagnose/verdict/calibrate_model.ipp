@@ -1,7 +1,6 @@
 // Definitions of surefoot/diagnose/verdict/calibrate_model.hpp.
 #pragma once
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -46,16 +45,17 @@ SUREFOOT_ONCE bool holds_structure(const EstimationSetup& setup, const Hypothesi
 SUREFOOT_ONCE bool free_states_alone(EstimationSetup& setup, Fit& calibrated, const SearchProblem& problem,
                                      const Parallel& parallel) {
   const std::vector<bool> before = setup.freed;
-  std::vector<Eigen::VectorXd> scales;
-  for (const Recording& one : setup.bound.recordings) scales.push_back(one.initial_scale);
   Fit freed = calibrated;
   if (!free_more_states(setup, freed, problem, parallel)) return false;
   if (!holds_structure(setup, freed.hypothesis, problem.fit, problem.criteria, parallel)) {
     calibrated = freed;
     return true;
   }
+  for (std::size_t i = 0; i < setup.freed.size(); ++i) {
+    const bool already = i < before.size() && before[i];
+    if (setup.freed[i] && !already) set_initial_scale(setup.bound, i, 0);
+  }
   setup.freed = before;
-  for (std::size_t r = 0; r < scales.size(); ++r) setup.bound.recordings[r].initial_scale = scales[r];
   return false;
 }
 
