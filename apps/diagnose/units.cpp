@@ -114,9 +114,10 @@ std::string unit_of_column(std::string_view column) {
 bool unit_fits(std::string_view column, std::string_view unit) {
   const std::string known = unit_of_column(column);
   if (known.empty() || known == "1" || unit == "1" || bare(known) == bare(unit)) return true;
-  // A shorter ending may be the one that is meant: "order_m_s" in seconds.
+  // A shorter ending may be the one that is meant: "order_m_s" in seconds. A unit may be written as in the name: degC.
   return std::ranges::any_of(units, [&](const auto& entry) {
-    return column.ends_with("_" + std::string(entry.first)) && bare(entry.second) == bare(unit);
+    const bool named = bare(entry.second) == bare(unit) || bare(entry.first) == bare(unit);
+    return column.ends_with("_" + std::string(entry.first)) && named;
   });
 }
 

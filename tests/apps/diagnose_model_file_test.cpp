@@ -6,6 +6,7 @@
 #include "apps/diagnose/equation_plan.hpp"
 #include "apps/diagnose/known_effects.hpp"
 #include "apps/diagnose/model_file.hpp"
+#include "apps/diagnose/units.hpp"
 #include "apps/diagnose/write_augmented.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
 #include "surefoot/diagnose/recording.hpp"
@@ -150,6 +151,13 @@ TEST_CASE("a missing unit is refused") {
                       "[outputs] theta: the column 'theta' does not end in its unit");
   check_model_refused(with(servo_model, "unit = \"rad\", noise", "unit = \"deg\", noise"),
                       "the column's name ends in rad");
+}
+
+TEST_CASE("a unit may be written as the column's name ends") {
+  CHECK(unit_fits("heater_degC", "degC"));
+  CHECK(unit_fits("heater_degC", "C"));
+  CHECK_FALSE(unit_fits("heater_degC", "K"));
+  CHECK_FALSE(unit_fits("speed_m_s", "rad"));
 }
 
 TEST_CASE("schema and kind must be known") {

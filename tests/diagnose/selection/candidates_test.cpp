@@ -10,6 +10,7 @@
 #include "surefoot/diagnose/effects/constant_force.hpp"
 #include "surefoot/diagnose/effects/constant_rate.hpp"
 #include "surefoot/diagnose/effects/gravity_offset.hpp"
+#include "surefoot/diagnose/effects/input_asymmetry.hpp"
 #include "surefoot/diagnose/effects/leak.hpp"
 #include "surefoot/diagnose/effects/overflow.hpp"
 #include "tests/diagnose/small_simulators.hpp"
@@ -104,6 +105,21 @@ TEST_CASE("it is known which inputs begin at zero in all recordings") {
   const BoundSimulator bound = bind_simulator(TwoTanks{}, {still, pumped});
   CHECK(zero_at_first(bound, {0}) == std::vector<bool>{true});
   CHECK(zero_at_first(bound, {0, 1}) == std::vector<bool>{false});
+}
+
+TEST_CASE("an asymmetry is tried only on what is above zero at times and below it at others") {
+  Recording one_way = toys::blank_recording(toys::LeakyTank{}.info(), 100, 0.1), back = one_way;
+  one_way.inputs.setConstant(2);
+  back.inputs.setConstant(-1);
+  const BoundSimulator bound = bind_simulator(toys::LeakyTank{}, {one_way, back});
+  const Hypothesis base = nominal_hypothesis(bound);
+  const auto signs_in = [&](const std::vector<std::size_t>& recordings) {
+    return signs_change(bound, base, recordings, simulate_all(bound, base, recordings, {}, serially()));
+  };
+  CHECK(signs_in({0}) == std::vector<bool>{false, false});  // the valve, and the inflow that it makes
+  CHECK(signs_in({1}) == std::vector<bool>{false, false});
+  CHECK(signs_in({0, 1}) == std::vector<bool>{true, true});
+  CHECK(effects::input_asymmetry().needs_both_signs);
 }
 
 // A cart that moves by its command and by that of the step before.

@@ -79,6 +79,21 @@ TEST_CASE("a speed that recordings do not begin with is freed; a position that i
   CHECK(free_initial_states(b.bound, b.fitted, b.problem, serially()) == std::vector<bool>{false, false});  // once
 }
 
+TEST_CASE("all states that may be free are tried at once, and recordings stay as they are") {
+  const BlockBench moving = block_bench(in_motion), resting = block_bench(at_rest);
+  const double named = std::log(moving.problem.criteria.named_odds);
+  const FreedTogether needed = free_together(moving.bound, moving.fitted, moving.problem, 4, 1, serially());
+  CHECK(needed.states == std::vector<bool>{false, true});
+  CHECK(needed.log_odds > named);
+  CHECK(needed.fitted.hypothesis.initial[0][1] == doctest::Approx(in_motion[0]).epsilon(0.05));
+  CHECK(moving.bound.recordings[0].initial_scale[1] == 0);
+  CHECK(free_together(resting.bound, resting.fitted, resting.problem, 4, 1, serially()).log_odds < named);
+
+  BlockBench free = block_bench(in_motion);
+  free_initial_states(free.bound, free.fitted, free.problem, serially());
+  CHECK_FALSE(free_together(free.bound, free.fitted, free.problem, 4, 1, serially()).fitted.ok);  // none is left
+}
+
 TEST_CASE("what begins as the model says is left alone, and known again if it was freed in vain") {
   BlockBench b = block_bench(at_rest);
   CHECK(free_initial_states(b.bound, b.fitted, b.problem, serially()) == std::vector<bool>{false, false});

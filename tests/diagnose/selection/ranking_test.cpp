@@ -98,5 +98,20 @@ TEST_CASE("of structures that cannot be told apart the closest comes first, if i
   CHECK(closest_of_tie(search, pool, {0.3, 0.3, 0.4, 0.1}, 2) == 2);
 }
 
+TEST_CASE("an effect that may as well be absent is not named") {
+  TankBench bench({});
+  const Search search = bench.search();
+  const EvaluatedHypothesis none = made_up(bench, {}, 9), one = made_up(bench, {"sensor_bias"}, 1),
+                            two = made_up(bench, {"sensor_bias", "sensor_drift"}, 1),
+                            other_two = made_up(bench, {"sensor_bias", "constant_rate"}, 1),
+                            other = made_up(bench, {"constant_rate"}, 1);
+  const std::vector<EvaluatedHypothesis> pool{none, one, two, other_two, other};
+  CHECK(without_improbable(search, pool, {0, 0.2, 0.45, 0.35, 0}, 2) == 1);   // neither second effect is probable
+  CHECK(without_improbable(search, pool, {0, 0.2, 0.6, 0.2, 0}, 2) == 2);     // this one is
+  CHECK(without_improbable(search, pool, {0, 0.04, 0.49, 0.47, 0}, 2) == 2);  // the part is not in the tie
+  CHECK(without_improbable(search, pool, {0, 0, 0.45, 0.2, 0.35}, 2) == 2);   // nor is another structure a part
+  CHECK(without_improbable(search, pool, {0.3, 0, 0.4, 0.3, 0}, 2) == 2);     // whether anything is named is no matter
+}
+
 }  // namespace
 }  // namespace surefoot::diagnosis

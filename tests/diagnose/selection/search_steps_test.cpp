@@ -117,8 +117,10 @@ TEST_CASE("a pool grows as long as a further effect makes the best structure bet
     CHECK(share >= 0);
     CHECK(share < 1);
   };
-  grow(search, pool);
+  std::vector<Hypothesis> done;
+  grow(search, pool, done);
   CHECK(names_in(pool[best_of(pool, bench.problem.criteria)]) == "constant_rate, sensor_drift");
+  CHECK(done.size() > 1);
   CHECK_FALSE(stages.empty());
   CHECK(search.problem.fit.weighting.sigma[0] == doctest::Approx(0.01).epsilon(0.1));
 
@@ -127,7 +129,8 @@ TEST_CASE("a pool grows as long as a further effect makes the best structure bet
   std::vector<EvaluatedHypothesis> clean{nothing.with({})};
   int rounds = 0;
   idle.problem.on_progress = [&](const std::string&, double) { ++rounds; };
-  grow(idle, clean);
+  std::vector<Hypothesis> idle_done;
+  grow(idle, clean, idle_done);
   CHECK(rounds == 1);
   CHECK(names_in(clean[best_of(clean, nothing.problem.criteria)]).empty());
 }
@@ -154,7 +157,8 @@ TEST_CASE("where residuals hold structure one step that does not pay is followed
     int rounds = 0;
     search.problem.on_progress = [&](const std::string&, double) { ++rounds; };
     std::vector<EvaluatedHypothesis> pool{bench.with({})};
-    grow(search, pool);
+    std::vector<Hypothesis> done;
+    grow(search, pool, done);
     CHECK(names_in(pool[best_of(pool, bench.problem.criteria)]).empty());
     return rounds;
   };
@@ -188,12 +192,68 @@ TEST_CASE("a first effect that leaves only noise needs no other start") {
   CHECK(children.size() > 1);
 }
 
+TEST_CASE("what was extended before is not extended again") {
+  const TankBench bench({rate_in_tank, drift_in_tank});
+  Search search = bench.search();
+  std::vector<EvaluatedHypothesis> pool{bench.with({"constant_rate"})};
+  std::vector<Hypothesis> done{pool.front().hypothesis};
+  grow(search, pool, done);
+  CHECK(pool.size() == 1);
+  done.clear();
+  grow(search, pool, done);
+  CHECK(pool.size() > 1);
+}
+
+TEST_CASE("an input that was found not to be held is held again where nothing needs that any more") {
+  TankBench bench({rate_in_tank});
+  bench.problem.fit.integration.inputs = {InputHold::linear};
+  Search search = bench.search();
+  std::vector<EvaluatedHypothesis> pool{bench.with({}), bench.with({"constant_rate"})};
+  CHECK(take_back_holds(search, pool));
+  CHECK(search.problem.fit.integration.inputs[0] == InputHold::zero_order);
+  CHECK(names_in(pool[best_of(pool, bench.problem.criteria)]) == "constant_rate");
+  CHECK_FALSE(take_back_holds(search, pool));
+
+  Rng rng(2);
+  Integration straight;
+  straight.inputs = {InputHold::linear};
+  for (Recording& recording : bench.bound.recordings) {
+    recording.outputs =
+        simulate_augmented(toys::LeakyTank{}, toys::machine({1, 1}, {rate_in_tank}, straight), recording).outputs;
+    for (double& level : recording.outputs.reshaped()) level += 0.01 * rng.normal();
+  }
+  Search needed = bench.search();
+  std::vector<EvaluatedHypothesis> as_it_is{bench.with({}), bench.with({"constant_rate"})};
+  CHECK_FALSE(take_back_holds(needed, as_it_is));
+  CHECK(needed.problem.fit.integration.inputs[0] == InputHold::linear);
+}
+
+TEST_CASE("what an earlier search found is taken up, with its rivals") {
+  const TankBench bench({rate_in_tank});
+  std::vector<EvaluatedHypothesis> pool{bench.with({})};
+  take_up(bench.search(), {}, pool);
+  CHECK(pool.size() == 1);
+  take_up(bench.search(), {bench.start({"constant_rate"})}, pool);
+  CHECK(names_in(pool[best_of(pool, bench.problem.criteria)]) == "constant_rate");
+  CHECK(pool.size() > 1);
+}
+
+TEST_CASE("a search yields to another explanation that does better than its first effects") {
+  TankBench bench({rate_in_tank});
+  CHECK_FALSE(bench.found().yields);
+  bench.problem.rival = 1e9;
+  const Selection selection = bench.found();
+  CHECK(selection.yields);
+  CHECK(selection.chosen.hypothesis.effects.size() <= 1);
+}
+
 TEST_CASE("no structure has more effects than are allowed") {
   TankBench bench({rate_in_tank, drift_in_tank});
   bench.problem.criteria.max_effects = 1;
   Search search = bench.search();
   std::vector<EvaluatedHypothesis> pool{bench.with({})};
-  grow(search, pool);
+  std::vector<Hypothesis> done;
+  grow(search, pool, done);
   for (const EvaluatedHypothesis& one : pool) CHECK(one.hypothesis.effects.size() <= 1);
 }
 

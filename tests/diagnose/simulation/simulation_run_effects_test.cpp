@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "surefoot/diagnose/simulate_augmented.hpp"
@@ -188,6 +189,18 @@ TEST_CASE("a sensor that is off changes what is read and not what moves") {
   recording.outputs(0, 0) = recording.initial[0];  // the start was read off that sensor
   CHECK(simulate_augmented(LeakyTank{}, biased, recording).states(0, 0) ==
         doctest::Approx(recording.initial[0] - 0.25));
+}
+
+TEST_CASE("an initial state that a late sensor read is what it reads by its delay later") {
+  Recording recording = tank_recording(3, 50);
+  const auto late = machine({}, {{.name = "sensor_delay", .attached_to = "level_m", .values = {0.12}}});
+  recording.initial[0] = recording.outputs(0, 0) = 1.0;
+  recording.outputs(0, 2) = 1.2, recording.outputs(0, 3) = 1.5;  // 0.1 s and 0.15 s later
+  CHECK(simulate_augmented(LeakyTank{}, late, recording).states(0, 0) == doctest::Approx(1.2 + 0.4 * 0.3));
+  recording.outputs(0, 3) = std::numeric_limits<double>::quiet_NaN();  // not known then
+  CHECK(simulate_augmented(LeakyTank{}, late, recording).states(0, 0) == 1.0);
+  recording.initial[0] = 0.9;  // known from elsewhere
+  CHECK(simulate_augmented(LeakyTank{}, late, recording).states(0, 0) == 0.9);
 }
 
 }  // namespace

@@ -83,5 +83,21 @@ TEST_CASE("a repaired fault is named again only by the same kind in the same cha
   CHECK_FALSE(is_named_again({slow}, {}));
 }
 
+TEST_CASE("a fault that the model with what was found does not name again is withdrawn") {
+  const LogFault flipped{.kind = "sign_flipped", .recording = "a", .channel = "level_m"},
+      stuck{.kind = "stuck_sensor", .recording = "b", .channel = "level_m"};
+  LogExamination log{{flipped, stuck}, {}}, again{{stuck}, {}};
+  CHECK_FALSE(withdraw_faults(log, again, false));
+  REQUIRE(log.faults.size() == 1);
+  CHECK(log.faults[0].kind == "stuck_sensor");
+
+  log = {{flipped, stuck}, {}};
+  log.faults[0].repaired = true;
+  CHECK_FALSE(withdraw_faults(log, again, false));
+  CHECK(log.faults.size() == 2);  // what was found is of the repaired log
+  CHECK(withdraw_faults(log, again, true));
+  CHECK(log.faults.size() == 1);
+}
+
 }  // namespace
 }  // namespace surefoot::diagnosis

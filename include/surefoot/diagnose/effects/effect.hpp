@@ -84,6 +84,7 @@ struct Effect {
   bool is_impulsive =
       false;              // its signature does not grow in proportion: starts are ranked as they are, and not scaled
   bool needs_angle = false;  // says nothing of a velocity that is not the speed of an angle
+  bool needs_both_signs = false;  // of an input or signal that never changes its sign it says no more than others do
   bool needs_coupling = false;  // of a signal: it holds bodies together, and depends on their states alone
   std::string needs_unit = {};  // of the velocity it is attached to
   bool from_rest = false;    // what it is attached to was 0 before the first row, and not as in it (Place::input)
@@ -105,7 +106,8 @@ struct Effect {
   std::function<void(const EffectContext&, Values p, HiddenStates hidden)> advance = {};
   /// What becomes of an input or a signal.
   std::function<double(const EffectContext&, Values p, Values hidden)> signal = {};
-  /// Delay of an input or a signal [s, or steps].
+  /// Delay of an input or a signal [s, or steps]. Beside `sensor`: how old its readings are, so that an initial state
+  /// is read off a later one.
   std::function<double(Values p)> delay = {};
   /// Starting values of the first parameter, in place of `starts`, that readings suggest: those of the sensor attached
   /// to, or of one that reads the state attached to (for a velocity: what it is the speed of).

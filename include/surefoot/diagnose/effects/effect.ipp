@@ -52,7 +52,7 @@ SUREFOOT_ONCE void check_functions(const Effect& effect) {
       {"seen_position", bool(effect.seen_position), {Place::velocity}},
       {"limit", bool(effect.limit), {Place::velocity, Place::state}},
       {"signal", bool(effect.signal), {Place::input}},
-      {"delay", bool(effect.delay), {Place::input}},
+      {"delay", bool(effect.delay), {Place::input, Place::output}},
       {"sensor", bool(effect.sensor), {Place::output}},
       {"planar", bool(effect.planar), {Place::planar}},
       {"factor", bool(effect.factor), {Place::parameter}},

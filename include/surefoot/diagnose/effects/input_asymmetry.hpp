@@ -10,12 +10,14 @@ namespace surefoot::effects {
 inline Effect input_asymmetry() {
   return {
       .name = "input_asymmetry",
-      .sentence = "an asymmetry of {asymmetry} at {at}, by which its positive values act more and its negative ones less",
+      .sentence =
+          "an asymmetry of {asymmetry} at {at}, by which its positive values act more and its negative ones less",
       .place = Place::input,
       .parameters = parameters_of(
           {{.name = "asymmetry", .measure = {}, .low = -0.95, .high = 0.95, .starts = {0.003, 0.1}, .strength = true}}),
       .confusable_with = names_of({"constant_force", "input_gain", "body_drift", "sensor_bias"}),
       .experiment = "the same steps of the input to either side, in two sizes",
+      .needs_both_signs = true,
       .signal =
           +[](const EffectContext& m, Values p, Values) { return m.value * (m.value > 0 ? 1 + p[0] : 1 - p[0]); }};
 }

@@ -42,6 +42,7 @@ inline Effect sensor_delay() {
                                         .strength = true}}),
           .confusable_with = names_of({"input_delay", "first_order_lag", "backlash"}),
           .experiment = "move it by hand, or by a known drive, past a mark seen by a second sensor",
+          .delay = +[](Values p) { return p[0]; },
           .sensor = +[](const Series& series, Values p) { read_late(series, p[0]); }};
 }
 

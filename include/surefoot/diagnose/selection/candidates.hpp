@@ -21,6 +21,11 @@ std::vector<bool> distinct_inputs(const BoundSimulator& bound, const Hypothesis&
                                   const std::vector<SimulatedRun>& trajectories,
                                   double collinear = SelectionCriteria{}.collinear);
 
+/// Inputs and signals (after the inputs) that are above 0 at times, and below 0 at others.
+std::vector<bool> signs_change(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                               const std::vector<std::size_t>& recordings,
+                               const std::vector<SimulatedRun>& trajectories);
+
 /// Inputs that are 0 in the first row of every recording, and signals (after the inputs) if all inputs are: it is the
 /// same whether they were as in that row before, or 0.
 std::vector<bool> zero_at_first(const BoundSimulator& bound, const std::vector<std::size_t>& recordings);

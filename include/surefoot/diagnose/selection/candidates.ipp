@@ -18,6 +18,23 @@
 
 namespace surefoot::diagnosis {
 
+/// Inputs and signals of a recording by row, as its trajectory makes them.
+SUREFOOT_ONCE Eigen::MatrixXd inputs_and_signals(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                 std::size_t recording, const SimulatedRun& trajectory) {
+  Eigen::MatrixXd efforts, signals;
+  bound.probe(bound, recording, hypothesis.parameters, trajectory.states, efforts, signals);
+  const Eigen::MatrixXd& driven = bound.recordings[recording].inputs;
+  const std::size_t count = bound.info.inputs.size() + bound.info.signals.size();
+  Eigen::MatrixXd all(static_cast<Eigen::Index>(count), signals.cols());
+  for (Eigen::Index column = 0; column < all.cols(); ++column) {
+    for (Eigen::Index k = 0; k < all.rows(); ++k) {
+      const double value = k < driven.rows() ? driven(k, column) : signals(k - driven.rows(), column);
+      all(k, column) = std::isfinite(value) ? value : 0.0;
+    }
+  }
+  return all;
+}
+
 SUREFOOT_ONCE std::vector<bool> distinct_inputs(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                                 const std::vector<std::size_t>& recordings,
                                                 const std::vector<SimulatedRun>& trajectories, double collinear) {
@@ -26,14 +43,9 @@ SUREFOOT_ONCE std::vector<bool> distinct_inputs(const BoundSimulator& bound, con
   std::vector<bool> changes(count, false);
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     if (!trajectories[i].finite) continue;
-    Eigen::MatrixXd efforts, signals;
-    bound.probe(bound, recordings[i], hypothesis.parameters, trajectories[i].states, efforts, signals);
-    const Eigen::MatrixXd& driven = bound.recordings[recordings[i]].inputs;
-    Eigen::MatrixXd all(products.rows(), signals.cols());
+    const Eigen::MatrixXd all = inputs_and_signals(bound, hypothesis, recordings[i], trajectories[i]);
     for (Eigen::Index column = 0; column < all.cols(); ++column) {
       for (Eigen::Index k = 0; k < all.rows(); ++k) {
-        const double value = k < driven.rows() ? driven(k, column) : signals(k - driven.rows(), column);
-        all(k, column) = std::isfinite(value) ? value : 0.0;
         if (all(k, column) != all(k, 0)) changes[static_cast<std::size_t>(k)] = true;
       }
     }
@@ -53,6 +65,27 @@ SUREFOOT_ONCE std::vector<bool> distinct_inputs(const BoundSimulator& bound, con
     }
   }
   return distinct;
+}
+
+SUREFOOT_ONCE std::vector<bool> signs_change(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                             const std::vector<std::size_t>& recordings,
+                                             const std::vector<SimulatedRun>& trajectories) {
+  const std::size_t count = bound.info.inputs.size() + bound.info.signals.size();
+  std::vector<bool> above(count, false), below(count, false);
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    if (!trajectories[i].finite) continue;
+    const Eigen::MatrixXd all = inputs_and_signals(bound, hypothesis, recordings[i], trajectories[i]);
+    for (std::size_t k = 0; k < count; ++k) {
+      for (Eigen::Index column = 0; column < all.cols(); ++column) {
+        const double value = all(static_cast<Eigen::Index>(k), column);
+        above[k] = above[k] || value > 0;
+        below[k] = below[k] || value < 0;
+      }
+    }
+  }
+  std::vector<bool> both(count);
+  for (std::size_t k = 0; k < count; ++k) both[k] = above[k] && below[k];
+  return both;
 }
 
 SUREFOOT_ONCE std::vector<bool> zero_at_first(const BoundSimulator& bound,

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "surefoot/diagnose/estimation/calibrate.hpp"
@@ -15,6 +17,19 @@ namespace surefoot::diagnosis {
 /// the fit with them. Cost: by state a fit of initial states alone, and a whole one if that helps.
 std::vector<bool> free_initial_states(BoundSimulator& bound, Fit& fitted, const SearchProblem& problem,
                                       const Parallel& parallel);
+
+/// Initial states that are freed at once, and the fit from many places with them.
+struct FreedTogether {
+  std::vector<bool> states = {};
+  Fit fitted = {};
+  double log_odds = -std::numeric_limits<double>::infinity();  // against known ones
+};
+
+/// All states that `free_initial_states` may free, at once, and the model without effects calibrated with them: where a
+/// wrong start has led the calibration astray, one state alone, from there on, mends nothing. Leaves the recordings as
+/// they are. Cost: a calibration.
+FreedTogether free_together(BoundSimulator bound, const Fit& known, const SearchProblem& problem, std::size_t starts,
+                            std::uint64_t seed, const Parallel& parallel);
 
 /// Takes states that were freed for known again unless `fitted` needs them free at the same odds: what else was found
 /// may do what they did. `freed` holds what stays free.

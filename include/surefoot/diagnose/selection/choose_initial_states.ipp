@@ -17,9 +17,9 @@ SUREFOOT_ONCE void set_initial_scale(BoundSimulator& bound, std::size_t state, d
   for (Recording& recording : bound.recordings) recording.initial_scale[static_cast<Eigen::Index>(state)] = scale;
 }
 
-/// Log odds of a fit with one more state free in each recording against one without.
+/// Log odds of a fit with more states free in each recording against one without.
 SUREFOOT_ONCE double odds_of_freeing(const BoundSimulator& bound, const Fit& free, const Fit& known,
-                                     const SearchProblem& problem, const Parallel& parallel) {
+                                     const SearchProblem& problem, const Parallel& parallel, double states = 1) {
   const auto evaluate = [&](const Fit& one) {
     return EvaluatedHypothesis{
         one.hypothesis, one.loss,
@@ -33,7 +33,7 @@ SUREFOOT_ONCE double odds_of_freeing(const BoundSimulator& bound, const Fit& fre
     for (Eigen::Index k = 0; k < errors.counts.cols(); ++k) independent += errors.counts(r, k) / errors.memory[k];
     cost += 0.5 * std::log(std::max(1.0, independent));
   }
-  return log_odds(with, without, problem.criteria) - cost;
+  return log_odds(with, without, problem.criteria) - states * cost;
 }
 
 /// Fits with one state free, first alone; not ok if that does not help.
@@ -47,22 +47,47 @@ SUREFOOT_ONCE Fit fit_with_free(BoundSimulator& bound, std::size_t state, const 
   return fit(bound, first.hypothesis, problem.fit, parallel);
 }
 
+/// Whether a state is said to be known and is not read.
+SUREFOOT_ONCE bool may_be_freed(const BoundSimulator& bound, std::size_t state) {
+  const auto said = [&](const Recording& one) { return one.initial_scale[static_cast<Eigen::Index>(state)] == 0; };
+  const bool measured = bound.structure.output_of[state] >= 0;  // a reading says where it begins
+  return !measured && bound.sizes.state[state] > 0 &&
+         std::all_of(bound.recordings.begin(), bound.recordings.end(), said);
+}
+
+SUREFOOT_ONCE bool begins_once(const BoundSimulator& bound, const FitProblem& problem) {
+  return bound.info.kind != SimulatorKind::map && !(problem.integration.restart > 0);
+}
+
+SUREFOOT_ONCE FreedTogether free_together(BoundSimulator bound, const Fit& known, const SearchProblem& problem,
+                                          std::size_t starts, std::uint64_t seed, const Parallel& parallel) {
+  FreedTogether result{std::vector<bool>(bound.info.states.size(), false)};
+  if (!begins_once(bound, problem.fit)) return result;
+  int count = 0;
+  for (std::size_t i = 0; i < result.states.size(); ++i) {
+    if (!may_be_freed(bound, i)) continue;
+    result.states[i] = true;
+    set_initial_scale(bound, i, bound.sizes.state[i]);
+    ++count;
+  }
+  if (count == 0) return result;
+  FitProblem free = problem.fit;
+  result.fitted = calibrate(bound, known.hypothesis, free, starts, seed, parallel);
+  if (result.fitted.ok) result.log_odds = odds_of_freeing(bound, result.fitted, known, problem, parallel, count);
+  return result;
+}
+
 SUREFOOT_ONCE std::vector<bool> free_initial_states(BoundSimulator& bound, Fit& fitted, const SearchProblem& problem,
                                                     const Parallel& parallel) {
   const std::size_t states = bound.info.states.size();
   std::vector<bool> freed(states, false);
-  if (bound.info.kind == SimulatorKind::map || problem.fit.integration.restart > 0) return freed;
-  const auto known = [&](std::size_t i) {
-    const auto said = [&](const Recording& one) { return one.initial_scale[static_cast<Eigen::Index>(i)] == 0; };
-    const bool measured = bound.structure.output_of[i] >= 0;  // a reading says where it begins
-    return !measured && bound.sizes.state[i] > 0 && std::all_of(bound.recordings.begin(), bound.recordings.end(), said);
-  };
+  if (!begins_once(bound, problem.fit)) return freed;
   while (!problem.stopped()) {
     double most = std::log(problem.criteria.named_odds);
     std::size_t best = states;
     Fit with;
     for (std::size_t i = 0; i < states && !problem.stopped(); ++i) {
-      if (!known(i)) continue;
+      if (!may_be_freed(bound, i)) continue;
       const Fit one = fit_with_free(bound, i, fitted, problem, parallel);
       set_initial_scale(bound, i, 0);
       if (!one.ok) continue;

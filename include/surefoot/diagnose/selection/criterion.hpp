@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -104,6 +105,8 @@ struct SearchProblem {
   bool scatter = true;                // start the model's parameters from elsewhere too, beside a first effect
   std::size_t known = 0;              // effects that are part of the model already: the first ones, never removed
   std::size_t candidates = 1;         // effects and places that may be tried
+  /// Log odds of another explanation than effects, against none: a search whose first effects do worse ends there.
+  double rival = -std::numeric_limits<double>::infinity();
   /// Whether the residuals of a hypothesis, on the recordings that it was fitted to, still hold what noise does not;
   /// where not, only strong proposals get a fit.
   std::function<bool(const Hypothesis&, const FitProblem&)> structured = [](const Hypothesis&, const FitProblem&) {
@@ -146,6 +149,9 @@ double log_odds_of_forms(EvaluatedHypothesis a, EvaluatedHypothesis b, const Sel
 
 /// Posterior probabilities, which add up to 1. Cost: rounds * recordings * hypotheses.
 std::vector<double> probabilities(const std::vector<EvaluatedHypothesis>& evaluated, const SelectionCriteria& criteria);
+
+/// The effects of a hypothesis, each with its place, whatever their form.
+std::multiset<std::string> structure_of(const Hypothesis& hypothesis);
 
 /// The same effects at the same places, perhaps in another form or order.
 bool same_structure(const Hypothesis& a, const Hypothesis& b);

@@ -183,7 +183,6 @@ SUREFOOT_ONCE std::vector<double> probabilities(const std::vector<EvaluatedHypot
   return result;
 }
 
-/// The effects of a hypothesis, each with its place, whatever their form.
 SUREFOOT_INLINE std::multiset<std::string> structure_of(const Hypothesis& hypothesis) {
   std::multiset<std::string> labels;
   for (const AttachedEffect& effect : hypothesis.effects) {

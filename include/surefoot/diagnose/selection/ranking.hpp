@@ -18,6 +18,7 @@ struct Selection {
   std::vector<double> alternative_probabilities;  // of these
   std::size_t candidates = 0;                     // how many effects and places were tried
   FitProblem fit;                                 // as the choice was fitted in the end
+  bool yields = false;                            // to a rival explanation: first effects do worse
 };
 
 /// What the errors gain, with its standard error over recordings; the p-value is that of the odds.
@@ -27,6 +28,12 @@ Comparison gain_of(const ErrorSquares& before, const ErrorSquares& after, double
 /// the closest: what counts as an error of form between structures still says which of them to start with.
 std::size_t closest_of_tie(const Search& search, const std::vector<EvaluatedHypothesis>& pool,
                            const std::vector<double>& share, std::size_t best);
+
+/// The structure `whole`, or, in the tie with the most probable one, a part of it, if each effect that goes with the
+/// rest is less probable than not, over all structures (median probability model; M. M. Barbieri, J. O. Berger,
+/// "Optimal predictive model selection", Annals of Statistics 32(3), 2004): what may as well be absent is not named.
+std::size_t without_improbable(const Search& search, const std::vector<EvaluatedHypothesis>& pool,
+                               const std::vector<double>& share, std::size_t whole);
 
 /// The most probable structure, if it is to be named, and all others in their order.
 Selection ranked(const Search& search, const std::vector<EvaluatedHypothesis>& pool);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -54,6 +56,34 @@ SUREFOOT_ONCE std::size_t closest_of_tie(const Search& search, const std::vector
   return closest;
 }
 
+/// Whether all effects of one structure are in another one, which has more.
+SUREFOOT_ONCE bool is_part_of(const Hypothesis& part, const Hypothesis& whole) {
+  const std::multiset<std::string> some = structure_of(part), all = structure_of(whole);
+  return some.size() < all.size() && std::includes(all.begin(), all.end(), some.begin(), some.end());
+}
+
+SUREFOOT_ONCE std::size_t without_improbable(const Search& search, const std::vector<EvaluatedHypothesis>& pool,
+                                             const std::vector<double>& share, std::size_t whole) {
+  constexpr double probable = 0.5;  // than not
+  const double most = *std::max_element(share.begin(), share.end());
+  const auto improbable = [&](const std::string& effect) {
+    double with = 0;
+    for (std::size_t i = 0; i < pool.size(); ++i)
+      with += structure_of(pool[i].hypothesis).contains(effect) ? share[i] : 0;
+    return with < probable;
+  };
+  std::size_t best = whole;
+  for (std::size_t i = 0; i < pool.size(); ++i) {
+    const bool tied = share[i] * search.problem.criteria.tie_odds >= most;
+    if (!tied || search.effects(pool[i]) == 0 || !is_part_of(pool[i].hypothesis, pool[whole].hypothesis)) continue;
+    std::multiset<std::string> dropped = structure_of(pool[whole].hypothesis);
+    for (const std::string& kept : structure_of(pool[i].hypothesis)) dropped.erase(dropped.find(kept));
+    if (!std::all_of(dropped.begin(), dropped.end(), improbable)) continue;
+    if (best == whole || share[i] > share[best]) best = i;
+  }
+  return best;
+}
+
 SUREFOOT_ONCE Selection ranked(const Search& search, const std::vector<EvaluatedHypothesis>& pool) {
   const SelectionCriteria& criteria = search.problem.criteria;
   const std::vector<double> share = probabilities(pool, criteria);
@@ -73,7 +103,7 @@ SUREFOOT_ONCE Selection ranked(const Search& search, const std::vector<Evaluated
   const bool something =
       1 - without > criteria.named_odds * without || (refuted && share[order.front()] > criteria.tie_odds * without);
   const bool named = something && search.effects(pool[order.front()]) > 0;
-  const std::size_t first = closest_of_tie(search, pool, share, order.front());
+  const std::size_t first = without_improbable(search, pool, share, closest_of_tie(search, pool, share, order.front()));
   selection.chosen = named ? pool[first] : selection.nominal;
   selection.probability = named ? share[first] : without;
   for (const std::size_t i : order) {

@@ -39,11 +39,15 @@ std::vector<EvaluatedHypothesis> extended_from(Search search, Hypothesis start, 
 /// on, and pairs of the best.
 void begin_elsewhere(Search search, std::vector<EvaluatedHypothesis>& children);
 
+/// Whether the rival explanation of the problem does better than the best of a pool of first effects.
+bool yields(const Search& search, const std::vector<EvaluatedHypothesis>& pool);
+
 /// Extends the best structures of a pool, as long as that makes the best one better; once more where no first effect
 /// does and something is left. What the best one can do without is taken away at once (floating search; P. Pudil,
 /// J. Novovicova, J. Kittler, Pattern Recognition Letters 15, 1994). Structures with an effect that does nothing, and
-/// those far behind, are not extended.
-void grow(Search& search, std::vector<EvaluatedHypothesis>& pool);
+/// those far behind, are not extended, nor is what was before, which `done` keeps, with the same recordings and
+/// integration.
+void grow(Search& search, std::vector<EvaluatedHypothesis>& pool, std::vector<Hypothesis>& done);
 
 /// The best structures, and the model without effects, fitted and evaluated with the present weights and recordings.
 std::vector<EvaluatedHypothesis> fitted_again(const Search& search, const std::vector<EvaluatedHypothesis>& pool);
@@ -85,9 +89,19 @@ std::optional<EvaluatedHypothesis> weigh_effects(const Search& search, Selection
 std::vector<std::size_t> informative(const BoundSimulator& bound, const Hypothesis& calibrated,
                                      const SearchProblem& problem, const Parallel& parallel);
 
-/// The whole search, from a fitted hypothesis without effects.
+/// Takes inputs for held again that were found to go otherwise, unless the best structure needs that at the odds that
+/// name an effect: what was missing then, and is found now, may look like it. An effect that only made up for it goes
+/// with it. True if anything changed: the pool is fitted so.
+bool take_back_holds(Search& search, std::vector<EvaluatedHypothesis>& pool);
+
+/// Into a pool that holds the model without effects what an earlier search found, fitted again, and first effects that
+/// come near the best of it.
+void take_up(const Search& search, const std::vector<Hypothesis>& begun, std::vector<EvaluatedHypothesis>& pool);
+
+/// The whole search, from a fitted hypothesis without effects and from `begun`, what an earlier search found.
 Selection select_effects(const BoundSimulator& bound, const Fit& calibrated, SearchProblem problem,
-                         const std::vector<AttachedEffect>& candidates, const Parallel& parallel);
+                         const std::vector<AttachedEffect>& candidates, const Parallel& parallel,
+                         const std::vector<Hypothesis>& begun = {});
 
 }  // namespace surefoot::diagnosis
 

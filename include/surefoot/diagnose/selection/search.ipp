@@ -118,9 +118,8 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> extended_from(Search search, Hypo
 }
 
 /// A hypothesis, fitted and evaluated again.
-SUREFOOT_ONCE EvaluatedHypothesis refitted(const Search& search, const EvaluatedHypothesis& one) {
-  return evaluate_fit(search.bound, fit(search.bound, one.hypothesis, search.problem.fit, serially()), search.problem,
-                      serially());
+SUREFOOT_ONCE EvaluatedHypothesis refitted(const Search& search, const Hypothesis& one) {
+  return evaluate_fit(search.bound, fit(search.bound, one, search.problem.fit, serially()), search.problem, serially());
 }
 
 SUREFOOT_ONCE void begin_elsewhere(Search search, std::vector<EvaluatedHypothesis>& children) {
@@ -134,7 +133,7 @@ SUREFOOT_ONCE void begin_elsewhere(Search search, std::vector<EvaluatedHypothesi
     EvaluatedHypothesis& best = children[best_of(children, criteria)];
     reweight(search, best);
     refine_integration(search, best);
-    best = refitted(search, best);
+    best = refitted(search, best.hypothesis);
     if (done()) return;
   }
   for (const EvaluatedHypothesis& child : extended_from(search, search.problem.nominal, nullptr)) {
@@ -170,7 +169,19 @@ SUREFOOT_ONCE void take_effects_away(const Search& search, std::vector<Evaluated
   }
 }
 
-SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool) {
+SUREFOOT_ONCE bool yields(const Search& search, const std::vector<EvaluatedHypothesis>& pool) {
+  const SelectionCriteria& criteria = search.problem.criteria;
+  const auto none = std::find_if(pool.begin(), pool.end(), [&](const auto& one) { return search.effects(one) == 0; });
+  return none != pool.end() && log_odds(pool[best_of(pool, criteria)], *none, criteria) < search.problem.rival;
+}
+
+/// Whether two hypotheses have the same effects in the same forms.
+SUREFOOT_ONCE bool same_effects(const Hypothesis& a, const Hypothesis& b) {
+  return a.effects.size() == b.effects.size() &&
+         std::is_permutation(a.effects.begin(), a.effects.end(), b.effects.begin(), same_effect);
+}
+
+SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool, std::vector<Hypothesis>& done) {
   const SelectionCriteria& criteria = search.problem.criteria;
   const SearchEffort& effort = search.problem.effort;
   std::vector<EvaluatedHypothesis> beam = best_structures(pool, effort.beam, effort.hopeless, criteria);
@@ -180,10 +191,16 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool) 
                                static_cast<double>(depth) / criteria.max_effects);
     const EvaluatedHypothesis best = pool[best_of(pool, criteria)];
     const auto most = static_cast<std::size_t>(criteria.max_effects);
-    std::erase_if(beam, [&](const EvaluatedHypothesis& one) { return search.effects(one) >= most; });
+    std::erase_if(beam, [&](const EvaluatedHypothesis& one) {
+      return search.effects(one) >= most || std::any_of(done.begin(), done.end(), [&](const Hypothesis& other) {
+               return same_effects(one.hypothesis, other);
+             });
+    });
+    for (const EvaluatedHypothesis& one : beam) done.push_back(one.hypothesis);
     std::vector<EvaluatedHypothesis> children = extended(search, beam, best);
     if (search.effects(best) == 0 && depth == 0) begin_elsewhere(search, children);
     for (const EvaluatedHypothesis& child : children) keep_best_form(pool, child, criteria);
+    if (depth == 0 && yields(search, pool)) break;
     const EvaluatedHypothesis now = pool[best_of(pool, criteria)];
     const bool no_better = same_structure(now.hypothesis, best.hypothesis);
     if (no_better && (in_vain || search.effects(now) > 0 || !leaves_structure(search, now))) break;
@@ -197,7 +214,10 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool) 
     Fit fitted{now.hypothesis, now.loss, true};
     const bool holds = choose_holds(search.bound, fitted, search.problem, search.parallel);
     const bool otherwise = refine_integration(search, now) || holds;
-    if (otherwise) pool = fitted_again(search, pool);  // compared with the same errors
+    if (otherwise) {
+      pool = fitted_again(search, pool);  // compared with the same errors
+      done.clear();
+    }
     for (EvaluatedHypothesis& one : beam) {            // and with the weights of their children
       const auto again = std::find_if(pool.begin(), pool.end(), [&](const EvaluatedHypothesis& other) {
         return same_structure(other.hypothesis, one.hypothesis);
@@ -205,7 +225,7 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool) 
       if (otherwise && again != pool.end()) {
         one = *again;
       } else {
-        one = refitted(search, one);
+        one = refitted(search, one.hypothesis);
         keep_best_form(pool, one, criteria);
       }
     }
@@ -227,7 +247,7 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> fitted_again(const Search& search
   for (const EvaluatedHypothesis& one : pool) {
     if (!has_none && search.effects(one) == 0) best.push_back(one);
   }
-  search.parallel(best.size(), [&](std::size_t i) { best[i] = refitted(search, best[i]); });
+  search.parallel(best.size(), [&](std::size_t i) { best[i] = refitted(search, best[i].hypothesis); });
   return best;
 }
 
@@ -367,7 +387,7 @@ SUREFOOT_ONCE void settle(Search& search, EvaluatedHypothesis& chosen) {
   constexpr int reweightings = 2;  // as many as of a calibration
   for (int round = 0; round < reweightings && search.effects(chosen) > 0 && !search.problem.stopped(); ++round) {
     reweight(search, chosen);
-    chosen = refitted(search, chosen);
+    chosen = refitted(search, chosen.hypothesis);
   }
 }
 
@@ -383,8 +403,54 @@ SUREFOOT_ONCE std::optional<EvaluatedHypothesis> weigh_effects(const Search& sea
   return std::nullopt;
 }
 
+/// A structure, fitted again, or that without one of its effects if it is as probable.
+SUREFOOT_ONCE EvaluatedHypothesis refitted_or_smaller(const Search& search, const EvaluatedHypothesis& one) {
+  std::vector<EvaluatedHypothesis> some{refitted(search, one.hypothesis)};
+  for (std::size_t e = search.problem.known; e < one.hypothesis.effects.size() && !search.problem.stopped(); ++e) {
+    some.push_back(search.without(some.front(), e));
+  }
+  return some[best_of(some, search.problem.criteria)];
+}
+
+SUREFOOT_ONCE bool take_back_holds(Search& search, std::vector<EvaluatedHypothesis>& pool) {
+  const SelectionCriteria& criteria = search.problem.criteria;
+  const std::vector<InputInfo>& inputs = search.bound.info.inputs;
+  const std::vector<InputHold> found = search.problem.fit.integration.inputs;
+  bool changed = false;
+  for (std::size_t i = 0; i < found.size() && !search.problem.stopped(); ++i) {
+    if (inputs[i].hold.has_value() || found[i] == InputHold::zero_order) continue;
+    const EvaluatedHypothesis best = pool[best_of(pool, criteria)];
+    Search held = search;
+    held.problem.fit.integration.inputs[i] = InputHold::zero_order;
+    const EvaluatedHypothesis without = refitted_or_smaller(held, best);
+    if (log_odds(best, without, criteria) > std::log(criteria.named_odds)) continue;
+    search.problem.fit.integration = held.problem.fit.integration;
+    pool = fitted_again(search, pool);
+    keep_best_form(pool, without, criteria);
+    changed = true;
+  }
+  return changed;
+}
+
+SUREFOOT_ONCE void take_up(const Search& search, const std::vector<Hypothesis>& begun,
+                           std::vector<EvaluatedHypothesis>& pool) {
+  if (begun.empty()) return;
+  const SelectionCriteria& criteria = search.problem.criteria;
+  const EvaluatedHypothesis bare = pool.front();
+  for (const Hypothesis& one : begun) {
+    if (search.problem.stopped()) return;
+    keep_best_form(pool, refitted(search, one), criteria);
+  }
+  const EvaluatedHypothesis best = pool[best_of(pool, criteria)];
+  if (search.effects(best) == 0) return;
+  std::vector<EvaluatedHypothesis> children;
+  extend(search, bare, best, children);
+  for (const EvaluatedHypothesis& child : children) keep_best_form(pool, child, criteria);
+}
+
 SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& calibrated, SearchProblem problem,
-                                       const std::vector<AttachedEffect>& candidates, const Parallel& parallel) {
+                                       const std::vector<AttachedEffect>& candidates, const Parallel& parallel,
+                                       const std::vector<Hypothesis>& begun) {
   problem.candidates = candidates.size();
   Search search{bound, std::move(problem), candidates, parallel};
   const SelectionCriteria& criteria = search.problem.criteria;
@@ -392,19 +458,32 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
   search.problem.fit.recordings = informative(bound, calibrated.hypothesis, search.problem, parallel);
   std::vector<EvaluatedHypothesis> pool{evaluate_fit(bound, calibrated, search.problem, parallel)};
   search.problem.least = pool.front().errors.least = negligible_differences(pool.front().errors, criteria);
-  grow(search, pool);
+  take_up(search, begun, pool);
+  std::vector<Hypothesis> done;
+  grow(search, pool, done);
+  if (yields(search, pool)) {
+    Selection selection = ranked(search, pool);
+    selection.yields = true;
+    selection.fit = search.problem.fit;
+    return selection;
+  }
+  Hypothesis grown = pool[best_of(pool, criteria)].hypothesis;
   for (int round = 0; round < 2 && search.effects(pool[best_of(pool, criteria)]) > 0; ++round) {
-    const Hypothesis best = pool[best_of(pool, criteria)].hypothesis;
     reweight(search, pool[best_of(pool, criteria)]);
     refit_best(search, pool);
+    if (take_back_holds(search, pool)) done.clear();
     take_effects_away(search, pool);
+    const Hypothesis compared = pool[best_of(pool, criteria)].hypothesis;
+    const auto unchanged = [&] { return same_structure(pool[best_of(pool, criteria)].hypothesis, compared); };
     swap_effects(search, pool);
     swap_pairs_of_inputs(search, pool);
     try_confusable(search, pool);
     begin_anew(search, pool);
-    const EvaluatedHypothesis now = pool[best_of(pool, criteria)];
-    if (same_structure(now.hypothesis, best)) break;
-    if (leaves_structure(search, now)) grow(search, pool);  // what it lacks may not have helped the one before
+    // what it lacks may not have helped the one that it was grown from
+    const bool grows = !same_structure(compared, grown) || !unchanged();
+    if (grows && leaves_structure(search, pool[best_of(pool, criteria)])) grow(search, pool, done);
+    if (unchanged()) break;
+    grown = pool[best_of(pool, criteria)].hypothesis;
   }
   if (search.problem.fit.recordings.size() < all.size()) {
     const bool finished = !leaves_structure(search, pool[best_of(pool, criteria)]);
@@ -413,8 +492,8 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
     const EvaluatedHypothesis without_effects = evaluate_fit(bound, calibrated, search.problem, parallel);
     search.problem.least = negligible_differences(without_effects.errors, criteria);
     pool = fitted_again(search, pool);
-    if (finished && leaves_structure(search, pool[best_of(pool, criteria)]))
-      grow(search, pool);  // the others show more
+    done.clear();  // the others show more
+    if (finished && leaves_structure(search, pool[best_of(pool, criteria)])) grow(search, pool, done);
   }
   Selection selection;
   while (true) {

@@ -38,9 +38,10 @@ SUREFOOT_INLINE EffectSlots assign_slots(const Augmentation& augmentation, const
     if (slots.hidden > most_hidden) {
       throw DiagnoseError("at most 24 hidden states of effects can be simulated at once");
     }
-    if (effect.delay && attached.at < inputs) slots.delays.push_back(slot);
-    if (effect.signal && attached.at < inputs) slots.commands.push_back(slot);
-    if ((effect.signal || effect.delay) && attached.at >= inputs) {
+    const bool on_input = effect.place == Place::input;
+    if (on_input && effect.delay && attached.at < inputs) slots.delays.push_back(slot);
+    if (on_input && effect.signal && attached.at < inputs) slots.commands.push_back(slot);
+    if (on_input && attached.at >= inputs) {
       slots.taps.push_back(slot);
       slots.taps.back().at -= inputs;
     }

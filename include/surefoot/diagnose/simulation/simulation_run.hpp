@@ -120,7 +120,7 @@ class SimulationRun {
 
   /// From a row, to which inputs went already, to the next one.
   void advance_row(Point<S>& now, Eigen::Index row) {
-    const double from = recording_.time[row], length = recording_.time[row + 1] - from;
+    const double from = recording_.time[row], length = row_length(recording_.time[row + 1] - from);
     if constexpr (is_ode<S>) {
       const int steps = steps_in(length);
       const double h = length / steps;
@@ -141,6 +141,14 @@ class SimulationRun {
       next_values(m_, u_.between(from, 1, 0), now, from, info_.planar);
       apply_step_updates(m_, now, u_.now(), from, 1);
     }
+  }
+
+  /// Equal times between rows differ in their last digits; what effects keep for a step serves the next one if they do
+  /// not.
+  static double row_length(double length) {
+    constexpr double unit = 0x1p-40;  // [s], below any clock's resolution
+    const double rounded = std::round(length / unit) * unit;
+    return rounded > 0 ? rounded : length;
   }
 
   void advance(Point<S>& now, double t, double h, int hits = 0) {
@@ -184,12 +192,29 @@ class SimulationRun {
     }
   }
 
+  /// By how much the readings of an output change over some time from the first row on; 0 where they are missing.
+  double moved_within(int output, double length) const {
+    Eigen::Index after = 1;
+    while (after + 1 < recording_.rows() && recording_.time[after] - recording_.time[0] < length) ++after;
+    const double from = recording_.time[after - 1] - recording_.time[0],
+                 to = recording_.time[after] - recording_.time[0];
+    const double a = recording_.outputs(output, after - 1), b = recording_.outputs(output, after);
+    const double share = std::clamp((length - from) / (to - from), 0.0, 1.0);
+    const bool angle = info_.outputs[static_cast<std::size_t>(output)].unit == "rad";
+    const auto difference = [angle](double d) { return angle ? wrap_angle(d) : d; };
+    const double moved = difference(a - recording_.outputs(output, 0)) + share * difference(b - a);
+    return std::isfinite(moved) ? moved : 0;
+  }
+
   /// An initial state that was read off a sensor has the fault of that sensor, which is taken out again.
   void undo_sensors(State& x) const {
     for (std::size_t i = 0; i < info_.states.size(); ++i) {
       const auto state = static_cast<Eigen::Index>(i);
       const int output = m_.structure.output_of[i];
       if (output < 0 || recording_.initial[state] != recording_.outputs(output, 0)) continue;
+      for (const EffectSlot& slot : m_.slots.sensors) {
+        if (slot.at == output && slot.effect->delay) x[state] += moved_within(output, slot.effect->delay(slot.p));
+      }
       const double read = x[state], time = 0;
       for (int round = 0; round < 3; ++round) {
         double reading = x[state];

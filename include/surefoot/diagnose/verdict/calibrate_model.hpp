@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "surefoot/diagnose/selection/choose_initial_states.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
 #include "surefoot/diagnose/verdict/fitted_model.hpp"
 #include "surefoot/diagnose/verdict/run_context.hpp"
@@ -15,6 +16,7 @@ struct Calibration {
   Hypothesis nominal;  // with the initial states of the training recordings
   Fit calibrated;
   std::vector<SimulatedRun> training_runs;  // of the calibrated model
+  FreedTogether freed_together = {};        // another explanation of what it leaves
 };
 
 /// Calibrates, with an integration that is fine enough and in the way the noise asks for: fills in noise, integration,

@@ -69,6 +69,19 @@ SUREFOOT_ONCE bool revise_what_was_said(EstimationSetup& setup, Fit& calibrated,
   return free_states_alone(setup, calibrated, problem, parallel) || holds;
 }
 
+/// Initial states that may explain what the calibrated model leaves, all at once.
+SUREFOOT_ONCE FreedTogether free_what_is_left(const EstimationSetup& setup, const Fit& calibrated,
+                                              const RunContext& run) {
+  SearchProblem problem;
+  problem.fit = setup.problem;
+  problem.scale = error_scale_of(setup);
+  if (setup.noise != NoiseKind::measurement || problem.fit.stopped() ||
+      !holds_structure(setup, calibrated.hypothesis, problem.fit, problem.criteria, run.parallel)) {
+    return {};
+  }
+  return free_together(setup.bound, calibrated, problem, run.options.starts, run.seed, run.parallel);
+}
+
 SUREFOOT_ONCE Calibration calibrate_model(EstimationSetup& setup, const RunContext& run) {
   auto& [bound, split, noise, problem, freed] = setup;
   const Parallel& parallel = run.parallel;
@@ -101,7 +114,8 @@ SUREFOOT_ONCE Calibration calibrate_model(EstimationSetup& setup, const RunConte
     bound.sizes = measure_sizes(bound, calibrated.hypothesis, split.training, runs);
     changed = revise_what_was_said(setup, calibrated, parallel);
   }
-  return {with_estimated_initial_states(bound, nominal, split.training, problem, parallel), calibrated, runs};
+  return {with_estimated_initial_states(bound, nominal, split.training, problem, parallel), calibrated, runs,
+          free_what_is_left(setup, calibrated, run)};
 }
 
 }  // namespace surefoot::diagnosis

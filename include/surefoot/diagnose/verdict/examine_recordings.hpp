@@ -35,6 +35,10 @@ LogExamination examine_with_effects(const BindSimulator& bind, const std::vector
 /// it.
 bool is_named_again(const std::vector<LogFault>& repaired, const std::vector<LogFault>& named);
 
+/// Withdraws faults that the model with what was found does not name again: some physics, or an initial state, passed
+/// for them. Those that were repaired only if all can begin anew; true if it must.
+bool withdraw_faults(LogExamination& log, const LogExamination& again, bool can_begin_anew);
+
 }  // namespace surefoot::diagnosis
 
 #ifndef SUREFOOT_COMPILED

@@ -77,4 +77,15 @@ SUREFOOT_ONCE bool is_named_again(const std::vector<LogFault>& repaired, const s
   });
 }
 
+SUREFOOT_ONCE bool withdraw_faults(LogExamination& log, const LogExamination& again, bool can_begin_anew) {
+  bool repaired = false;
+  std::erase_if(log.faults, [&](const LogFault& fault) {
+    const bool withdrawn = !is_named_again({fault}, again.faults) && (can_begin_anew || !fault.repaired);
+    repaired = repaired || (withdrawn && fault.repaired);
+    return withdrawn;
+  });
+  if (repaired) log.repaired = again.repaired;
+  return repaired;
+}
+
 }  // namespace surefoot::diagnosis

@@ -14,6 +14,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
+#include "surefoot/diagnose/estimation/growing_horizon.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/standard_errors.hpp"
 #include "surefoot/diagnose/residual_tests/noise.hpp"
@@ -184,7 +185,8 @@ SUREFOOT_ONCE void evaluate_selection(const EstimationSetup& setup, const Calibr
   diagnosis.noise_findings = find_noise(setup.bound, choice.chosen.hypothesis, training, setup.noise, run.parallel);
 }
 
-/// The choice, fitted to all recordings, may need finer steps than the search took: it is fitted once more with these.
+/// The choice, fitted to all recordings, may need finer steps than the search took: it is fitted once more with these,
+/// unless that leads astray.
 SUREFOOT_ONCE void refit_with_finer_steps(EstimationSetup& setup, Selection& selection, const RunContext& run) {
   auto& [bound, split, noise, problem, freed] = setup;
   Hypothesis& chosen = selection.chosen.hypothesis;
@@ -192,8 +194,15 @@ SUREFOOT_ONCE void refit_with_finer_steps(EstimationSetup& setup, Selection& sel
   const auto finer =
       finer_integration(bound, chosen, problem.weighting.sigma, bound.integration, split.training, run.parallel);
   if (!finer) return;
+  const FitFunctions coarse(bound, chosen, problem, run.parallel);
+  const double before = mean_loss(coarse.residuals(coarse.start()), problem.weighting.robust);
+  FitProblem fine = problem;
+  fine.integration = *finer;
+  Fit refitted = fit(bound, chosen, fine, run.parallel);
+  if (clearly_less * refitted.loss > before) refitted = grown_fit(bound, refitted, chosen, fine, run.parallel);
+  if (clearly_less * refitted.loss > before) return;  // another valley, as of bounces in another order
   bound.integration = problem.integration = *finer;
-  chosen = fit(bound, chosen, problem, run.parallel).hypothesis;
+  chosen = refitted.hypothesis;
 }
 
 SUREFOOT_ONCE std::string shortening_sentence(Eigen::Index rows) {
@@ -248,7 +257,7 @@ SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vec
 SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, const std::vector<Recording>& logged,
                                                    LogExamination log, const std::vector<Remark>& remarks,
                                                    const RunContext& run) {
-  bool begins_anew = false;
+  bool begins_anew = false, confirmed = false;
   while (true) {
     const double started = run.seconds();
     const std::vector<LogFault> considered = log.faults;
@@ -270,6 +279,12 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
       log.repaired = std::move(more.repaired);
     }
     if (begins_anew) continue;
+    const bool freed = std::find(found.freed.begin(), found.freed.end(), true) != found.freed.end();
+    if ((found_any || freed) && !confirmed && !log.faults.empty() && !run.search_has_ended()) {
+      confirmed = true;
+      const LogExamination again = examine_with_effects(bind, logged, found, run);
+      if (withdraw_faults(log, again, run.has_time_for_as_much_again(started))) continue;
+    }
     // found too late to begin anew: named, but not repaired in what this diagnosis is made of
     for (LogFault& fault : log.faults) fault.repaired = fault.repaired && is_named_again(considered, {fault});
     diagnosis.log_faults = std::move(log.faults);

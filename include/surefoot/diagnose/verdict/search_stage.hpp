@@ -25,8 +25,9 @@ struct Searched {
   Selection selection;
 };
 
-/// Calibrates and searches.
-Searched search_effects(EstimationSetup& setup, const RunContext& run, Diagnosis& diagnosis);
+/// Calibrates and searches, also from what was found before.
+Searched search_effects(EstimationSetup& setup, const RunContext& run, Diagnosis& diagnosis,
+                        const std::vector<Hypothesis>& begun = {});
 
 /// Fits the model without effects once more where the search found inputs to be otherwise than it began with.
 void take_over_inputs(EstimationSetup& setup, Searched& found, const RunContext& run);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -32,8 +33,11 @@ SUREFOOT_ONCE std::vector<AttachedEffect> candidate_effects(const EstimationSetu
       distinct_inputs(setup.bound, calibration.calibrated.hypothesis, setup.split.training, calibration.training_runs));
   const bool map = setup.bound.info.kind == SimulatorKind::map;  // whose first row is the first command
   const std::vector<bool> zero = zero_at_first(setup.bound, setup.split.training);
+  const std::vector<bool> both_signs =
+      signs_change(setup.bound, calibration.calibrated.hypothesis, setup.split.training, calibration.training_runs);
   std::erase_if(candidates, [&](const AttachedEffect& one) {
-    return one.effect->from_rest && (map || zero[static_cast<std::size_t>(one.at)]);
+    const auto at = static_cast<std::size_t>(one.at);
+    return (one.effect->from_rest && (map || zero[at])) || (one.effect->needs_both_signs && !both_signs[at]);
   });
   return candidates;
 }
@@ -46,6 +50,8 @@ SUREFOOT_ONCE SearchProblem search_problem(const EstimationSetup& setup, const C
   problem.scale = error_scale_of(setup);
   problem.nominal = calibration.nominal;
   problem.known = run.options.known.size();
+  const double rival = calibration.freed_together.log_odds;
+  if (rival > std::log(problem.criteria.named_odds)) problem.rival = rival;
   problem.criteria.max_effects = run.options.max_effects;
   const VerdictCriteria verdict;
   if (within_process_noise(process_ratio(setup, calibration.training_runs, verdict), verdict)) {
@@ -82,14 +88,28 @@ SUREFOOT_ONCE void remove_outliers_from(EstimationSetup& setup, const Hypothesis
   }
 }
 
-SUREFOOT_ONCE Searched search_effects(EstimationSetup& setup, const RunContext& run, Diagnosis& diagnosis) {
+SUREFOOT_ONCE void free_all(EstimationSetup& setup, const std::vector<bool>& states) {
+  setup.freed.resize(states.size(), false);
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (!states[i]) continue;
+    setup.freed[i] = true;
+    set_initial_scale(setup.bound, i, setup.bound.sizes.state[i]);
+  }
+}
+
+SUREFOOT_ONCE Searched search_effects(EstimationSetup& setup, const RunContext& run, Diagnosis& diagnosis,
+                                      const std::vector<Hypothesis>& begun) {
   run.progress("calibrating", progress_calibration);
   Searched found{calibrate_model(setup, run), {}, {}, {}};
   remove_outliers_from(setup, found.calibration.calibrated.hypothesis, run, diagnosis);
   found.problem = search_problem(setup, found.calibration, run);
   found.candidates = candidate_effects(setup, found.calibration, run);
   found.selection =
-      select_effects(setup.bound, found.calibration.calibrated, found.problem, found.candidates, run.parallel);
+      select_effects(setup.bound, found.calibration.calibrated, found.problem, found.candidates, run.parallel, begun);
+  if (found.selection.yields && !run.search_has_ended()) {
+    free_all(setup, found.calibration.freed_together.states);
+    return search_effects(setup, run, diagnosis);
+  }
   return found;
 }
 
@@ -110,26 +130,33 @@ SUREFOOT_ONCE void take_over_inputs(EstimationSetup& setup, Searched& found, con
   calibrate_again(setup, found, run);
 }
 
+/// The choice and its best alternatives, from the initial states of `fitted`.
+SUREFOOT_ONCE std::vector<Hypothesis> best_with_initial_states(const Searched& found, const Hypothesis& fitted) {
+  std::vector<Hypothesis> best{fitted};
+  for (const EvaluatedHypothesis& one : found.selection.alternatives) {
+    if (best.size() == found.problem.effort.finalists) break;
+    if (one.hypothesis.effects.size() == found.problem.known) continue;
+    best.push_back(one.hypothesis);
+    best.back().initial = fitted.initial;
+  }
+  return best;
+}
+
 SUREFOOT_ONCE void revise_initial_states(EstimationSetup& setup, Searched& found, const RunContext& run,
                                          Diagnosis& diagnosis) {
   const auto chosen = [&] { return Fit{found.selection.chosen.hypothesis, found.selection.chosen.loss, true}; };
-  const auto any_effect = [&] { return found.selection.chosen.hypothesis.effects.size() > run.options.known.size(); };
   const auto with_present_weights = [&] {
     SearchProblem problem = found.problem;
     problem.fit = found.selection.fit;
     return problem;
   };
-  const auto explained = [&] {
-    const Hypothesis& all = found.selection.chosen.hypothesis;
-    return !holds_structure(setup, all, found.selection.fit, found.problem.criteria, run.parallel);
-  };
   if (run.search_has_ended()) return;
   Fit fitted = chosen();
-  if (!explained() && free_more_states(setup, fitted, with_present_weights(), run.parallel)) {
-    found = search_effects(setup, run, diagnosis);
+  if (free_more_states(setup, fitted, with_present_weights(), run.parallel)) {
+    found = search_effects(setup, run, diagnosis, best_with_initial_states(found, fitted.hypothesis));
     fitted = chosen();
   }
-  if (!any_effect() || run.search_has_ended()) return;
+  if (run.search_has_ended()) return;
   const std::vector<bool> before = setup.freed;
   restore_initial_states(setup.bound, setup.freed, fitted, with_present_weights(), run.parallel);
   if (setup.freed == before) return;

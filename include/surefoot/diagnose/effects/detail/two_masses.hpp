@@ -30,20 +30,46 @@ struct Offset {
   double d = 0, w = 0;
 };
 
+/// The linear map of an offset over a step, d and w after it by d, w and a before.
+struct SwingMap {
+  Offset by_d, by_w, by_a;
+};
+
+inline SwingMap swing_map(double frequency, double damping, double step) {
+  const int substeps = 1 + static_cast<int>(frequency * step / 0.1);
+  const double h = step / substeps, keep = 1 / (1 + 2 * h * damping * frequency);
+  const auto after = [&](Offset at, double a) {
+    for (int i = 0; i < substeps; ++i) {
+      at.w = keep * (at.w - h * (frequency * frequency * at.d + a));
+      at.d += h * at.w;
+    }
+    return at;
+  };
+  return {after({1, 0}, 0), after({0, 1}, 0), after({0, 0}, 1)};
+}
+
+/// The same, which all stages of a run, mostly, ask for with the same values.
+inline const SwingMap& last_swing_map(double frequency, double damping, double step) {
+  thread_local double of[3] = {0, 0, 0};
+  thread_local SwingMap map;
+  if (of[0] != frequency || of[1] != damping || of[2] != step) {
+    map = swing_map(frequency, damping, step);
+    of[0] = frequency, of[1] = damping, of[2] = step;
+  }
+  return map;
+}
+
 /// The offset after a time `step` of constant acceleration a, by the semi-implicit Euler method. Frequencies beyond
 /// 2/step are taken for that: they cannot be told apart.
 inline Offset swing(const TwoMasses& masses, Offset at, double a, double step) {
   const double frequency = std::min(masses.frequency, 2 / step);
+  if (masses.half_width == 0) {  // linear
+    const SwingMap& map = last_swing_map(frequency, masses.damping, step);
+    return {map.by_d.d * at.d + map.by_w.d * at.w + map.by_a.d * a,
+            map.by_d.w * at.d + map.by_w.w * at.w + map.by_a.w * a};
+  }
   const int substeps = 1 + static_cast<int>(frequency * step / 0.1);
   const double h = step / substeps, damping = 2 * masses.damping * frequency;
-  if (masses.half_width == 0) {  // linear
-    const double keep = 1 / (1 + h * damping), bend = keep * h * frequency * frequency, push = keep * h * a;
-    for (int i = 0; i < substeps; ++i) {
-      at.w = (keep * at.w - push) - bend * at.d;
-      at.d += h * at.w;
-    }
-    return at;
-  }
   for (int i = 0; i < substeps; ++i) {
     const double bend = beyond_gap(at.d, masses.half_width);
     // parts in contact push and never pull
