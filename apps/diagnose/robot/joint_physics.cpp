@@ -25,7 +25,7 @@ const std::array<PropertyInfo, property_count>& property_table() {
       {torque_limit, "saturation", "missing_share", "1", "torque limit below the stated one", 0, 9.9, true, false,
        false},
       {lag, "first_order_lag", "time_constant", "s", "torque that lags", 0, 30, true, false, false},
-      {delay, "input_delay", "delay", "s", "goal that arrives late", 0, 40, true, false, false},
+      {delay, "input_delay", "delay", "s", "commands that arrive late", 0, 40, true, true, false},
       {backlash, "backlash", "half_width", "rad", "backlash", 0, 40, true, false, false},
       {constant_torque, "constant_force", "torque", "N m", "constant torque", -20, 20, true, true, false},
       {sensor_bias, "sensor_bias", "bias", "rad", "offset of the encoder", -10, 10, true, true, false},

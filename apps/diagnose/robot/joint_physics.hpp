@@ -21,7 +21,7 @@ enum class Property : unsigned char {
   reading_scale,    // relative, of the recorded torque of a torque drive: 0.25 reads a quarter more than there is [1]
   torque_limit,     // share of the stated limit that is missing [1]
   lag,              // time constant of the torque [s]
-  delay,            // of the goal [s]
+  delay,            // of what the drive is told, goal or torque [s]
   backlash,         // half width, between what the drive sees and the joint [rad]
   constant_torque,  // [N m]
   sensor_bias,      // of the measured angle [rad]

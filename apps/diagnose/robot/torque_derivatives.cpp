@@ -41,6 +41,17 @@ double needed_by_pair(Property property, double v, double a) {
   return property == Property::pair_armature ? a : 0;
 }
 
+Eigen::VectorXd slope_of(const Eigen::VectorXd& time, const Eigen::Ref<const Eigen::VectorXd>& x) {
+  const Eigen::Index rows = x.size();
+  Eigen::VectorXd slope(rows);
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    const Eigen::Index first = std::max<Eigen::Index>(0, k - 1), last = std::min(rows - 1, k + 1);
+    slope[k] = (x[last] - x[first]) / (time[last] - time[first]);
+    if (!std::isfinite(slope[k])) slope[k] = 0;  // beside rows that are not known
+  }
+  return slope;
+}
+
 bool is_of_rigid_bodies(Property p) { return is_of_body(p) || p == Property::sensor_bias; }
 
 }  // namespace
@@ -80,7 +91,8 @@ std::vector<JointDerivatives> rigid_derivatives(const Robot& robot, const Motion
 std::vector<JointDerivatives> torque_derivatives(const Robot& robot, const Motion& motion, const RobotPhysics& physics,
                                                  const std::vector<PhysicsEntry>& entries,
                                                  const std::vector<JointDerivatives>& rigid) {
-  const Eigen::MatrixXd read = drive_torque(robot, motion) - torque_residual(robot, motion, physics);
+  const Eigen::MatrixXd told = arrived_torque(robot, motion, physics);
+  const Eigen::MatrixXd read = told - torque_residual(robot, motion, physics);
   std::vector<JointDerivatives> result = rigid;
   for (std::size_t j = 0; j < result.size(); ++j) {
     const auto c = static_cast<Eigen::Index>(j);
@@ -92,6 +104,11 @@ std::vector<JointDerivatives> torque_derivatives(const Robot& robot, const Motio
       const bool here = pair ? joint == j || robot.joints[joint].before == static_cast<int>(j) : joint == j;
       const bool whole = is_of_rigid_bodies(entry.property);
       auto by = result[j].by.col(static_cast<Eigen::Index>(e));
+      if (entry.property == Property::delay) {
+        by.setZero();
+        if (joint == j) by = -slope_of(motion.time, told.col(c));
+        continue;
+      }
       for (Eigen::Index k = 0; k < by.size(); ++k) {
         const double v = motion.v(k, c), a = motion.a(k, c);
         const double given = read(k, c) / (1 + p[Property::reading_scale]);

@@ -65,6 +65,24 @@ Eigen::MatrixXd drive_torque(const Robot& robot, const Motion& motion) {
   return torque;
 }
 
+Eigen::MatrixXd arrived_torque(const Robot& robot, const Motion& motion, const RobotPhysics& physics) {
+  Eigen::MatrixXd torque = drive_torque(robot, motion);
+  if (robot.setup.drive != DriveKind::torque) return torque;
+  for (Eigen::Index j = 0; j < torque.cols(); ++j) {
+    const double late = motion.torque_late + physics[static_cast<std::size_t>(j)][Property::delay];
+    if (late == 0) continue;
+    const Eigen::VectorXd told = torque.col(j);
+    Eigen::Index before = 0;
+    for (Eigen::Index k = 0; k < told.size(); ++k) {
+      const double sent = motion.time[k] - late;
+      while (before + 2 < told.size() && motion.time[before + 1] <= sent) ++before;
+      const double share = (sent - motion.time[before]) / (motion.time[before + 1] - motion.time[before]);
+      torque(k, j) = share < 0 ? std::nan("") : (1 - share) * told[before] + share * told[before + 1];
+    }
+  }
+  return torque;
+}
+
 double load_factor(const JointPhysics& physics, double speed, double torque) {
   constexpr double most = 0.95;  // a drive that loses all of its torque to friction does not move
   return 1 / (1 - std::min(most, physics[Property::load_friction]) * sign_of(speed) * sign_of(torque));
@@ -97,7 +115,7 @@ Eigen::MatrixXd torque_residual(const Robot& robot, const Motion& motion, const 
     for (Eigen::Index k = 0; k < needed.rows(); ++k)
       needed(k, c) *= (1 + physics[j][Property::reading_scale]) * load_factor(physics[j], motion.v(k, c), needed(k, c));
   }
-  Eigen::MatrixXd residual = drive_torque(robot, motion) - needed;
+  Eigen::MatrixXd residual = arrived_torque(robot, motion, physics) - needed;
   for (Eigen::Index c = 0; c < residual.cols(); ++c) {
     for (Eigen::Index k = 0; k < residual.rows(); ++k) {
       const bool inside = k >= motion.edge && k < residual.rows() - motion.edge;
