@@ -13,8 +13,25 @@
 namespace diagnose_robot {
 namespace {
 
+using Weights = std::vector<Eigen::Triplet<double>>;
+
+// The means of true accelerations that the filter of a row makes of angles: its kernel of Peano, at the rows.
+void add_means(const RobotRecording& r, Eigen::Index k, Eigen::Index first, const Eigen::RowVectorXd& filter,
+               Weights& means) {
+  const Eigen::Index count = filter.size();
+  Eigen::VectorXd kernel = Eigen::VectorXd::Zero(count);
+  for (Eigen::Index i = 1; i + 1 < count; ++i) {
+    for (Eigen::Index later = i + 1; later < count; ++later)
+      kernel[i] += filter[later] * (r.time[first + later] - r.time[first + i]);
+    kernel[i] *= r.time[first + i + 1] - r.time[first + i - 1];
+  }
+  const double sum = kernel.sum();
+  for (Eigen::Index i = 1; i + 1 < count; ++i) means.emplace_back(k, first + i, kernel[i] / sum);
+}
+
 // One row: value, first and second derivative of the cubic that fits the window best, with tricube weights.
-void smooth_row(const RobotRecording& r, Eigen::Index k, double reach, Eigen::Index fewest, Motion& motion) {
+void smooth_row(const RobotRecording& r, Eigen::Index k, double reach, Eigen::Index fewest, Motion& motion,
+                Weights& means) {
   const Eigen::Index rows = r.time.size();
   Eigen::Index first = k, last = k;
   while (first > 0 && (r.time[k] - r.time[first - 1] <= reach || k - first < fewest)) --first;
@@ -36,7 +53,7 @@ void smooth_row(const RobotRecording& r, Eigen::Index k, double reach, Eigen::In
   motion.v.row(k) = filter.row(1) * block / scale;
   motion.a.row(k) = 2 * filter.row(2) * block / (scale * scale);
   if (r.goal.size() > 0) motion.goal.row(k) = filter.row(0) * r.goal.middleRows(first, count);
-  if (r.torque.size() > 0) motion.torque.row(k) = filter.row(0) * r.torque.middleRows(first, count);
+  if (r.torque.size() > 0) add_means(r, k, first, filter.row(2), means);
 }
 
 Motion smooth_with(const RobotRecording& recording, double half_window, Eigen::Index fewest) {
@@ -44,9 +61,18 @@ Motion smooth_with(const RobotRecording& recording, double half_window, Eigen::I
   const Eigen::Index rows = recording.angle.rows(), joints = recording.angle.cols();
   for (Eigen::MatrixXd* matrix : {&motion.q, &motion.v, &motion.a}) matrix->resize(rows, joints);
   if (recording.goal.size() > 0) motion.goal.resize(rows, joints);
-  if (recording.torque.size() > 0) motion.torque.resize(rows, joints);
   const double reach = std::max(half_window, static_cast<double>(fewest) * recording.row_period());
-  for (Eigen::Index k = 0; k < rows; ++k) smooth_row(recording, k, reach, fewest, motion);
+  Weights weights;
+  for (Eigen::Index k = 0; k < rows; ++k) smooth_row(recording, k, reach, fewest, motion, weights);
+  if (recording.torque.size() > 0) {
+    // What accelerations lose, torques and all that they are compared with lose as well.
+    Eigen::SparseMatrix<double, Eigen::RowMajor> means(rows, rows);
+    means.setFromTriplets(weights.begin(), weights.end());
+    motion.torque = means * recording.torque;
+    motion.q = means * motion.q;
+    motion.v = means * motion.v;
+  }
+  motion.torque_late = recording.torque_late;
   motion.half_window = half_window;
   motion.reach = reach;
   motion.time = recording.time;

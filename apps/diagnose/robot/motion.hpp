@@ -9,7 +9,7 @@ struct Motion {
   Eigen::VectorXd time;           // [s], as recorded
   Eigen::MatrixXd q, v, a;        // row x joint
   Eigen::MatrixXd goal, torque;   // through the same filter; empty where there are none
-  double torque_late = 0;         // [s] after which recorded torques act on average; see torque_hold.hpp
+  double torque_late = 0;         // [s], of the recording
   double half_window = 0;         // [s] of the filter
   Eigen::VectorXd low_pass;       // [s] by joint, to either side, of the filter of torques; see low_pass.hpp
   double reach = 0;               // [s] of the window to either side, which has some rows at least

@@ -66,7 +66,8 @@ void evaluate_test(const diagnose_program::CommandLine& line, const Evidence& ev
   std::vector<std::string> remarks;
   load_recordings(files, test, remarks);
   test.scales = evidence.scales;
-  for (std::size_t r = 0; r < test.motions.size(); ++r) test.motions[r].torque_late = evidence.motions.front().torque_late;
+  for (std::size_t r = 0; r < test.motions.size(); ++r)
+    test.motions[r].torque_late = evidence.motions.front().torque_late;
   hold_out(test, d);
 }
 
@@ -120,7 +121,9 @@ int run_robot(const diagnose_program::CommandLine& line) {
   diagnose_program::Progress progress(line.quiet);
   const std::vector<surefoot::LogFault> faults = swapped_columns(line.repair, evidence);
   if (hold_torques(evidence))
-    remarks.push_back("recorded torques are taken as commands that stand until the next row: these recordings refute that they act as they are logged");
+    remarks.push_back(
+        "recorded torques are taken as commands that stand until the next row: these recordings refute that they act "
+        "as they are logged");
   const bool usable = faults.empty() || line.repair;
   RobotDiagnosis d =
       usable

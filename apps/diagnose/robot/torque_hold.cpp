@@ -30,8 +30,10 @@ double evidence_for_held_torques(const Evidence& evidence) {
 
 bool hold_torques(Evidence& evidence) {
   const bool held = evidence_for_held_torques(evidence) > ChoiceCriteria().needed;
-  for (std::size_t r = 0; r < evidence.motions.size(); ++r)
-    evidence.motions[r].torque_late = held ? half_row(evidence.recordings[r]) : 0;
+  for (std::size_t r = 0; r < evidence.motions.size(); ++r) {
+    RobotRecording& recording = evidence.recordings[r];
+    evidence.motions[r].torque_late = recording.torque_late = held ? half_row(recording) : 0;
+  }
   return held;
 }
 
