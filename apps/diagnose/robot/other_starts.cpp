@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "limit_along_motion.hpp"
+
 namespace diagnose_robot {
 namespace {
 
@@ -28,21 +30,34 @@ struct Start {
   double misfit = 0;
 };
 
+// Sizes at which a term may show that is not there yet.
+std::vector<double> sizes_of(const Evidence& evidence, const RobotPhysics& bare, const Term& term) {
+  std::vector<double> result;
+  const int joint = term.joints.front();
+  const double stated = evidence.robot.joints[static_cast<std::size_t>(joint)].setup.limit;
+  if (term.property == Property::torque_limit) {
+    for (const double limit : limits_along_motion(evidence, bare, joint)) result.push_back(1 - limit / stated);
+    return result;
+  }
+  for (const double size : sizes) {
+    for (const double side : {1.0, -1.0}) result.push_back(side * size * term.typical);
+  }
+  return result;
+}
+
 std::vector<Start> starts_at(const Evidence& evidence, const LinearModel& model, const Point& bare, int joint) {
+  const RobotPhysics physics = physics_of(evidence.terms, bare.theta, evidence.robot.nominal);
   std::vector<Start> starts;
   for (std::size_t t = 0; t < evidence.terms.size(); ++t) {
     const Term& term = evidence.terms[t];
     if (!is_of_joint(term, joint) || is_of_body(term.property)) continue;
-    for (const double size : sizes) {
-      for (const double side : {1.0, -1.0}) {
-        const double value = side * size * term.typical;
-        const auto at = static_cast<Eigen::Index>(t);
-        if (value < model.low[at] || value > model.high[at]) continue;
-        Start start{bare, t, 0};
-        start.point.set[t] = 1;
-        start.point.theta[at] = value;
-        starts.push_back(std::move(start));
-      }
+    for (const double value : sizes_of(evidence, physics, term)) {
+      const auto at = static_cast<Eigen::Index>(t);
+      if (value < model.low[at] || value > model.high[at]) continue;
+      Start start{bare, t, 0};
+      start.point.set[t] = 1;
+      start.point.theta[at] = value;
+      starts.push_back(std::move(start));
     }
   }
   const auto errors = surefoot::map(
