@@ -24,6 +24,7 @@ enum class Property : unsigned char {
   delay,            // of what the drive is told, goal or torque [s]
   backlash,         // half width, between what the drive sees and the joint [rad]
   constant_torque,  // [N m]
+  stiffness,        // of a spring, or of cables, beyond what the file has, with the same rest [N m/rad]
   sensor_bias,      // of the measured angle [rad]
   link_mass,        // relative, mass and inertia of the link that the joint moves [1]
   link_com_x,       // shift of its centre of mass in the frame of the link [m]

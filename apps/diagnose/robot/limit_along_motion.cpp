@@ -43,9 +43,9 @@ double square_with(const ToldAndNeeded& rows, double limit) {
 }  // namespace
 
 std::vector<double> limits_along_motion(const Evidence& evidence, const RobotPhysics& physics, int joint) {
-  constexpr std::size_t most = 3;     // limits that are returned
-  constexpr double narrower = 1.2;    // times the next limit: nearer ones lead to the same fit
-  constexpr double rarest = 0.002;    // of the rows: a limit that fewer reach shows nowhere
+  constexpr std::size_t most = 3;   // limits that are returned
+  constexpr double narrower = 1.2;  // times the next limit: nearer ones lead to the same fit
+  constexpr double rarest = 0.002;  // of the rows: a limit that fewer reach shows nowhere
   ToldAndNeeded rows;
   for (std::size_t r = 0; r < evidence.recordings.size(); ++r) add_rows(evidence, physics, r, joint, rows);
   if (rows.told.empty()) return {};

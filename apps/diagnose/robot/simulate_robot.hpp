@@ -21,8 +21,9 @@ struct StartState {
 
 StartState start_of(const Motion& motion);
 
-/// The readings that the robot would give: row x joint. Not finite where the motion has run away.
+/// The readings that the robot would give: row x joint. Not finite where the motion has run away. `finer`: into so many
+/// parts each step is divided.
 Eigen::MatrixXd simulate_robot(const Robot& robot, const RobotRecording& recording, const StartState& start,
-                               const RobotPhysics& physics);
+                               const RobotPhysics& physics, int finer = 1);
 
 }  // namespace diagnose_robot

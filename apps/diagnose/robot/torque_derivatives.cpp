@@ -11,7 +11,7 @@ namespace {
 
 // How much more torque is needed at a joint, friction by load apart, if it has a bit more of its own property; `given`:
 // by the drive.
-double needed_by(Property property, const JointPhysics& p, double given, double v, double a) {
+double needed_by(Property property, const JointPhysics& p, double given, double stretch, double v, double a) {
   switch (property) {
     case Property::coulomb:
       return sign_of(v);
@@ -27,6 +27,8 @@ double needed_by(Property property, const JointPhysics& p, double given, double 
       return a;
     case Property::constant_torque:
       return -1;
+    case Property::stiffness:
+      return stretch;
     case Property::reading_scale:
       return given / (load_factor(p, v, given) * (1 + p[Property::reading_scale]));
     default:
@@ -97,6 +99,7 @@ std::vector<JointDerivatives> torque_derivatives(const Robot& robot, const Motio
   for (std::size_t j = 0; j < result.size(); ++j) {
     const auto c = static_cast<Eigen::Index>(j);
     const JointPhysics& p = physics[j];
+    const double rest = rest_of_spring(robot, j);
     for (std::size_t e = 0; e < result[j].entries.size(); ++e) {
       const PhysicsEntry& entry = entries[result[j].entries[e]];
       const auto joint = static_cast<std::size_t>(entry.joint);
@@ -110,7 +113,7 @@ std::vector<JointDerivatives> torque_derivatives(const Robot& robot, const Motio
         continue;
       }
       for (Eigen::Index k = 0; k < by.size(); ++k) {
-        const double v = motion.v(k, c), a = motion.a(k, c);
+        const double v = motion.v(k, c), a = motion.a(k, c), stretch = motion.q(k, c) - p[Property::sensor_bias] - rest;
         const double given = read(k, c) / (1 + p[Property::reading_scale]);
         double more = 0;
         if (whole) {
@@ -120,7 +123,7 @@ std::vector<JointDerivatives> torque_derivatives(const Robot& robot, const Motio
           more = needed_by_pair(entry.property, motion.v(k, entry.joint) + motion.v(k, other),
                                 motion.a(k, entry.joint) + motion.a(k, other));
         } else if (here) {
-          more = needed_by(entry.property, p, given, v, a);
+          more = needed_by(entry.property, p, given, stretch, v, a);
         }
         by[k] = -(1 + p[Property::reading_scale]) * load_factor(p, v, given) * more;
       }
