@@ -100,8 +100,8 @@ RobotDiagnosis diagnose_robot(const Evidence& evidence, const Progress& progress
                         by_after = rms_by_joint(evidence, found.errors);
   const HeldOut held_out = held_out_errors(evidence, found, nominal);
   Eigen::VectorXd noise = noise_by_joint(evidence, d.physics, 1);
-  if (evidence.numerical.size() > 0)
-    noise = (noise.cwiseAbs2() + evidence.numerical.cwiseAbs2()).cwiseSqrt();  // no simulation is nearer
+  if (found.numerical.size() > 0)
+    noise = (noise.cwiseAbs2() + found.numerical.cwiseAbs2()).cwiseSqrt();  // no simulation is nearer
   d.textbook = overall(evidence, by_textbook);
   d.nominal = overall(evidence, by_nominal);
   d.after = overall(evidence, by_after);

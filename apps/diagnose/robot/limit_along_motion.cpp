@@ -43,9 +43,10 @@ double square_with(const ToldAndNeeded& rows, double limit) {
 }  // namespace
 
 std::vector<double> limits_along_motion(const Evidence& evidence, const RobotPhysics& physics, int joint) {
-  constexpr std::size_t most = 3;   // limits that are returned
-  constexpr double narrower = 1.2;  // times the next limit: nearer ones lead to the same fit
-  constexpr double rarest = 0.002;  // of the rows: a limit that fewer reach shows nowhere
+  constexpr std::size_t most = 3;    // limits that are returned
+  constexpr double narrower = 1.2;   // times the next limit: nearer ones lead to the same fit
+  constexpr double smallest = 0.01;  // of the largest torque: a drive that gives less gives none
+  constexpr double rarest = 0.002;   // of the rows: a limit that fewer reach shows nowhere
   ToldAndNeeded rows;
   for (std::size_t r = 0; r < evidence.recordings.size(); ++r) add_rows(evidence, physics, r, joint, rows);
   if (rows.told.empty()) return {};
@@ -56,7 +57,7 @@ std::vector<double> limits_along_motion(const Evidence& evidence, const RobotPhy
     double limit = 0, square = 0;
   };
   std::vector<Candidate> candidates;
-  const double least = sizes[sizes.size() / 10];
+  const double least = smallest * sizes.back();
   for (double limit = sizes[static_cast<std::size_t>((1 - rarest) * static_cast<double>(sizes.size() - 1))];
        limit > least; limit /= narrower)
     candidates.push_back({limit, square_with(rows, limit)});

@@ -152,7 +152,12 @@ Motion smooth(const RobotRecording& recording, const MotionCriteria& criteria) {
   Eigen::VectorXd noise(recording.angle.cols());
   for (Eigen::Index j = 0; j < noise.size(); ++j) noise[j] = noise_of(recording.angle.col(j));
   const auto at = [&](double half_window) { return smooth_with(recording, half_window, criteria.fewest_rows); };
-  if (criteria.half_window > 0) return at(criteria.half_window);
+  const auto with_noise = [&](Motion motion) {
+    const Motion white = smooth_noise(recording, motion.half_window, criteria.fewest_rows);
+    motion.speed_noise = noise * low_passed_rms(white, 0, white.v.col(0));
+    return motion;
+  };
+  if (criteria.half_window > 0) return with_noise(at(criteria.half_window));
   Motion motion = at(narrowest), accepted = motion;
   Motion white = smooth_noise(recording, narrowest, criteria.fewest_rows);
   const Eigen::VectorXd widths = low_pass_widths(recording, motion, white, noise);
@@ -164,7 +169,7 @@ Motion smooth(const RobotRecording& recording, const MotionCriteria& criteria) {
     white = smooth_noise(recording, half_window, criteria.fewest_rows);
   }
   motion.low_pass = widths;
-  return motion;
+  return with_noise(std::move(motion));
 }
 
 }  // namespace diagnose_robot

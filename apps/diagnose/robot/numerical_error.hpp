@@ -1,12 +1,21 @@
-// How far a simulation is from what its model says.
+// How far two simulations of one and the same model are apart: ours, and MuJoCo's with the step of the file.
 #pragma once
+
+#include <filesystem>
 
 #include "linearize.hpp"
 
 namespace diagnose_robot {
 
-/// Root mean square by joint of what steps of no length would change (Richardson), of the model as it stands; 0 where
-/// torques drive. What is smaller is no physics.
-Eigen::VectorXd numerical_error(const Evidence& evidence);
+/// Root mean square by joint, of the model as it stands; 0 where torques drive. What is smaller is no physics.
+Eigen::VectorXd numerical_error(const Evidence& evidence, const std::filesystem::path& folder);
+
+/// What a simulation may be off by is no more than what it is off by where physics is known: the share of
+/// `evidence.numerical`, at most 1, that is left beyond the noise of sensors in the median of joints (of two: in the
+/// worse one).
+double numerical_share(const Evidence& evidence, const Eigen::MatrixXd& errors);
+
+/// Lowers `evidence.numerical` to that. False if it hardly changes.
+bool lower_numerical_error(Evidence& evidence, const Eigen::MatrixXd& errors);
 
 }  // namespace diagnose_robot

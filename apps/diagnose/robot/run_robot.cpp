@@ -54,7 +54,7 @@ void load_recordings(const diagnose_program::CommandLine& line, Evidence& eviden
     if (!stuck.empty()) throw surefoot::DiagnoseError(stuck);
   }
   prepare(evidence);
-  evidence.numerical = numerical_error(evidence);
+  evidence.numerical = numerical_error(evidence, line.model.parent_path());
 }
 
 // Recordings of --test, which took no part in anything, take the place of held-out blocks.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "../wording.hpp"
+#include "numerical_error.hpp"
 #include "other_starts.hpp"
 #include "search_point.hpp"
 
@@ -55,8 +56,10 @@ bool drop_one(const Evidence& evidence, const LinearModel& model, Point& point, 
 
 }  // namespace
 
-SearchResult search_terms(const Evidence& evidence, const Progress& progress, const SearchCriteria& criteria) {
+SearchResult search_terms(const Evidence& given, const Progress& progress, const SearchCriteria& criteria) {
+  Evidence evidence = given;
   Point point = start(evidence);
+  lower_numerical_error(evidence, point.errors);
   TermSet allowed(evidence.terms.size(), 1);
   SearchResult result;
   RigidCache cache;
@@ -71,7 +74,10 @@ SearchResult search_terms(const Evidence& evidence, const Progress& progress, co
     if (move_to_better(evidence, model, allowed, point)) continue;
     if (!drop_one(evidence, model, point, result.dropped)) {
       if (starts.try_next(evidence, model, cache, point)) continue;
-      break;
+      if (!lower_numerical_error(evidence, point.errors)) break;
+      allowed.assign(allowed.size(), 1);
+      result.dropped.clear();
+      continue;
     }
     for (std::size_t t = 0; t < point.set.size(); ++t) {
       if (point.set[t] == 0 && point.theta[static_cast<Eigen::Index>(t)] != 0) {
@@ -82,6 +88,7 @@ SearchResult search_terms(const Evidence& evidence, const Progress& progress, co
     point.errors = errors_at(evidence, point.theta);
   }
   progress("proof", 1);
+  result.numerical = evidence.numerical;
   result.theta = point.theta;
   result.set = point.set;
   result.errors = point.errors;

@@ -22,12 +22,12 @@ double simulation_step(const Robot& robot, const RobotRecording& recording) {
 StartState start_of(const Motion& motion) { return {motion.q.row(0), motion.v.row(0)}; }
 
 Eigen::MatrixXd simulate_robot(const Robot& robot, const RobotRecording& recording, const StartState& start,
-                               const RobotPhysics& physics, int finer) {
+                               const RobotPhysics& physics) {
   RobotStep simulation(robot, recording, start, physics);
   const Eigen::Index rows = recording.time.size();
   Eigen::MatrixXd readings =
       Eigen::MatrixXd::Constant(rows, recording.angle.cols(), std::numeric_limits<double>::infinity());
-  const double wanted = simulation_step(robot, recording) / finer;
+  const double wanted = simulation_step(robot, recording);
   simulation.read(readings, 0);
   for (Eigen::Index k = 0; k + 1 < rows; ++k) {
     const double period = recording.time[k + 1] - recording.time[k];

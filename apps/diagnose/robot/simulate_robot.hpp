@@ -21,9 +21,8 @@ struct StartState {
 
 StartState start_of(const Motion& motion);
 
-/// The readings that the robot would give: row x joint. Not finite where the motion has run away. `finer`: into so many
-/// parts each step is divided.
+/// The readings that the robot would give: row x joint. Not finite where the motion has run away.
 Eigen::MatrixXd simulate_robot(const Robot& robot, const RobotRecording& recording, const StartState& start,
-                               const RobotPhysics& physics, int finer = 1);
+                               const RobotPhysics& physics);
 
 }  // namespace diagnose_robot

@@ -11,6 +11,7 @@ namespace diagnose_robot {
 namespace {
 
 constexpr double resting_share = 0.03;  // of the root mean square speed: what smoothing leaves of a reversal
+constexpr double times_noise = 3;       // of speeds: a joint that seems to move slower may as well stand
 
 double rms(const Eigen::Ref<const Eigen::VectorXd>& x) {
   return std::sqrt(x.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, x.size())));
@@ -47,7 +48,8 @@ Eigen::MatrixXd rigid_body_torque(const Robot& robot, const Motion& motion, cons
 
 Eigen::VectorXd resting_speed(const Motion& motion) {
   Eigen::VectorXd speed(motion.v.cols());
-  for (Eigen::Index j = 0; j < speed.size(); ++j) speed[j] = resting_share * rms(motion.v.col(j));
+  for (Eigen::Index j = 0; j < speed.size(); ++j)
+    speed[j] = std::max(resting_share * rms(motion.v.col(j)), times_noise * motion.speed_noise[j]);
   return speed;
 }
 
