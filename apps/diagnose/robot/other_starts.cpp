@@ -37,7 +37,6 @@ std::vector<double> sizes_of(const Evidence& evidence, const RobotPhysics& bare,
   const double stated = evidence.robot.joints[static_cast<std::size_t>(joint)].setup.limit;
   if (term.property == Property::torque_limit) {
     for (const double limit : limits_along_motion(evidence, bare, joint)) result.push_back(1 - limit / stated);
-    return result;
   }
   for (const double size : sizes) {
     for (const double side : {1.0, -1.0}) result.push_back(side * size * term.typical);
