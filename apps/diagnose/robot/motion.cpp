@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -125,24 +126,46 @@ bool differ_by_noise(const Motion& narrow, const Motion& wide, const Motion& whi
   return true;
 }
 
+// Standard deviation of normal numbers whose mean square is this if none counts for more than `limit`: exact for any
+// limit, so that numbers of a coarse sensor, few of which differ, do no harm (as a median of them would).
+double deviation_of_limited(double limit, double mean_square) {
+  constexpr int halvings = 50;
+  if (!(mean_square > 0)) return 0;
+  const auto expected = [&](double deviation) {
+    const double z = limit / deviation, inside = std::erf(z / std::numbers::sqrt2);
+    const double density = std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
+    return deviation * deviation * (inside - 2 * z * density) + limit * limit * (1 - inside);
+  };
+  double low = std::sqrt(mean_square), high = low;  // limited numbers are smaller
+  for (int doubling = 0; doubling < halvings && expected(high) < mean_square; ++doubling) high *= 2;
+  for (int halving = 0; halving < halvings; ++halving) {
+    const double middle = (low + high) / 2;
+    (expected(middle) < mean_square ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
 }  // namespace
 
 double noise_of(const Eigen::Ref<const Eigen::VectorXd>& readings) {
-  constexpr double gain = 70;           // sum of squares of 1, -4, 6, -4, 1
-  constexpr double of_median = 0.6745;  // median of |x| of a normal distribution
+  constexpr double gain = 70;              // sum of squares of 1, -4, 6, -4, 1
+  constexpr std::size_t limited_part = 4;  // of the differences: the largest, which may be jumps of the motion
   std::vector<double> differences;
-  double square = 0;
   for (Eigen::Index k = 4; k < readings.size(); ++k) {
     const double d = readings[k] - 4 * readings[k - 1] + 6 * readings[k - 2] - 4 * readings[k - 3] + readings[k - 4];
     differences.push_back(std::abs(d));
-    square += d * d;
   }
   if (differences.empty()) return 0;
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::ranges::nth_element(differences, middle);
-  const double robust = *middle / of_median;
-  const double plain = std::sqrt(square / static_cast<double>(differences.size()));
-  return (robust > 0 ? robust : plain) / std::sqrt(gain);  // readings that mostly stay the same have a median of 0
+  const auto at = differences.end() - 1 - static_cast<std::ptrdiff_t>(differences.size() / limited_part);
+  std::ranges::nth_element(differences, at);
+  double limit = *at;
+  if (limit == 0) limit = *std::ranges::max_element(differences);  // readings that mostly stay the same
+  double square = 0, limited = 0;
+  for (const double d : differences) {
+    square += d * d / static_cast<double>(differences.size());
+    limited += std::pow(std::min(d, limit), 2) / static_cast<double>(differences.size());
+  }
+  return std::min(std::sqrt(square), deviation_of_limited(limit, limited)) / std::sqrt(gain);
 }
 
 Motion smooth(const RobotRecording& recording, const MotionCriteria& criteria) {
