@@ -2,10 +2,44 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "augmented_xml.hpp"
+#include "findings.hpp"
+#include "low_pass.hpp"
+#include "torque_residual.hpp"
 
 namespace diagnose_robot {
+namespace {
+
+// Root mean square by joint of what is known.
+Eigen::VectorXd rms_of_known(const Eigen::MatrixXd& x) {
+  Eigen::VectorXd rms(x.cols());
+  for (Eigen::Index j = 0; j < x.cols(); ++j) {
+    double square = 0, rows = 0;
+    for (const double one : x.col(j)) {
+      if (!std::isfinite(one)) continue;
+      square += one * one;
+      rows += 1;
+    }
+    rms[j] = std::sqrt(square / std::max(1.0, rows));
+  }
+  return rms;
+}
+
+}  // namespace
+
+Eigen::VectorXd smoothing_error(const Evidence& evidence, const RobotPhysics& physics) {
+  Eigen::VectorXd square = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(evidence.robot.joints.size()));
+  for (std::size_t r = 0; r < evidence.motions.size(); ++r) {
+    const Motion& motion = evidence.motions[r];
+    const Motion wide = smooth(evidence.recordings[r], {std::numbers::sqrt2 * motion.reach});
+    const Eigen::MatrixXd more =
+        torque_residual(evidence.robot, wide, physics) - torque_residual(evidence.robot, motion, physics);
+    square += rms_of_known(low_passed(motion, more)).cwiseAbs2() / static_cast<double>(evidence.motions.size());
+  }
+  return square.cwiseSqrt();
+}
 
 Eigen::VectorXd numerical_error(const Evidence& evidence, const std::filesystem::path& folder) {
   const Robot& robot = evidence.robot;
@@ -22,14 +56,12 @@ Eigen::VectorXd numerical_error(const Evidence& evidence, const std::filesystem:
 }
 
 double numerical_share(const Evidence& evidence, const Eigen::MatrixXd& errors) {
-  const Eigen::VectorXd rms = rms_by_joint(evidence, errors);
+  const Eigen::VectorXd rms = rms_by_joint(evidence, errors),
+                        noise = noise_by_joint(evidence, evidence.robot.nominal, 1);
   std::vector<double> shares;
   for (Eigen::Index j = 0; j < evidence.numerical.size(); ++j) {
     if (!(evidence.numerical[j] > 0)) continue;
-    double noise = 0;
-    for (const RobotRecording& recording : evidence.recordings)
-      noise += std::pow(noise_of(recording.angle.col(j)), 2) / static_cast<double>(evidence.recordings.size());
-    shares.push_back(std::sqrt(std::max(0.0, rms[j] * rms[j] - noise)) / evidence.numerical[j]);
+    shares.push_back(std::sqrt(std::max(0.0, rms[j] * rms[j] - noise[j] * noise[j])) / evidence.numerical[j]);
   }
   if (shares.empty()) return 1;
   const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);

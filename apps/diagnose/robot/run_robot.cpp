@@ -120,10 +120,11 @@ int run_robot(const diagnose_program::CommandLine& line) {
   diagnose_program::prepare_folder(line.out);
   diagnose_program::Progress progress(line.quiet);
   const std::vector<surefoot::LogFault> faults = swapped_columns(line.repair, evidence);
-  if (hold_torques(evidence))
+  if (hold_torques(evidence)) {
     remarks.push_back(
         "recorded torques are taken as commands that stand until the next row: these recordings refute that they act "
         "as they are logged");
+  }
   const bool usable = faults.empty() || line.repair;
   RobotDiagnosis d =
       usable
