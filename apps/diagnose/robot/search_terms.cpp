@@ -73,7 +73,7 @@ SearchResult search_terms(const Evidence& given, const Progress& progress, const
     const LinearModel model = linearize(evidence, point.theta, point.errors, cache);
     if (move_to_better(evidence, model, allowed, point)) continue;
     if (!drop_one(evidence, model, point, result.dropped)) {
-      if (starts.try_next(evidence, model, cache, point)) continue;
+      if (starts.try_next(evidence, model, point)) continue;
       if (!lower_numerical_error(evidence, point.errors)) break;
       allowed.assign(allowed.size(), 1);
       result.dropped.clear();
