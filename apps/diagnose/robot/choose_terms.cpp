@@ -259,6 +259,20 @@ double worth_of(const LinearModel& model, const TermSet& set, Eigen::Index term,
   return std::min(worth, evidence_between(model, set, changed(set, term, false)) / criteria.needed);
 }
 
+double worth_beside_unexplained(const LinearModel& model, const TermSet& set, Eigen::Index term,
+                                const Eigen::VectorXd& noise) {
+  constexpr double least = 0.5;  // of what is unexplained
+  const Eigen::VectorXd left = fit_linear(model, set).square;
+  double unexplained = 0, rows = 0;
+  for (const int j : model.acts_on[static_cast<std::size_t>(term)]) {
+    const double count = model.whole[static_cast<std::size_t>(j)].rows;
+    unexplained += std::max(0.0, left[j] - count * noise[j] * noise[j]);
+    rows += count;
+  }
+  const double wanted = least * std::sqrt(unexplained / std::max(1.0, rows));
+  return held_out_gain(model, set, term).taken / std::max(1e-300, wanted);
+}
+
 std::vector<TermAlternative> alternatives_of(const LinearModel& model, const TermSet& set, const TermSet& allowed) {
   std::vector<TermAlternative> result;
   const double now = fit_linear(model, set).criterion;

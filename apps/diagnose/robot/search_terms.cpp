@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "../wording.hpp"
+#include "findings.hpp"
 #include "numerical_error.hpp"
 #include "other_starts.hpp"
 #include "search_point.hpp"
@@ -34,11 +35,13 @@ Point start(const Evidence& evidence) {
 
 // Takes the term away that is worth least, if that is less than it must be.
 bool drop_one(const Evidence& evidence, const LinearModel& model, Point& point, std::vector<std::string>& dropped) {
+  Eigen::VectorXd noise = noise_by_joint(evidence, evidence.robot.nominal, 1);
+  if (evidence.numerical.size() > 0) noise = (noise.cwiseAbs2() + evidence.numerical.cwiseAbs2()).cwiseSqrt();
   Eigen::Index worst = -1;
   double least = 1;
   for (Eigen::Index t = 0; t < point.theta.size(); ++t) {
     if (point.set[static_cast<std::size_t>(t)] == 0) continue;
-    const double worth = worth_of(model, point.set, t);
+    const double worth = std::min(worth_of(model, point.set, t), worth_beside_unexplained(model, point.set, t, noise));
     if (worth >= least) continue;
     least = worth;
     worst = t;
@@ -49,7 +52,7 @@ bool drop_one(const Evidence& evidence, const LinearModel& model, Point& point, 
                     " was dropped: it takes " +
                     diagnose_program::percent(held_out_gain(model, point.set, worst).share) +
                     " off the error of its joints on held-out blocks, or less than simulations of one model differ by, "
-                    "or only few blocks speak for it");
+                    "or only few blocks speak for it, or it is small beside what nothing explains");
   point.set[static_cast<std::size_t>(worst)] = 0;
   return true;
 }
