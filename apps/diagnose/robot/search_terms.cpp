@@ -12,15 +12,23 @@ namespace diagnose_robot {
 namespace {
 
 // To the set of terms that the linear model chooses, or to one with fewer changes where that one does not hold so far
-// off.
-bool move_to_better(const Evidence& evidence, const LinearModel& model, const TermSet& allowed, Point& point) {
-  ChoiceCriteria choice;
+// off; where none holds, without the terms that would have been added: they are not to be in the way of others.
+bool move_to_better(const Evidence& evidence, const LinearModel& model, TermSet allowed, Point& point) {
+  constexpr int most_barred = 6;  // times that new terms are left out
   TermSet before;
-  for (; choice.most_new >= 0; --choice.most_new) {
-    const TermSet set = choose_terms(model, point.set, allowed, choice);
-    if (set == before) continue;
-    if (move(evidence, model, set, {}, point)) return true;
-    before = set;
+  for (int barred = 0; barred <= most_barred; ++barred) {
+    TermSet added(point.set.size(), 0);
+    for (ChoiceCriteria choice; choice.most_new >= 0; --choice.most_new) {
+      const TermSet set = choose_terms(model, point.set, allowed, choice);
+      if (set == before) continue;
+      if (move(evidence, model, set, {}, point)) return true;
+      before = set;
+      for (std::size_t t = 0; t < set.size() && choice.most_new > 0; ++t) added[t] = set[t] > point.set[t] ? 1 : 0;
+    }
+    if (std::ranges::count(added, 1) == 0) break;
+    for (std::size_t t = 0; t < added.size(); ++t) {
+      if (added[t] != 0) allowed[t] = 0;
+    }
   }
   return before != point.set && move(evidence, model, point.set, {}, point);
 }
