@@ -110,6 +110,15 @@ TEST_CASE("two terms take the place of one that stands for a bit of both") {
   CHECK(fit_linear(model, TermSet{1, 1, 0}).change[1] == doctest::Approx(size / 0.3).epsilon(0.15));
 }
 
+TEST_CASE("an effect is worth little beside errors that nothing explains, and not beside noise as large") {
+  const Eigen::VectorXd sizes{{0.3}};
+  const LinearModel model = made_up(sizes, 14);
+  const TermSet set{1};
+  CHECK(worth_of(model, set, 0) > 1);
+  CHECK(worth_beside_unexplained(model, set, 0, Eigen::VectorXd::Constant(1, 0.1)) < 1);
+  CHECK(worth_beside_unexplained(model, set, 0, Eigen::VectorXd::Constant(1, 1.0)) > 1);
+}
+
 TEST_CASE("noise alone gives no term") {
   int chosen = 0;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {

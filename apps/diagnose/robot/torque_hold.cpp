@@ -12,7 +12,7 @@ double criterion_with_delay(const Evidence& evidence, LinearModel model, double 
   for (std::size_t t = 0; t < evidence.terms.size(); ++t) {
     if (evidence.terms[t].property != Property::delay) continue;
     const auto at = static_cast<Eigen::Index>(t);
-    model.low[at] = model.high[at] = evidence.terms[t].group >= 0 ? late : 0;
+    model.low[at] = model.high[at] = late;  // one term, of all joints
   }
   return fit_linear(model, model.of_groups).criterion;
 }
