@@ -1,6 +1,7 @@
 #include "search_terms.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "../wording.hpp"
 #include "findings.hpp"
@@ -45,22 +46,24 @@ Point start(const Evidence& evidence) {
 bool drop_one(const Evidence& evidence, const LinearModel& model, Point& point, std::vector<std::string>& dropped) {
   Eigen::VectorXd noise = noise_by_joint(evidence, evidence.robot.nominal, 1);
   if (evidence.numerical.size() > 0) noise = (noise.cwiseAbs2() + evidence.numerical.cwiseAbs2()).cwiseSqrt();
+  const Eigen::VectorXd error = standard_errors(model, point.set);
   Eigen::Index worst = -1;
   double least = 1;
   for (Eigen::Index t = 0; t < point.theta.size(); ++t) {
     if (point.set[static_cast<std::size_t>(t)] == 0) continue;
-    const double worth = std::min(worth_of(model, point.set, t), worth_beside_unexplained(model, point.set, t, noise));
+    const double worth = std::min({worth_of(model, point.set, t), worth_beside_unexplained(model, point.set, t, noise),
+                                   std::abs(point.theta[t]) / (z95 * std::max(1e-300, error[t]))});
     if (worth >= least) continue;
     least = worth;
     worst = t;
   }
   if (worst < 0) return false;
   const Term& term = evidence.terms[static_cast<std::size_t>(worst)];
-  dropped.push_back(std::string(info_of(term.property).effect) + " at " + place_of(evidence.robot, term) +
-                    " was dropped: it takes " +
-                    diagnose_program::percent(held_out_gain(model, point.set, worst).share) +
-                    " off the error of its joints on held-out blocks, or less than simulations of one model differ by, "
-                    "or only few blocks speak for it, or it is small beside what nothing explains");
+  dropped.push_back(
+      std::string(info_of(term.property).effect) + " at " + place_of(evidence.robot, term) + " was dropped: it takes " +
+      diagnose_program::percent(held_out_gain(model, point.set, worst).share) +
+      " off the error of its joints on held-out blocks, or less than simulations of one model differ by, "
+      "or only few blocks speak for it, or it is small beside what nothing explains, or its interval contains 0");
   point.set[static_cast<std::size_t>(worst)] = 0;
   return true;
 }
