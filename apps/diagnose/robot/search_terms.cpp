@@ -42,30 +42,50 @@ Point start(const Evidence& evidence) {
   return point;
 }
 
-// Takes the term away that is worth least, if that is less than it must be.
-bool drop_one(const Evidence& evidence, const LinearModel& model, Point& point, std::vector<std::string>& dropped) {
-  Eigen::VectorXd noise = noise_by_joint(evidence, evidence.robot.nominal, 1);
-  if (evidence.numerical.size() > 0) noise = (noise.cwiseAbs2() + evidence.numerical.cwiseAbs2()).cwiseSqrt();
-  const Eigen::VectorXd error = standard_errors(model, point.set);
+using Worth = std::function<double(Eigen::Index)>;
+
+// Takes the term away that is worth least, if that is less than it must be, and says why.
+bool drop_one(const Evidence& evidence, const Worth& worth_of_term, const LinearModel& model, const std::string& why,
+              Point& point, std::vector<std::string>& dropped) {
   Eigen::Index worst = -1;
   double least = 1;
   for (Eigen::Index t = 0; t < point.theta.size(); ++t) {
     if (point.set[static_cast<std::size_t>(t)] == 0) continue;
-    const double worth = std::min({worth_of(model, point.set, t), worth_beside_unexplained(model, point.set, t, noise),
-                                   std::abs(point.theta[t]) / (z95 * std::max(1e-300, error[t]))});
+    const double worth = worth_of_term(t);
     if (worth >= least) continue;
     least = worth;
     worst = t;
   }
   if (worst < 0) return false;
   const Term& term = evidence.terms[static_cast<std::size_t>(worst)];
-  dropped.push_back(
-      std::string(info_of(term.property).effect) + " at " + place_of(evidence.robot, term) + " was dropped: it takes " +
-      diagnose_program::percent(held_out_gain(model, point.set, worst).share) +
-      " off the error of its joints on held-out blocks, or less than simulations of one model differ by, "
-      "or only few blocks speak for it, or it is small beside what nothing explains, or its interval contains 0");
+  dropped.push_back(std::string(info_of(term.property).effect) + " at " + place_of(evidence.robot, term) +
+                    " was dropped: it takes " +
+                    diagnose_program::percent(held_out_gain(model, point.set, worst).share) +
+                    " off the error of its joints on held-out blocks, " + why);
   point.set[static_cast<std::size_t>(worst)] = 0;
+  point.theta[worst] = 0;
   return true;
+}
+
+// In the end, when nothing more is to be found: terms that are small beside what nothing explains, or as small as they
+// are uncertain.
+void leave_out_small(const Evidence& evidence, RigidCache& cache, Point& point, std::vector<std::string>& dropped) {
+  Eigen::VectorXd noise = noise_by_joint(evidence, evidence.robot.nominal, 1);
+  if (evidence.numerical.size() > 0) noise = (noise.cwiseAbs2() + evidence.numerical.cwiseAbs2()).cwiseSqrt();
+  while (!evidence.stop.stop_requested()) {
+    const LinearModel model = linearize(evidence, point.theta, point.errors, cache);
+    const Eigen::VectorXd error = standard_errors(model, point.set);
+    const Worth worth = [&](Eigen::Index t) {
+      return std::min(worth_beside_unexplained(model, point.set, t, noise),
+                      std::abs(point.theta[t]) / (z95 * std::max(1e-300, error[t])));
+    };
+    if (!drop_one(evidence, worth, model, "which is small beside what nothing explains, or its interval contains 0",
+                  point, dropped))
+      return;
+    point.errors = errors_at(evidence, point.theta);
+    const LinearModel without = linearize(evidence, point.theta, point.errors, cache);
+    move(evidence, without, point.set, {}, point);
+  }
 }
 
 }  // namespace
@@ -86,21 +106,23 @@ SearchResult search_terms(const Evidence& given, const Progress& progress, const
     progress("search", static_cast<double>(round) / criteria.most_rounds);
     const LinearModel model = linearize(evidence, point.theta, point.errors, cache);
     if (move_to_better(evidence, model, allowed, point)) continue;
-    if (!drop_one(evidence, model, point, result.dropped)) {
+    const TermSet before = point.set;
+    const Worth worth = [&](Eigen::Index t) { return worth_of(model, point.set, t); };
+    if (!drop_one(evidence, worth, model,
+                  "or less than simulations of one model differ by, or only few blocks speak for it", point,
+                  result.dropped)) {
       if (starts.try_next(evidence, model, point)) continue;
       if (!lower_numerical_error(evidence, point.errors)) break;
       allowed.assign(allowed.size(), 1);
       result.dropped.clear();
       continue;
     }
-    for (std::size_t t = 0; t < point.set.size(); ++t) {
-      if (point.set[t] == 0 && point.theta[static_cast<Eigen::Index>(t)] != 0) {
-        allowed[t] = 0;
-        point.theta[static_cast<Eigen::Index>(t)] = 0;
-      }
+    for (std::size_t t = 0; t < before.size(); ++t) {
+      if (before[t] != point.set[t]) allowed[t] = 0;
     }
     point.errors = errors_at(evidence, point.theta);
   }
+  leave_out_small(evidence, cache, point, result.dropped);
   progress("proof", 1);
   result.numerical = evidence.numerical;
   result.theta = point.theta;
