@@ -7,6 +7,7 @@
 #include "augmented_xml.hpp"
 #include "findings.hpp"
 #include "low_pass.hpp"
+#include "robot_diagnosis.hpp"
 #include "torque_residual.hpp"
 
 namespace diagnose_robot {
@@ -71,7 +72,13 @@ double numerical_share(const Evidence& evidence, const Eigen::MatrixXd& errors) 
 
 bool lower_numerical_error(Evidence& evidence, const Eigen::MatrixXd& errors) {
   constexpr double hardly = 0.8;  // times what it was: estimates of it are off by as much
-  const double share = numerical_share(evidence, errors);
+  constexpr double half = 0.5;
+  if (evidence.numerical.isZero(0)) return false;
+  double share = numerical_share(evidence, errors);
+  const double noise = noise_by_joint(evidence, evidence.robot.nominal, 1).squaredNorm();
+  const double numerical = evidence.numerical.squaredNorm(), beyond = VerdictCriteria().beyond_noise;
+  const bool unexplained = rms_by_joint(evidence, errors).squaredNorm() > beyond * beyond * (noise + numerical);
+  if (unexplained && numerical > noise) share = std::min(share, half);
   if (!(share < hardly)) return false;
   evidence.numerical *= share;
   return true;

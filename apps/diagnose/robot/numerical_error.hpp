@@ -20,7 +20,8 @@ Eigen::VectorXd smoothing_error(const Evidence& evidence, const RobotPhysics& ph
 /// worse one).
 double numerical_share(const Evidence& evidence, const Eigen::MatrixXd& errors);
 
-/// Lowers `evidence.numerical` to that. False if it hardly changes.
+/// Lowers `evidence.numerical` to that, and to a half where errors are beyond it and noise all the same: it is no
+/// excuse then for leaving them unexplained. False if it hardly changes.
 bool lower_numerical_error(Evidence& evidence, const Eigen::MatrixXd& errors);
 
 }  // namespace diagnose_robot

@@ -93,7 +93,7 @@ void leave_out_small(const Evidence& evidence, RigidCache& cache, Point& point, 
 SearchResult search_terms(const Evidence& given, const Progress& progress, const SearchCriteria& criteria) {
   Evidence evidence = given;
   Point point = start(evidence);
-  lower_numerical_error(evidence, point.errors);
+  evidence.numerical *= numerical_share(evidence, point.errors);
   TermSet allowed(evidence.terms.size(), 1);
   SearchResult result;
   RigidCache cache;
