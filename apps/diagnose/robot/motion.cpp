@@ -54,7 +54,9 @@ void smooth_row(const RobotRecording& r, Eigen::Index k, double reach, Eigen::In
   motion.v.row(k) = filter.row(1) * block / scale;
   motion.a.row(k) = 2 * filter.row(2) * block / (scale * scale);
   if (r.goal.size() > 0) motion.goal.row(k) = filter.row(0) * r.goal.middleRows(first, count);
-  if (r.torque.size() > 0) add_means(r, k, first, filter.row(2), means);
+  if (r.torque.size() == 0) return;
+  motion.torque.row(k) = filter.row(0) * r.torque.middleRows(first, count);
+  add_means(r, k, first, filter.row(2), means);
 }
 
 Motion smooth_with(const RobotRecording& recording, double half_window, Eigen::Index fewest) {
@@ -62,16 +64,16 @@ Motion smooth_with(const RobotRecording& recording, double half_window, Eigen::I
   const Eigen::Index rows = recording.angle.rows(), joints = recording.angle.cols();
   for (Eigen::MatrixXd* matrix : {&motion.q, &motion.v, &motion.a}) matrix->resize(rows, joints);
   if (recording.goal.size() > 0) motion.goal.resize(rows, joints);
+  if (recording.torque.size() > 0) motion.torque.resize(rows, joints);
   const double reach = std::max(half_window, static_cast<double>(fewest) * recording.row_period());
   Weights weights;
   for (Eigen::Index k = 0; k < rows; ++k) smooth_row(recording, k, reach, fewest, motion, weights);
   if (recording.torque.size() > 0) {
-    // What accelerations lose, torques and all that they are compared with lose as well.
+    // Angles, speeds and torques lose next to nothing in the filter, accelerations what goes with the square of its
+    // window: twicing (Tukey) gives it back.
     Eigen::SparseMatrix<double, Eigen::RowMajor> means(rows, rows);
     means.setFromTriplets(weights.begin(), weights.end());
-    motion.torque = means * recording.torque;
-    motion.q = means * motion.q;
-    motion.v = means * motion.v;
+    motion.a = 2 * motion.a - means * motion.a;
   }
   motion.torque_late = recording.torque_late;
   motion.half_window = half_window;
@@ -96,6 +98,7 @@ Motion smooth_noise(const RobotRecording& recording, double half_window, Eigen::
   RobotRecording noise;
   noise.time = recording.time;
   noise.angle.resize(recording.time.size(), 1);
+  if (recording.torque.size() > 0) noise.torque = Eigen::VectorXd::Zero(recording.time.size());
   surefoot::Rng rng(1);
   for (double& reading : noise.angle.reshaped()) reading = rng.normal();
   return smooth_with(noise, half_window, fewest);

@@ -11,8 +11,8 @@ namespace diagnose_robot {
 /// Root mean square by joint, of the model as it stands; 0 where torques drive. What is smaller is no physics.
 Eigen::VectorXd numerical_error(const Evidence& evidence, const std::filesystem::path& folder);
 
-/// Root mean square by joint of what smoothing takes from torques along the motion: the difference to a window that is
-/// wider by the root of 2, since what is taken goes with its square.
+/// Root mean square by joint of what smoothing takes from torques along the motion, from the difference to a window
+/// that is wider by the root of 2: what is taken goes with its fourth power.
 Eigen::VectorXd smoothing_error(const Evidence& evidence, const RobotPhysics& physics);
 
 /// What a numerical error may be is no more than what is left where physics is known: the share of
