@@ -18,10 +18,13 @@ TEST_CASE("simulations differ by no more than joints leave room for, but for the
   evidence.numerical = Eigen::VectorXd::Constant(2, 0.01);
   Eigen::MatrixXd errors = Eigen::MatrixXd::Constant(evidence.recordings[0].time.size(), 2, 0.002);
   CHECK(numerical_share(evidence, errors) == doctest::Approx(0.2).epsilon(0.05));
-  errors.col(1).setConstant(0.05);
+  errors.col(1).setConstant(0.012);
   CHECK(numerical_share(evidence, errors) == 1);
   CHECK_FALSE(lower_numerical_error(evidence, errors));
   errors.col(1).setConstant(0.004);
   CHECK(lower_numerical_error(evidence, errors));
   CHECK(evidence.numerical[0] == doctest::Approx(0.004).epsilon(0.05));
+  errors.col(1).setConstant(0.05);  // unexplained all the same
+  CHECK(lower_numerical_error(evidence, errors));
+  CHECK(evidence.numerical[0] == doctest::Approx(0.002).epsilon(0.05));
 }
