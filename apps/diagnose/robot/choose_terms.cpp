@@ -261,7 +261,7 @@ double worth_of(const LinearModel& model, const TermSet& set, Eigen::Index term,
 
 double worth_beside_unexplained(const LinearModel& model, const TermSet& set, Eigen::Index term,
                                 const Eigen::VectorXd& noise) {
-  constexpr double least = 0.5;  // of what is unexplained
+  constexpr double errors_of_form = 0.95;  // what is left of them by an effect that may be one, as for one joint
   const Eigen::VectorXd left = fit_linear(model, set).square;
   double unexplained = 0, rows = 0;
   for (const int j : model.acts_on[static_cast<std::size_t>(term)]) {
@@ -269,7 +269,8 @@ double worth_beside_unexplained(const LinearModel& model, const TermSet& set, Ei
     unexplained += std::max(0.0, left[j] - count * noise[j] * noise[j]);
     rows += count;
   }
-  const double wanted = least * std::sqrt(unexplained / std::max(1.0, rows));
+  unexplained *= 1 / (errors_of_form * errors_of_form) - 1;
+  const double wanted = std::sqrt(unexplained / std::max(1.0, rows));
   return held_out_gain(model, set, term).taken / std::max(1e-300, wanted);
 }
 
