@@ -21,34 +21,43 @@ double normal(surefoot::Rng& rng) {
   return sum - 6;
 }
 
-// One joint, four blocks, terms of white columns; the errors are `sizes` times the columns and noise of 1.
-LinearModel made_up(const Eigen::VectorXd& sizes, std::uint64_t seed) {
-  surefoot::Rng rng(seed);
-  constexpr Eigen::Index rows = 400;
-  constexpr int blocks = 4;
-  const Eigen::Index terms = sizes.size();
+// One joint, four blocks: errors `r`, of which terms take away multiples of the columns of `x`.
+LinearModel model_of(const Eigen::MatrixXd& x, const Eigen::VectorXd& r) {
+  constexpr Eigen::Index blocks = 4;
+  const Eigen::Index terms = x.cols(), rows = x.rows() / blocks;
   LinearModel model;
   model.sums.resize(1);
-  for (int b = 0; b < blocks; ++b) {
-    Eigen::MatrixXd x(rows / blocks, terms);
-    Eigen::VectorXd r(rows / blocks);
-    for (Eigen::Index k = 0; k < x.rows(); ++k) {
-      for (Eigen::Index t = 0; t < terms; ++t) x(k, t) = -normal(rng);
-      r[k] = normal(rng) - x.row(k).dot(sizes);
-    }
-    model.sums[0].push_back({x.transpose() * x, x.transpose() * r, r.squaredNorm(), static_cast<double>(x.rows())});
+  for (Eigen::Index b = 0; b < blocks; ++b) {
+    const auto part = x.middleRows(b * rows, rows);
+    const auto errors = r.segment(b * rows, rows);
+    model.sums[0].push_back(
+        {part.transpose() * part, part.transpose() * errors, errors.squaredNorm(), static_cast<double>(rows)});
   }
-  model.independent = Eigen::VectorXd::Constant(1, rows);
+  model.independent = Eigen::VectorXd::Constant(1, static_cast<double>(x.rows()));
   model.pool = {0};
   model.theta = Eigen::VectorXd::Zero(terms);
   model.low = Eigen::VectorXd::Zero(terms);
   model.high = Eigen::VectorXd::Constant(terms, 10);
   model.prior = Eigen::VectorXd::Constant(terms, 5);
   model.smallest = Eigen::VectorXd::Zero(terms);
-  model.cost = Eigen::VectorXd::Constant(terms, std::log(400.0) + 2 * std::log(static_cast<double>(terms)));
+  model.cost = Eigen::VectorXd::Constant(
+      terms, std::log(static_cast<double>(x.rows())) + 2 * std::log(static_cast<double>(terms)));
   model.acts_on.assign(static_cast<std::size_t>(terms), {0});
   add_up(model);
   return model;
+}
+
+// White columns; the errors are `sizes` times the columns and noise of 1.
+LinearModel made_up(const Eigen::VectorXd& sizes, std::uint64_t seed) {
+  surefoot::Rng rng(seed);
+  constexpr Eigen::Index rows = 400;
+  Eigen::MatrixXd x(rows, sizes.size());
+  Eigen::VectorXd r(rows);
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    for (Eigen::Index t = 0; t < sizes.size(); ++t) x(k, t) = -normal(rng);
+    r[k] = normal(rng) - x.row(k).dot(sizes);
+  }
+  return model_of(x, r);
 }
 
 }  // namespace
@@ -83,6 +92,31 @@ TEST_CASE("the terms that made the errors are chosen, with their sizes, and no o
   CHECK(error[1] == doctest::Approx(0.05).epsilon(0.2));
   CHECK(held_out_gain(model, set, 1).share > 0.1);
   CHECK(evidence_of_terms(model, set)[4] > 20);
+}
+
+TEST_CASE("two terms take the place of one that stands for a bit of both") {
+  surefoot::Rng rng(13);
+  constexpr Eigen::Index rows = 400;
+  constexpr double size = 0.68;
+  Eigen::MatrixXd x(rows, 3);
+  Eigen::VectorXd r(rows);
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    const double v = normal(rng), w = normal(rng);
+    x.row(k) << -w, w - 0.3 * v, -v - 0.35 * normal(rng);  // neither of the first two does without the other
+    r[k] = normal(rng) + size * v;
+  }
+  const LinearModel model = model_of(x, r);
+  CHECK(choose_terms(model, TermSet{0, 0, 1}, TermSet(3, 1)) == TermSet{1, 1, 0});
+  CHECK(fit_linear(model, TermSet{1, 1, 0}).change[1] == doctest::Approx(size / 0.3).epsilon(0.15));
+}
+
+TEST_CASE("an effect is worth little beside errors that nothing explains, and not beside noise as large") {
+  const Eigen::VectorXd sizes{{0.3}};
+  const LinearModel model = made_up(sizes, 14);
+  const TermSet set{1};
+  CHECK(worth_of(model, set, 0) > 1);
+  CHECK(worth_beside_unexplained(model, set, 0, Eigen::VectorXd::Constant(1, 0.1)) < 1);
+  CHECK(worth_beside_unexplained(model, set, 0, Eigen::VectorXd::Constant(1, 1.0)) > 1);
 }
 
 TEST_CASE("noise alone gives no term") {

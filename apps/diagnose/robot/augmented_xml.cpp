@@ -92,6 +92,8 @@ std::string place_in_mjcf(Property p) {
       return "actuator forcerange";
     case Property::constant_torque:
       return "actuator biasprm";
+    case Property::stiffness:
+      return "joint stiffness, added";
     case Property::sensor_bias:
       return "actuator biasprm; subtract it from readings";
     case Property::link_mass:

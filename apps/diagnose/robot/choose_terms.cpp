@@ -74,16 +74,16 @@ bool share_joint(const LinearModel& model, Eigen::Index a, Eigen::Index b) {
   return std::ranges::any_of(first, [&](int j) { return std::ranges::find(second, j) != second.end(); });
 }
 
-// Two terms of which neither is worth it without the other, as more dry friction and less damping than stated: the most
-// probable pair that is worth it, or the set as it was.
-TermSet with_best_pair(const LinearModel& model, const TermSet& set, const TermSet& allowed,
-                       const ChoiceCriteria& criteria) {
+struct Pair {
+  Eigen::Index a = 0, b = 0;
+  double criterion = 0;
+};
+
+// Pairs to add that act on a joint together, the most probable first.
+std::vector<Pair> pairs_to_add(const LinearModel& model, const TermSet& set, const TermSet& allowed,
+                               const ChoiceCriteria& criteria) {
   std::vector<Best> first = changes(model, set, allowed, true);
   if (first.size() > static_cast<std::size_t>(criteria.paired)) first.resize(static_cast<std::size_t>(criteria.paired));
-  struct Pair {
-    Eigen::Index a = 0, b = 0;
-    double criterion = 0;
-  };
   std::vector<Pair> pairs;
   for (const Best& one : first) {
     const TermSet more = changed(set, one.term, true);
@@ -94,7 +94,14 @@ TermSet with_best_pair(const LinearModel& model, const TermSet& set, const TermS
     }
   }
   std::ranges::stable_sort(pairs, {}, &Pair::criterion);
-  for (const Pair& pair : pairs) {
+  return pairs;
+}
+
+// Two terms of which neither is worth it without the other, as more dry friction and less damping than stated: the most
+// probable pair that is worth it, or the set as it was.
+TermSet with_best_pair(const LinearModel& model, const TermSet& set, const TermSet& allowed,
+                       const ChoiceCriteria& criteria) {
+  for (const Pair& pair : pairs_to_add(model, set, allowed, criteria)) {
     const TermSet both = changed(changed(set, pair.a, true), pair.b, true);
     if (evidence_between(model, both, set) > 2 * criteria.needed && worth_of(model, both, pair.a, criteria) > 1 &&
         worth_of(model, both, pair.b, criteria) > 1)
@@ -116,6 +123,28 @@ TermSet with_one_for_two(const LinearModel& model, const TermSet& set, const Ter
       if (instead.empty() || instead.front().criterion >= least) continue;
       least = instead.front().criterion;
       best = changed(less, instead.front().term, true);
+    }
+  }
+  return best;
+}
+
+// Two terms in the place of one that stands for a bit of both, where that is more probable by what a term needs.
+TermSet with_two_for_one(const LinearModel& model, const TermSet& set, const TermSet& allowed,
+                         const ChoiceCriteria& criteria) {
+  double least = fit_linear(model, set).criterion - criteria.needed;
+  TermSet best = set;
+  for (std::size_t t = 0; t < set.size(); ++t) {
+    if (set[t] == 0) continue;
+    const TermSet less = changed(set, static_cast<Eigen::Index>(t), false);
+    TermSet others = allowed;
+    others[t] = 0;
+    for (const Pair& pair : pairs_to_add(model, less, others, criteria)) {
+      if (pair.criterion >= least) break;
+      const TermSet both = changed(changed(less, pair.a, true), pair.b, true);
+      if (!(worth_of(model, both, pair.a, criteria) > 1 && worth_of(model, both, pair.b, criteria) > 1)) continue;
+      least = pair.criterion;
+      best = both;
+      break;
     }
   }
   return best;
@@ -176,6 +205,7 @@ TermSet choose_terms(const LinearModel& model, TermSet set, const TermSet& allow
   }
   if (set == begin && criteria.most_new > 0) set = with_best_pair(model, set, allowed, criteria);
   if (set == begin && criteria.most_new > 0) set = with_one_for_two(model, set, allowed);
+  if (set == begin && criteria.most_new > 0) set = with_two_for_one(model, set, allowed, criteria);
   for (int swap = 0; swap < criteria.most_new; ++swap) {
     const std::vector<TermAlternative> others = alternatives_of(model, set, allowed);
     const auto best = std::ranges::min_element(others, {}, &TermAlternative::criterion);
@@ -227,6 +257,21 @@ double worth_of(const LinearModel& model, const TermSet& set, Eigen::Index term,
     worth = std::min(worth, gain.taken / model.least_taken[term]);
   if (worth < 1) return worth;
   return std::min(worth, evidence_between(model, set, changed(set, term, false)) / criteria.needed);
+}
+
+double worth_beside_unexplained(const LinearModel& model, const TermSet& set, Eigen::Index term,
+                                const Eigen::VectorXd& noise) {
+  constexpr double errors_of_form = 0.95;  // what is left of them by an effect that may be one, as for one joint
+  const Eigen::VectorXd left = fit_linear(model, set).square;
+  double unexplained = 0, rows = 0;
+  for (const int j : model.acts_on[static_cast<std::size_t>(term)]) {
+    const double count = model.whole[static_cast<std::size_t>(j)].rows;
+    unexplained += std::max(0.0, left[j] - count * noise[j] * noise[j]);
+    rows += count;
+  }
+  unexplained *= 1 / (errors_of_form * errors_of_form) - 1;
+  const double wanted = std::sqrt(unexplained / std::max(1.0, rows));
+  return held_out_gain(model, set, term).taken / std::max(1e-300, wanted);
 }
 
 std::vector<TermAlternative> alternatives_of(const LinearModel& model, const TermSet& set, const TermSet& allowed) {

@@ -41,6 +41,11 @@ HeldOutGain held_out_gain(const LinearModel& model, const TermSet& set, Eigen::I
 /// blocks, what it takes away against the difference of two simulations of one model, and the evidence for it.
 double worth_of(const LinearModel& model, const TermSet& set, Eigen::Index term, const ChoiceCriteria& criteria = {});
 
+/// The same against what nothing explains at the joints that the term acts on, their errors beyond `noise` (by joint):
+/// no formula is quite that of the machine, and what takes less than 5 % off such errors may as well be a part of them.
+double worth_beside_unexplained(const LinearModel& model, const TermSet& set, Eigen::Index term,
+                                const Eigen::VectorXd& noise);
+
 struct TermAlternative {
   Eigen::Index instead = 0, other = 0;  // terms
   double criterion = 0;                 // -2 log of the odds against it

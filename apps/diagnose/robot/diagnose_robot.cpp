@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "findings.hpp"
+#include "numerical_error.hpp"
 
 namespace diagnose_robot {
 namespace {
@@ -100,8 +101,8 @@ RobotDiagnosis diagnose_robot(const Evidence& evidence, const Progress& progress
                         by_after = rms_by_joint(evidence, found.errors);
   const HeldOut held_out = held_out_errors(evidence, found, nominal);
   Eigen::VectorXd noise = noise_by_joint(evidence, d.physics, 1);
-  if (evidence.numerical.size() > 0)
-    noise = (noise.cwiseAbs2() + evidence.numerical.cwiseAbs2()).cwiseSqrt();  // no simulation is nearer
+  const Eigen::VectorXd method = d.torque_driven ? smoothing_error(evidence, d.physics) : found.numerical;
+  if (method.size() > 0) noise = (noise.cwiseAbs2() + method.cwiseAbs2()).cwiseSqrt();  // no method is nearer
   d.textbook = overall(evidence, by_textbook);
   d.nominal = overall(evidence, by_nominal);
   d.after = overall(evidence, by_after);

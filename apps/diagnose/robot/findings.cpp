@@ -87,6 +87,11 @@ void name_effects(const Evidence& evidence, const SearchResult& found, RobotDiag
       d.common.augmented_parameters.push_back(
           {value, 0, found.theta[at] <= term.low || found.theta[at] >= term.high, false});
     }
+    if (std::abs(found.theta[at]) < z95 * error[at])  // only as bodies are uncertain: see drop_one()
+      d.common.remarks.push_back(
+          {"", std::string(info.effect) + " at " + place_of(evidence.robot, term) +
+                   " may as well be masses, centres of mass and inertias of links that are off by some 10 %; with "
+                   "\"bodies\" under calibrate they are told apart where recordings can"});
     surefoot::FoundEffect effect;
     effect.name = info.effect;
     effect.attached_to = place_of(evidence.robot, term);

@@ -25,9 +25,10 @@ const std::array<PropertyInfo, property_count>& property_table() {
       {torque_limit, "saturation", "missing_share", "1", "torque limit below the stated one", 0, 9.9, true, false,
        false},
       {lag, "first_order_lag", "time_constant", "s", "torque that lags", 0, 30, true, false, false},
-      {delay, "input_delay", "delay", "s", "goal that arrives late", 0, 40, true, false, false},
+      {delay, "input_delay", "delay", "s", "commands that arrive late", 0, 40, true, true, false},
       {backlash, "backlash", "half_width", "rad", "backlash", 0, 40, true, false, false},
       {constant_torque, "constant_force", "torque", "N m", "constant torque", -20, 20, true, true, false},
+      {stiffness, "joint_spring", "stiffness", "N m/rad", "a spring", 0, 40, true, true, false},
       {sensor_bias, "sensor_bias", "bias", "rad", "offset of the encoder", -10, 10, true, true, false},
       {link_mass, "link_mass", "mass_error", "1", "mass of the link other than stated", -8, 30, true, true, true},
       {link_com_x, "link_com", "shift_x", "m", "centre of mass of the link elsewhere", -10, 10, true, true, true},
@@ -72,6 +73,8 @@ double typical_size(Property property, const JointScale& scale) {
     case Property::lag:
     case Property::delay:
       return time;
+    case Property::stiffness:
+      return share * scale.torque / scale.angle;
     case Property::backlash:
       return angle_share * scale.angle;
     case Property::sensor_bias:

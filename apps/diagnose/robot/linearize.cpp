@@ -122,7 +122,8 @@ bool same_rigid_bodies(const RobotPhysics& a, const RobotPhysics& b) {
   if (a.size() != b.size()) return false;
   for (std::size_t j = 0; j < a.size(); ++j) {
     for (const PropertyInfo& info : property_table()) {
-      const bool matters = is_of_body(info.property) || info.property == Property::sensor_bias;
+      const bool matters =
+          is_of_body(info.property) || info.property == Property::sensor_bias || info.property == Property::stiffness;
       if (matters && a[j][info.property] != b[j][info.property]) return false;
     }
   }

@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "limit_along_motion.hpp"
+#include "term_priors.hpp"
+
 namespace diagnose_robot {
 namespace {
 
@@ -28,21 +31,33 @@ struct Start {
   double misfit = 0;
 };
 
+// Sizes at which a term may show that is not there yet.
+std::vector<double> sizes_of(const Evidence& evidence, const RobotPhysics& bare, const Term& term) {
+  std::vector<double> result;
+  const int joint = term.joints.front();
+  const double stated = evidence.robot.joints[static_cast<std::size_t>(joint)].setup.limit;
+  if (term.property == Property::torque_limit) {
+    for (const double limit : limits_along_motion(evidence, bare, joint)) result.push_back(1 - limit / stated);
+  }
+  for (const double size : sizes) {
+    for (const double side : {1.0, -1.0}) result.push_back(side * size * term.typical);
+  }
+  return result;
+}
+
 std::vector<Start> starts_at(const Evidence& evidence, const LinearModel& model, const Point& bare, int joint) {
+  const RobotPhysics physics = physics_of(evidence.terms, bare.theta, evidence.robot.nominal);
   std::vector<Start> starts;
   for (std::size_t t = 0; t < evidence.terms.size(); ++t) {
     const Term& term = evidence.terms[t];
     if (!is_of_joint(term, joint) || is_of_body(term.property)) continue;
-    for (const double size : sizes) {
-      for (const double side : {1.0, -1.0}) {
-        const double value = side * size * term.typical;
-        const auto at = static_cast<Eigen::Index>(t);
-        if (value < model.low[at] || value > model.high[at]) continue;
-        Start start{bare, t, 0};
-        start.point.set[t] = 1;
-        start.point.theta[at] = value;
-        starts.push_back(std::move(start));
-      }
+    for (const double value : sizes_of(evidence, physics, term)) {
+      const auto at = static_cast<Eigen::Index>(t);
+      if (value < model.low[at] || value > model.high[at]) continue;
+      Start start{bare, t, 0};
+      start.point.set[t] = 1;
+      start.point.theta[at] = value;
+      starts.push_back(std::move(start));
     }
   }
   const auto errors = surefoot::map(
@@ -56,17 +71,44 @@ std::vector<Start> starts_at(const Evidence& evidence, const LinearModel& model,
   return starts;
 }
 
+// Moves the point along its own terms until errors no longer fall; derivatives by others would cost the most and are
+// not needed.
+void fit(const Evidence& evidence, int moves, Point& point) {
+  Evidence own = evidence;
+  own.terms.clear();
+  Point part{Eigen::VectorXd(std::ranges::count(point.set, 1)), {}, point.errors};
+  for (std::size_t t = 0; t < point.set.size(); ++t) {
+    if (point.set[t] == 0) continue;
+    part.theta[static_cast<Eigen::Index>(own.terms.size())] = point.theta[static_cast<Eigen::Index>(t)];
+    own.terms.push_back(evidence.terms[t]);
+  }
+  own.entries = entries_of(own.terms);
+  part.set.assign(own.terms.size(), 1);
+  RigidCache cache;
+  for (int k = 0; k < moves; ++k) {
+    const LinearModel here = linearize(own, part.theta, part.errors, cache);
+    if (!move(own, here, part.set, {}, part)) break;
+  }
+  Eigen::Index at = 0;
+  for (std::size_t t = 0; t < point.set.size(); ++t) {
+    if (point.set[t] != 0) point.theta[static_cast<Eigen::Index>(t)] = part.theta[at++];
+  }
+  point.errors = part.errors;
+}
+
 }  // namespace
 
 int OtherStarts::worst_joint(const Evidence& evidence, const Point& point) const {
   const Eigen::VectorXd rms = rms_by_joint(evidence, point.errors);
   int worst = -1;
-  double most = criteria_.beyond_noise;
+  double most = 1;
   for (Eigen::Index j = 0; j < rms.size(); ++j) {
-    double noise = evidence.numerical.size() > 0 ? evidence.numerical[j] * evidence.numerical[j] : 0;
+    double noise = 0;
     for (const RobotRecording& recording : evidence.recordings)
-      noise = std::max(noise, std::pow(noise_of(recording.angle.col(j)), 2));
-    const double ratio = rms[j] / std::max(1e-12, std::sqrt(noise));
+      noise = std::max(noise, noise_of(recording.angle.col(j)));
+    const double numerical = evidence.numerical.size() > 0 ? evidence.numerical[j] : 0;
+    const double needed = std::hypot(criteria_.beyond_noise * noise, times_numerical * numerical);
+    const double ratio = rms[j] / std::max(1e-12, needed);
     if (ratio <= most || std::ranges::find(tried_, static_cast<int>(j)) != tried_.end()) continue;
     most = ratio;
     worst = static_cast<int>(j);
@@ -74,7 +116,7 @@ int OtherStarts::worst_joint(const Evidence& evidence, const Point& point) const
   return worst;
 }
 
-bool OtherStarts::try_next(const Evidence& evidence, const LinearModel& model, RigidCache& cache, Point& point) {
+bool OtherStarts::try_next(const Evidence& evidence, const LinearModel& model, Point& point) {
   if (evidence.robot.setup.drive == DriveKind::torque) return false;
   const double now = misfit(evidence, model, point) + cost_of(model, point.set);
   while (static_cast<int>(tried_.size()) < criteria_.most_joints && !evidence.stop.stop_requested()) {
@@ -87,10 +129,7 @@ bool OtherStarts::try_next(const Evidence& evidence, const LinearModel& model, R
       if (static_cast<int>(seen.size()) == criteria_.finalists || evidence.stop.stop_requested()) break;
       if (std::ranges::find(seen, start.term) != seen.end()) continue;
       seen.push_back(start.term);
-      for (int fit = 0; fit < criteria_.fits; ++fit) {
-        const LinearModel here = linearize(evidence, start.point.theta, start.point.errors, cache);
-        if (!move(evidence, here, start.point.set, {}, start.point)) break;
-      }
+      fit(evidence, criteria_.fits, start.point);
       if (misfit(evidence, model, start.point) + cost_of(model, start.point.set) > now - ChoiceCriteria().needed)
         continue;
       point = start.point;

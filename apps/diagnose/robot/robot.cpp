@@ -141,8 +141,13 @@ ModelPointer model_with_bodies(const Robot& robot, const RobotPhysics& physics) 
   mju_zero(m->dof_frictionloss, m->nv);
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     if (changes_bodies(physics[j])) change_body(m, robot.joints[j].model, physics[j]);
+    m->jnt_stiffness[robot.joints[j].model.id] += physics[j][Property::stiffness];
   }
   return model;
+}
+
+double rest_of_spring(const Robot& robot, std::size_t joint) {
+  return robot.model.model->qpos_spring[robot.joints[joint].model.position];
 }
 
 Robot bind_robot(RobotModel model, const RobotSetup& setup) {

@@ -35,9 +35,13 @@ Robot bind_robot(RobotModel model, const RobotSetup& setup);
 /// Throws if the recording shows what this diagnosis does not know: degrees, or contacts. Returns remarks.
 std::vector<std::string> check_recording(const Robot& robot, const RobotRecording& recording);
 
-/// The model with masses, centres of mass and payloads changed, and with no damping, armature and friction of its own.
+/// The model with masses, centres of mass, payloads and springs changed, and with no damping, armature and friction of
+/// its own.
 ModelPointer model_with_bodies(const Robot& robot, const RobotPhysics& physics);
 
 bool changes_bodies(const JointPhysics& joint);
+
+/// [rad] or [m], the position of a joint at which its spring gives nothing.
+double rest_of_spring(const Robot& robot, std::size_t joint);
 
 }  // namespace diagnose_robot

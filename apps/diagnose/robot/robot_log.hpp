@@ -16,6 +16,7 @@ struct RobotRecording {
   Eigen::VectorXd time;                 // [s], increasing
   Eigen::MatrixXd angle;                // row x joint; NaN: not measured
   Eigen::MatrixXd goal, torque, speed;  // row x joint; empty where the setup has none
+  double torque_late = 0;               // [s] after which torques act on average; see torque_hold.hpp
   double row_period() const { return (time[time.size() - 1] - time[0]) / static_cast<double>(time.size() - 1); }
 };
 

@@ -17,6 +17,7 @@
 #include "surefoot/core/error.hpp"
 #include "swapped_joints.hpp"
 #include "swapped_torques.hpp"
+#include "torque_hold.hpp"
 #include "xml_text.hpp"
 
 namespace diagnose_robot {
@@ -65,6 +66,8 @@ void evaluate_test(const diagnose_program::CommandLine& line, const Evidence& ev
   std::vector<std::string> remarks;
   load_recordings(files, test, remarks);
   test.scales = evidence.scales;
+  for (std::size_t r = 0; r < test.motions.size(); ++r)
+    test.motions[r].torque_late = evidence.motions.front().torque_late;
   hold_out(test, d);
 }
 
@@ -117,6 +120,11 @@ int run_robot(const diagnose_program::CommandLine& line) {
   diagnose_program::prepare_folder(line.out);
   diagnose_program::Progress progress(line.quiet);
   const std::vector<surefoot::LogFault> faults = swapped_columns(line.repair, evidence);
+  if (hold_torques(evidence)) {
+    remarks.push_back(
+        "recorded torques are taken as commands that stand until the next row: these recordings refute that they act "
+        "as they are logged");
+  }
   const bool usable = faults.empty() || line.repair;
   RobotDiagnosis d =
       usable

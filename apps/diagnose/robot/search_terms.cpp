@@ -1,8 +1,11 @@
 #include "search_terms.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "../wording.hpp"
+#include "findings.hpp"
+#include "numerical_error.hpp"
 #include "other_starts.hpp"
 #include "search_point.hpp"
 
@@ -10,15 +13,23 @@ namespace diagnose_robot {
 namespace {
 
 // To the set of terms that the linear model chooses, or to one with fewer changes where that one does not hold so far
-// off.
-bool move_to_better(const Evidence& evidence, const LinearModel& model, const TermSet& allowed, Point& point) {
-  ChoiceCriteria choice;
+// off; where none holds, without the terms that would have been added: they are not to be in the way of others.
+bool move_to_better(const Evidence& evidence, const LinearModel& model, TermSet allowed, Point& point) {
+  constexpr int most_barred = 6;  // times that new terms are left out
   TermSet before;
-  for (; choice.most_new >= 0; --choice.most_new) {
-    const TermSet set = choose_terms(model, point.set, allowed, choice);
-    if (set == before) continue;
-    if (move(evidence, model, set, {}, point)) return true;
-    before = set;
+  for (int barred = 0; barred <= most_barred; ++barred) {
+    TermSet added(point.set.size(), 0);
+    for (ChoiceCriteria choice; choice.most_new >= 0; --choice.most_new) {
+      const TermSet set = choose_terms(model, point.set, allowed, choice);
+      if (set == before) continue;
+      if (move(evidence, model, set, {}, point)) return true;
+      before = set;
+      for (std::size_t t = 0; t < set.size() && choice.most_new > 0; ++t) added[t] = set[t] > point.set[t] ? 1 : 0;
+    }
+    if (std::ranges::count(added, 1) == 0) break;
+    for (std::size_t t = 0; t < added.size(); ++t) {
+      if (added[t] != 0) allowed[t] = 0;
+    }
   }
   return before != point.set && move(evidence, model, point.set, {}, point);
 }
@@ -31,13 +42,16 @@ Point start(const Evidence& evidence) {
   return point;
 }
 
-// Takes the term away that is worth least, if that is less than it must be.
-bool drop_one(const Evidence& evidence, const LinearModel& model, Point& point, std::vector<std::string>& dropped) {
+using Worth = std::function<double(Eigen::Index)>;
+
+// Takes the term away that is worth least, if that is less than it must be, and says why.
+bool drop_one(const Evidence& evidence, const Worth& worth_of_term, const LinearModel& model, const std::string& why,
+              Point& point, std::vector<std::string>& dropped) {
   Eigen::Index worst = -1;
   double least = 1;
   for (Eigen::Index t = 0; t < point.theta.size(); ++t) {
     if (point.set[static_cast<std::size_t>(t)] == 0) continue;
-    const double worth = worth_of(model, point.set, t);
+    const double worth = worth_of_term(t);
     if (worth >= least) continue;
     least = worth;
     worst = t;
@@ -47,16 +61,39 @@ bool drop_one(const Evidence& evidence, const LinearModel& model, Point& point, 
   dropped.push_back(std::string(info_of(term.property).effect) + " at " + place_of(evidence.robot, term) +
                     " was dropped: it takes " +
                     diagnose_program::percent(held_out_gain(model, point.set, worst).share) +
-                    " off the error of its joints on held-out blocks, or less than simulations of one model differ by, "
-                    "or only few blocks speak for it");
+                    " off the error of its joints on held-out blocks, " + why);
   point.set[static_cast<std::size_t>(worst)] = 0;
+  point.theta[worst] = 0;
   return true;
+}
+
+// In the end, when nothing more is to be found: terms that are small beside what nothing explains, or as small as they
+// are uncertain.
+void leave_out_small(const Evidence& evidence, RigidCache& cache, Point& point, std::vector<std::string>& dropped) {
+  Eigen::VectorXd noise = noise_by_joint(evidence, evidence.robot.nominal, 1);
+  if (evidence.numerical.size() > 0) noise = (noise.cwiseAbs2() + evidence.numerical.cwiseAbs2()).cwiseSqrt();
+  while (!evidence.stop.stop_requested()) {
+    const LinearModel model = linearize(evidence, point.theta, point.errors, cache);
+    const Eigen::VectorXd error = standard_errors(model, point.set);
+    const Worth worth = [&](Eigen::Index t) {
+      return std::min(worth_beside_unexplained(model, point.set, t, noise),
+                      std::abs(point.theta[t]) / (z95 * std::max(1e-300, error[t])));
+    };
+    if (!drop_one(evidence, worth, model, "which is small beside what nothing explains, or its interval contains 0",
+                  point, dropped))
+      return;
+    point.errors = errors_at(evidence, point.theta);
+    const LinearModel without = linearize(evidence, point.theta, point.errors, cache);
+    move(evidence, without, point.set, {}, point);
+  }
 }
 
 }  // namespace
 
-SearchResult search_terms(const Evidence& evidence, const Progress& progress, const SearchCriteria& criteria) {
+SearchResult search_terms(const Evidence& given, const Progress& progress, const SearchCriteria& criteria) {
+  Evidence evidence = given;
   Point point = start(evidence);
+  evidence.numerical *= numerical_share(evidence, point.errors);
   TermSet allowed(evidence.terms.size(), 1);
   SearchResult result;
   RigidCache cache;
@@ -69,19 +106,25 @@ SearchResult search_terms(const Evidence& evidence, const Progress& progress, co
     progress("search", static_cast<double>(round) / criteria.most_rounds);
     const LinearModel model = linearize(evidence, point.theta, point.errors, cache);
     if (move_to_better(evidence, model, allowed, point)) continue;
-    if (!drop_one(evidence, model, point, result.dropped)) {
-      if (starts.try_next(evidence, model, cache, point)) continue;
-      break;
+    const TermSet before = point.set;
+    const Worth worth = [&](Eigen::Index t) { return worth_of(model, point.set, t); };
+    if (!drop_one(evidence, worth, model,
+                  "or less than simulations of one model differ by, or only few blocks speak for it", point,
+                  result.dropped)) {
+      if (starts.try_next(evidence, model, point)) continue;
+      if (!lower_numerical_error(evidence, point.errors)) break;
+      allowed.assign(allowed.size(), 1);
+      result.dropped.clear();
+      continue;
     }
-    for (std::size_t t = 0; t < point.set.size(); ++t) {
-      if (point.set[t] == 0 && point.theta[static_cast<Eigen::Index>(t)] != 0) {
-        allowed[t] = 0;
-        point.theta[static_cast<Eigen::Index>(t)] = 0;
-      }
+    for (std::size_t t = 0; t < before.size(); ++t) {
+      if (before[t] != point.set[t]) allowed[t] = 0;
     }
     point.errors = errors_at(evidence, point.theta);
   }
+  leave_out_small(evidence, cache, point, result.dropped);
   progress("proof", 1);
+  result.numerical = evidence.numerical;
   result.theta = point.theta;
   result.set = point.set;
   result.errors = point.errors;

@@ -19,6 +19,7 @@ struct SearchResult {
   Eigen::MatrixXd errors;  // at theta
   LinearModel linear;      // at theta, of all terms
   bool complete = true;
+  Eigen::VectorXd numerical;         // by joint, as of Evidence, lowered to what the recordings leave room for
   std::vector<std::string> dropped;  // terms that held-out blocks did not want, as sentences
 };
 

@@ -159,6 +159,7 @@ struct Tangent {
     const double given = drive.constant - drive.damping * middle;
     const double load = slips * h * p[Property::load_friction] * sign_of(given);
     const double stribeck = stribeck_share(middle);
+    const double stretch = now.q[i] - h / 2 * now.v[i] - rest_of_spring(robot, static_cast<std::size_t>(i));
     const double by_middle = -2 * p[Property::drag] * std::abs(middle) +
                              slips * p[Property::breakaway] * 2 * middle / (stribeck_speed * stribeck_speed) * stribeck;
     auto right = tree.right.row(r);
@@ -174,6 +175,7 @@ struct Tangent {
       if (property == Property::drag) entry -= h * middle * std::abs(middle);
       if (property == Property::armature) entry -= now.v[i] - then.speed[i];
       if (property == Property::constant_torque) entry += h;
+      if (property == Property::stiffness) entry -= h * stretch;
     }
   }
 

@@ -10,8 +10,6 @@ constexpr double prior_share = 0.5;  // of the bounds of a property of drives an
 // Of a typical size: 1 % of the torque of a drive, of a gain or a mass. No drive repeats better, and two simulations of
 // one model differ by such amounts.
 constexpr double smallest_share = 0.1;
-constexpr double times_numerical =
-    2;  // difference of two simulations of one model: what a term takes away must be more
 // Joints of one kind differ by as much in friction, by wear and lubrication: such a difference makes none the odd one.
 constexpr double ordinary_spread = 0.25;
 constexpr double stated_prior = 2;  // typical sizes: a gain or mass that is stated is rarely off by more than some 20 %

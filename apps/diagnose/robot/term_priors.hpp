@@ -5,6 +5,9 @@
 
 namespace diagnose_robot {
 
+/// Of the difference of two simulations of one model: what a term takes away must be more.
+inline constexpr double times_numerical = 2;
+
 /// Whether a term changes the motion of a joint.
 bool moves(const Evidence& evidence, const Term& term, std::size_t joint);
 

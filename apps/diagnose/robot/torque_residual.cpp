@@ -11,6 +11,7 @@ namespace diagnose_robot {
 namespace {
 
 constexpr double resting_share = 0.03;  // of the root mean square speed: what smoothing leaves of a reversal
+constexpr double times_noise = 3;       // of speeds: a joint that seems to move slower may as well stand
 
 double rms(const Eigen::Ref<const Eigen::VectorXd>& x) {
   return std::sqrt(x.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, x.size())));
@@ -47,7 +48,8 @@ Eigen::MatrixXd rigid_body_torque(const Robot& robot, const Motion& motion, cons
 
 Eigen::VectorXd resting_speed(const Motion& motion) {
   Eigen::VectorXd speed(motion.v.cols());
-  for (Eigen::Index j = 0; j < speed.size(); ++j) speed[j] = resting_share * rms(motion.v.col(j));
+  for (Eigen::Index j = 0; j < speed.size(); ++j)
+    speed[j] = std::max(resting_share * rms(motion.v.col(j)), times_noise * motion.speed_noise[j]);
   return speed;
 }
 
@@ -61,6 +63,24 @@ Eigen::MatrixXd drive_torque(const Robot& robot, const Motion& motion) {
     torque.col(c) = (drive.kp * (motion.goal.col(c) - motion.q.col(c)) - drive.kd * motion.v.col(c))
                         .cwiseMax(-limit)
                         .cwiseMin(limit);
+  }
+  return torque;
+}
+
+Eigen::MatrixXd arrived_torque(const Robot& robot, const Motion& motion, const RobotPhysics& physics) {
+  Eigen::MatrixXd torque = drive_torque(robot, motion);
+  if (robot.setup.drive != DriveKind::torque) return torque;
+  for (Eigen::Index j = 0; j < torque.cols(); ++j) {
+    const double late = motion.torque_late + physics[static_cast<std::size_t>(j)][Property::delay];
+    if (late == 0) continue;
+    const Eigen::VectorXd told = torque.col(j);
+    Eigen::Index before = 0;
+    for (Eigen::Index k = 0; k < told.size(); ++k) {
+      const double sent = motion.time[k] - late;
+      while (before + 2 < told.size() && motion.time[before + 1] <= sent) ++before;
+      const double share = (sent - motion.time[before]) / (motion.time[before + 1] - motion.time[before]);
+      torque(k, j) = share < 0 ? std::nan("") : (1 - share) * told[before] + share * told[before + 1];
+    }
   }
   return torque;
 }
@@ -97,7 +117,7 @@ Eigen::MatrixXd torque_residual(const Robot& robot, const Motion& motion, const 
     for (Eigen::Index k = 0; k < needed.rows(); ++k)
       needed(k, c) *= (1 + physics[j][Property::reading_scale]) * load_factor(physics[j], motion.v(k, c), needed(k, c));
   }
-  Eigen::MatrixXd residual = drive_torque(robot, motion) - needed;
+  Eigen::MatrixXd residual = arrived_torque(robot, motion, physics) - needed;
   for (Eigen::Index c = 0; c < residual.cols(); ++c) {
     for (Eigen::Index k = 0; k < residual.rows(); ++k) {
       const bool inside = k >= motion.edge && k < residual.rows() - motion.edge;

@@ -19,6 +19,9 @@ Eigen::MatrixXd rigid_body_torque(const Robot& robot, const Motion& motion, cons
 /// What the drives give along the motion: measured, or what position drives would give [N m].
 Eigen::MatrixXd drive_torque(const Robot& robot, const Motion& motion);
 
+/// The same where torques drive and arrive late. NaN before the first of them has arrived.
+Eigen::MatrixXd arrived_torque(const Robot& robot, const Motion& motion, const RobotPhysics& physics);
+
 /// Speeds below which a joint may stick, by joint.
 Eigen::VectorXd resting_speed(const Motion& motion);
 
