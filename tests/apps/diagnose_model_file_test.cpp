@@ -154,10 +154,10 @@ TEST_CASE("a missing unit is refused") {
 }
 
 TEST_CASE("a unit may be written as the column's name ends") {
-  CHECK(unit_fits("heater_degC", "degC"));
-  CHECK(unit_fits("heater_degC", "C"));
-  CHECK_FALSE(unit_fits("heater_degC", "K"));
-  CHECK_FALSE(unit_fits("speed_m_s", "rad"));
+  CHECK(diagnose_program::unit_fits("heater_degC", "degC"));
+  CHECK(diagnose_program::unit_fits("heater_degC", "C"));
+  CHECK_FALSE(diagnose_program::unit_fits("heater_degC", "K"));
+  CHECK_FALSE(diagnose_program::unit_fits("speed_m_s", "rad"));
 }
 
 TEST_CASE("schema and kind must be known") {
