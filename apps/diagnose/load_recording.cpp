@@ -118,6 +118,18 @@ void shift_outputs(Recording& recording) {
   recording.outputs = std::move(outputs);
 }
 
+// Where a state starts whose first cell is empty and that is read in this row: on the line through the next two
+// readings, unless that goes further back than they are apart.
+StartGuess extrapolated(const std::vector<double>& column, std::size_t row, const Rows& rows,
+                        const Recording& recording) {
+  std::size_t next = row + 1;
+  while (next < rows.to && std::isnan(column[next])) ++next;
+  if (next == rows.to || row - rows.from > next - row) return {column[row], 0};
+  const auto time = [&](std::size_t at) { return recording.time[static_cast<Eigen::Index>(at - rows.from)]; };
+  const double change = (column[next] - column[row]) / (time(next) - time(row)) * (time(row) - time(rows.from));
+  return {column[row] - change, std::abs(change)};
+}
+
 void read_initial(const Csv& csv, const Layout& layout, const Rows& rows, Recording& recording) {
   std::map<std::string, double> constants;
   for (const ModelConstant& constant : layout.constants) {
@@ -137,7 +149,10 @@ void read_initial(const Csv& csv, const Layout& layout, const Rows& rows, Record
       if (row == rows.to) {
         throw DiagnoseError(recording.name + ": column " + in_quotes(start.formula.text) + " holds no number, " + why);
       }
-      recording.initial[i] = column[row];
+      const StartGuess read =
+          layout.ode && row > rows.from ? extrapolated(column, row, rows, recording) : StartGuess{column[row], 0};
+      recording.initial[i] = read.value;
+      recording.initial_scale[i] = read.scale;
     } else {
       const StartGuess guess = guess_start(recording, start);
       recording.initial[i] = guess.value;

@@ -60,6 +60,16 @@ TEST_CASE("columns become inputs and outputs, and the state starts where it was 
   CHECK(!recording.constants.contains("remark"));
 }
 
+TEST_CASE("a state whose first cell is empty starts on the line through its next readings, and may be off by that") {
+  const surefoot::Recording empty = load(with(servo_csv, "0.000,0.0,0.01", "0.000,0.0,")).recordings[0];
+  CHECK(empty.initial[0] == doctest::Approx(0.02 - 0.03 / 2));  // 0.02 at 5 ms, 0.05 at 15 ms
+  CHECK(empty.initial_scale[0] == doctest::Approx(0.03 / 2));
+  const std::string late = with(with(servo_csv, "0.000,0.0,0.01", "0.000,0.0,"), "0.005,0.1,0.02", "0.005,0.1,");
+  const surefoot::Recording far = load(late).recordings[0];  // further back than the readings are apart
+  CHECK(far.initial[0] == 0.05);
+  CHECK(far.initial_scale[0] == 0);
+}
+
 TEST_CASE("a free state starts from its measurement, a free speed from the first differences") {
   const std::string csv = "t_s,goal_rad,theta_rad\n0,0,1\n0.1,0,1.2\n0.2,0,1.4\n0.3,0,1.6\n0.4,0,1.8\n0.5,0,3\n";
   std::string model = with(servo_model, "column:theta_rad", "free");
