@@ -118,30 +118,6 @@ TEST_CASE("what cannot be seen in the recordings is said, once the inputs of all
   CHECK_FALSE(mentions(screen(info, {still, positive, negative}), "valve"));
 }
 
-TEST_CASE("rows that a regular clock left out are counted, and said to hide commands") {
-  const auto without = [](std::vector<Eigen::Index> lost) {
-    Recording recording = tank();
-    const Recording whole = recording;
-    Eigen::Index kept = 0;
-    for (Eigen::Index row = 0; row < whole.rows(); ++row) {
-      if (std::find(lost.begin(), lost.end(), row) != lost.end()) continue;
-      recording.time[kept] = whole.time[row];
-      recording.inputs.col(kept) = whole.inputs.col(row);
-      recording.outputs.col(kept++) = whole.outputs.col(row);
-    }
-    recording.time.conservativeResize(kept);
-    recording.inputs.conservativeResize(Eigen::NoChange, kept);
-    recording.outputs.conservativeResize(Eigen::NoChange, kept);
-    return recording;
-  };
-  const SimulatorInfo info = toys::LeakyTank{}.info();
-  CHECK(mentions(screen(info, {tank(), without({10, 20, 21})}), "rows are lost, 3 in all"));
-  CHECK_FALSE(mentions(screen(info, {tank(), tank()}), "rows are lost"));
-  std::vector<Eigen::Index> every_third;
-  for (Eigen::Index row = 3; row < tank().rows(); row += 3) every_third.push_back(row);
-  CHECK_FALSE(mentions(screen(info, {without(every_third)}), "rows are lost"));  // its clock is not regular
-}
-
 TEST_CASE("where anything would fit nothing is diagnosed") {
   const auto of_rows = [](Eigen::Index rows, int count) {
     Recording one = tank();

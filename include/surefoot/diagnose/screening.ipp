@@ -106,26 +106,6 @@ SUREFOOT_ONCE std::vector<Remark> remove_outliers(const SimulatorInfo& info, Rec
   return remarks;
 }
 
-/// Rows that the clock of a recording left out; 0 where it is not regular.
-SUREFOOT_ONCE int lost_rows(const Recording& recording) {
-  constexpr double longer = 1.5;  // times the usual interval: nearer to two of them than to one
-  constexpr double few = 0.05;    // share of the intervals: a clock with more is not regular
-  std::vector<double> intervals;
-  for (Eigen::Index row = 1; row < recording.rows(); ++row) {
-    intervals.push_back(recording.time[row] - recording.time[row - 1]);
-  }
-  std::vector<double> sorted = intervals;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  int lost = 0, places = 0;
-  for (const double one : intervals) {
-    if (one < longer * *middle) continue;
-    lost += static_cast<int>(std::round(one / *middle)) - 1;
-    ++places;
-  }
-  return places > few * static_cast<double>(intervals.size()) ? 0 : lost;
-}
-
 SUREFOOT_ONCE std::vector<Remark> screen(const SimulatorInfo& info, const std::vector<Recording>& recordings) {
   std::vector<Remark> remarks;
   for (std::size_t i = 0; i < info.inputs.size(); ++i) {
@@ -144,14 +124,6 @@ SUREFOOT_ONCE std::vector<Remark> screen(const SimulatorInfo& info, const std::v
       remarks.push_back({"", "input " + info.inputs[i].name +
                                  " never changes its sign: what differs between both sides cannot be seen"});
     }
-  }
-  int lost = 0;
-  for (const Recording& recording : recordings) lost += lost_rows(recording);
-  if (lost > 0 && !info.inputs.empty() && info.kind == SimulatorKind::ode) {
-    remarks.push_back(
-        {"", "rows are lost, " + std::to_string(lost) +
-                 " in all, by the steps of the clock: what was commanded in them is not known, and what it "
-                 "did may pass for missing physics"});
   }
   for (std::size_t i = 0; i < info.outputs.size(); ++i) {
     for (const Recording& recording : recordings) {

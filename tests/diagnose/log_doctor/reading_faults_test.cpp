@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "tests/diagnose/log_doctor/servo_log.hpp"
 
 namespace {
@@ -15,6 +18,23 @@ TEST_SUITE("log_doctor") {
       for (double& value : recording.outputs.row(0)) value = 0.01 * std::round(value / 0.01);
     }
     CHECK(resolution_of(log, 0) == doctest::Approx(0.01));
+  }
+
+  TEST_CASE("rows that a regular clock left out are counted") {
+    const auto without = [](const std::vector<int>& lost) {
+      std::vector<double> time;
+      for (int row = 0; row < 400; ++row) {
+        if (std::find(lost.begin(), lost.end(), row) == lost.end()) time.push_back(0.05 * row);
+      }
+      surefoot::Recording recording;
+      recording.time = Eigen::Map<Eigen::VectorXd>(time.data(), static_cast<Eigen::Index>(time.size()));
+      return recording;
+    };
+    CHECK(lost_rows(without({})) == 0);
+    CHECK(lost_rows(without({10, 20, 21})) == 3);
+    std::vector<int> every_third;
+    for (int row = 3; row < 400; row += 3) every_third.push_back(row);
+    CHECK(lost_rows(without(every_third)) == 0);  // its clock is not regular
   }
 
   TEST_CASE("equal readings are a stretch if the model moves on by more than the resolution") {

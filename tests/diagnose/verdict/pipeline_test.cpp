@@ -22,6 +22,13 @@ TEST_CASE("recordings are checked, freed of outliers, and remarked upon") {
   CHECK(std::isnan(recordings[1].outputs(0, 50)));
   REQUIRE_FALSE(remarks.empty());
   CHECK(remarks.front().recording == "tank 1");
+  const auto of_lost_rows = [](const std::vector<Remark>& some) {
+    return std::any_of(some.begin(), some.end(),
+                       [](const Remark& one) { return one.text.find("rows are lost, 2 in all") == 0; });
+  };
+  CHECK_FALSE(of_lost_rows(remarks));
+  recordings[0].time.tail(60).array() += 2 * (recordings[0].time[1] - recordings[0].time[0]);
+  CHECK(of_lost_rows(screen_recordings(toys::LeakyTank{}.info(), recordings)));
   std::vector<Recording> none;
   CHECK_THROWS_AS(screen_recordings(toys::LeakyTank{}.info(), none), DiagnoseError);
 }

@@ -30,6 +30,9 @@ double resolution_of(const std::vector<Recording>& recordings, Eigen::Index outp
 /// Intervals without rows, by the rows before them.
 std::vector<FoundFault> find_gaps(const BoundSimulator& bound, const LogDoctorCriteria& criteria);
 
+/// Rows that a regular clock left out here and there; 0 where it is not regular. What was commanded in them is lost.
+int lost_rows(const Recording& recording);
+
 /// Stuck sensors, clipped readings and repeated rows.
 std::vector<FoundFault> find_reading_faults(const LogFit& fit, const LogDoctorCriteria& criteria);
 

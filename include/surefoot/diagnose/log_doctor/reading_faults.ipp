@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/log_doctor/column_faults.hpp"
 #include "surefoot/diagnose/log_doctor/reading_faults.hpp"
 
 namespace surefoot::diagnosis {
@@ -260,6 +261,20 @@ SUREFOOT_ONCE std::vector<FoundFault> find_reading_faults(const LogFit& fit, con
     }
   }
   return found;
+}
+
+SUREFOOT_ONCE int lost_rows(const Recording& recording) {
+  constexpr double longer = 1.5;  // times the usual interval: nearer to two of them than to one
+  constexpr double few = 0.05;    // share of the intervals: a clock with more is not regular
+  const double usual = median_interval(recording);
+  int lost = 0, places = 0;
+  for (Eigen::Index row = 1; row < recording.rows(); ++row) {
+    const double interval = recording.time[row] - recording.time[row - 1];
+    if (interval < longer * usual) continue;
+    lost += static_cast<int>(std::round(interval / usual)) - 1;
+    ++places;
+  }
+  return places > few * static_cast<double>(recording.rows() - 1) ? 0 : lost;
 }
 
 SUREFOOT_ONCE std::vector<FoundFault> find_gaps(const BoundSimulator& bound, const LogDoctorCriteria& criteria) {

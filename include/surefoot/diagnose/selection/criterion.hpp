@@ -156,6 +156,9 @@ std::multiset<std::string> structure_of(const Hypothesis& hypothesis);
 /// The same effects at the same places, perhaps in another form or order.
 bool same_structure(const Hypothesis& a, const Hypothesis& b);
 
+/// Whether all effects of one structure are in another one, which has more.
+bool is_part_of(const Hypothesis& part, const Hypothesis& whole);
+
 /// Whether a structure is hardly closer than one of the pool that lacks some of its effects: what can be said of it is
 /// said of that one.
 bool holds_idle_effect(const EvaluatedHypothesis& one, const std::vector<EvaluatedHypothesis>& pool);

@@ -195,15 +195,17 @@ SUREFOOT_INLINE bool same_structure(const Hypothesis& a, const Hypothesis& b) {
   return structure_of(a) == structure_of(b);
 }
 
+SUREFOOT_ONCE bool is_part_of(const Hypothesis& part, const Hypothesis& whole) {
+  const std::multiset<std::string> some = structure_of(part), all = structure_of(whole);
+  return some.size() < all.size() && std::includes(all.begin(), all.end(), some.begin(), some.end());
+}
+
 SUREFOOT_INLINE bool holds_idle_effect(const EvaluatedHypothesis& one, const std::vector<EvaluatedHypothesis>& pool) {
-  const std::multiset<std::string> effects = structure_of(one.hypothesis);
   const double error = one.errors.rms();
   for (const EvaluatedHypothesis& other : pool) {
-    if (other.hypothesis.effects.size() >= one.hypothesis.effects.size()) continue;
     const double without = other.errors.rms();
     if (!(error * error > clearly_less * without * without)) continue;
-    const std::multiset<std::string> fewer = structure_of(other.hypothesis);
-    if (std::includes(effects.begin(), effects.end(), fewer.begin(), fewer.end())) return true;
+    if (is_part_of(other.hypothesis, one.hypothesis)) return true;
   }
   return false;
 }

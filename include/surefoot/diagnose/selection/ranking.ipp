@@ -56,12 +56,6 @@ SUREFOOT_ONCE std::size_t closest_of_tie(const Search& search, const std::vector
   return closest;
 }
 
-/// Whether all effects of one structure are in another one, which has more.
-SUREFOOT_ONCE bool is_part_of(const Hypothesis& part, const Hypothesis& whole) {
-  const std::multiset<std::string> some = structure_of(part), all = structure_of(whole);
-  return some.size() < all.size() && std::includes(all.begin(), all.end(), some.begin(), some.end());
-}
-
 SUREFOOT_ONCE std::size_t without_improbable(const Search& search, const std::vector<EvaluatedHypothesis>& pool,
                                              const std::vector<double>& share, std::size_t whole) {
   constexpr double probable = 0.5;  // than not

@@ -59,11 +59,17 @@ SUREFOOT_ONCE bool free_states_alone(EstimationSetup& setup, Fit& calibrated, co
   return false;
 }
 
-/// Inputs that are not held, and states that do not begin as the model says; true if recordings show any.
-SUREFOOT_ONCE bool revise_what_was_said(EstimationSetup& setup, Fit& calibrated, const Parallel& parallel) {
+/// The subject of comparisons of calibrated models.
+SUREFOOT_ONCE SearchProblem problem_of(const EstimationSetup& setup) {
   SearchProblem problem;
   problem.fit = setup.problem;
   problem.scale = error_scale_of(setup);
+  return problem;
+}
+
+/// Inputs that are not held, and states that do not begin as the model says; true if recordings show any.
+SUREFOOT_ONCE bool revise_what_was_said(EstimationSetup& setup, Fit& calibrated, const Parallel& parallel) {
+  SearchProblem problem = problem_of(setup);
   const bool holds = choose_holds(setup.bound, calibrated, problem, parallel);
   setup.bound.integration = setup.problem.integration = problem.fit.integration;
   return free_states_alone(setup, calibrated, problem, parallel) || holds;
@@ -72,9 +78,7 @@ SUREFOOT_ONCE bool revise_what_was_said(EstimationSetup& setup, Fit& calibrated,
 /// Initial states that may explain what the calibrated model leaves, all at once.
 SUREFOOT_ONCE FreedTogether free_what_is_left(const EstimationSetup& setup, const Fit& calibrated,
                                               const RunContext& run) {
-  SearchProblem problem;
-  problem.fit = setup.problem;
-  problem.scale = error_scale_of(setup);
+  const SearchProblem problem = problem_of(setup);
   if (setup.noise != NoiseKind::measurement || problem.fit.stopped() ||
       !holds_structure(setup, calibrated.hypothesis, problem.fit, problem.criteria, run.parallel)) {
     return {};

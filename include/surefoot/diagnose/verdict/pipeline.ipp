@@ -17,6 +17,7 @@
 #include "surefoot/diagnose/estimation/growing_horizon.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/standard_errors.hpp"
+#include "surefoot/diagnose/log_doctor/reading_faults.hpp"
 #include "surefoot/diagnose/residual_tests/noise.hpp"
 #include "surefoot/diagnose/screening.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
@@ -31,6 +32,12 @@
 
 namespace surefoot::diagnosis {
 
+SUREFOOT_ONCE std::string lost_rows_sentence(int lost) {
+  return "rows are lost, " + std::to_string(lost) +
+         " in all, by the steps of the clock: what was commanded in them is not known, and what it did may pass for "
+         "missing physics";
+}
+
 SUREFOOT_ONCE std::vector<Remark> screen_recordings(const SimulatorInfo& info, std::vector<Recording>& recordings) {
   if (recordings.empty()) throw DiagnoseError("there is no recording to diagnose");
   std::vector<Remark> remarks;
@@ -42,6 +49,11 @@ SUREFOOT_ONCE std::vector<Remark> screen_recordings(const SimulatorInfo& info, s
   check_readings(info, recordings);
   const auto screened = screen(info, recordings);
   remarks.insert(remarks.end(), screened.begin(), screened.end());
+  int lost = 0;
+  for (const Recording& recording : recordings) lost += lost_rows(recording);
+  if (lost > 0 && !info.inputs.empty() && info.kind == SimulatorKind::ode) {
+    remarks.push_back({"", lost_rows_sentence(lost)});
+  }
   return remarks;
 }
 
@@ -272,7 +284,8 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
     const bool found_late = run.options.repair && !more.faults.empty();
     begins_anew = found_late && run.has_time_for_as_much_again(started);
     if (found_late && !begins_anew) diagnosis.remarks.push_back({"", no_time_to_begin_anew_sentence()});
-    if (is_named_again(log.faults, more.faults)) {
+    const bool named_again = is_named_again(log.faults, more.faults);
+    if (named_again) {
       log = examine_with_effects(bind, logged, found, run);
     } else if (!more.faults.empty()) {
       log.faults.insert(log.faults.end(), more.faults.begin(), more.faults.end());
@@ -280,7 +293,8 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
     }
     if (begins_anew) continue;
     const bool freed = std::find(found.freed.begin(), found.freed.end(), true) != found.freed.end();
-    if ((found_any || freed) && !confirmed && !log.faults.empty() && !run.search_has_ended()) {
+    const bool in_doubt = (found_any || freed) && !named_again && !confirmed && !log.faults.empty();
+    if (in_doubt && !run.search_has_ended()) {
       confirmed = true;
       const LogExamination again = examine_with_effects(bind, logged, found, run);
       if (withdraw_faults(log, again, run.has_time_for_as_much_again(started))) continue;

@@ -88,6 +88,7 @@ SUREFOOT_ONCE void remove_outliers_from(EstimationSetup& setup, const Hypothesis
   }
 }
 
+/// Lets these states begin anywhere in all recordings.
 SUREFOOT_ONCE void free_all(EstimationSetup& setup, const std::vector<bool>& states) {
   setup.freed.resize(states.size(), false);
   for (std::size_t i = 0; i < states.size(); ++i) {
