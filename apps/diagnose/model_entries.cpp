@@ -145,7 +145,8 @@ surefoot::ParameterInfo read_parameter(const TomlTable& table, const TomlEntry& 
   surefoot::ParameterInfo parameter;
   parameter.name = entry.key;
   parameter.value = required_number(own, "value", "its nominal value");
-  parameter.unit = required_text(own, "unit", "its unit, say \"kg m^2\", or \"1\"");
+  const toml::value* unit = find(own, "unit");
+  parameter.unit = unit != nullptr ? to_text(*unit, place(own, *unit, "unit")) : "1";
   if (const toml::value* fixed = find(own, "fixed")) {
     if (!fixed->is_boolean()) fail(place(own, *fixed, "fixed"), "true or false is expected");
     parameter.fixed = fixed->as_boolean();

@@ -15,7 +15,8 @@ std::string summary(const surefoot::Diagnosis& d, const std::filesystem::path& o
   text << d.model << ": " << headline(d.verdict) << (d.complete ? "" : " (so far)") << '\n';
   if (!d.sentence.empty()) text << "  " << d.sentence << '\n';
   for (const auto& fault : d.log_faults) text << "  log     " << fault_text(fault) << '\n';
-  if (!d.regions.empty()) {
+  const bool clean = d.verdict == surefoot::Verdict::adequate || d.verdict == surefoot::Verdict::parameters_only;
+  if (!clean && !d.regions.empty()) {
     const auto& region = d.regions.front();
     text << "  where   " << region.rule << ": " << percent(region.share_of_excess) << " of the excess error in "
          << percent(region.share_of_samples) << " of the samples\n";
@@ -37,7 +38,7 @@ std::string summary(const surefoot::Diagnosis& d, const std::filesystem::path& o
     text << "  on " << d.held_out.size() << " held-out recording(s): error " << rounded(d.held_out_before);
     if (!d.effects.empty()) text << " before, " << rounded(d.held_out_after) << " after";
     text << "; forest " << rounded(d.held_out_forest);
-    if (std::isfinite(d.noise_floor)) text << ", noise floor " << rounded(d.noise_floor);
+    if (std::isfinite(d.noise_ratio)) text << ", noise floor " << rounded(d.noise_floor);
     if (std::isfinite(d.noise_ratio)) text << " (" << rounded(d.noise_ratio) << " times it is left)";
     text << '\n';
   }

@@ -8,7 +8,7 @@ namespace diagnose_program {
 namespace {
 
 // Ending of a column's name, and the unit as it is printed. Longer endings are looked for first.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 76> units{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 79> units{{
     {"s", "s"},
     {"ms", "ms"},
     {"us", "us"},
@@ -41,6 +41,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 76> units{{
     {"l", "l"},
     {"l_s", "l/s"},
     {"l_min", "l/min"},
+    {"L", "L"},
+    {"L_s", "L/s"},
+    {"L_min", "L/min"},
     {"kg", "kg"},
     {"g", "g"},
     {"kg_s", "kg/s"},

@@ -155,6 +155,8 @@ TEST_CASE("a missing unit is refused") {
 
 TEST_CASE("a unit may be written as the column's name ends") {
   CHECK(diagnose_program::unit_fits("heater_degC", "degC"));
+  CHECK(diagnose_program::unit_fits("flow_L_min", "L/min"));
+  CHECK(diagnose_program::unit_fits("flow_L_s", "L/s"));
   CHECK(diagnose_program::unit_fits("heater_degC", "C"));
   CHECK_FALSE(diagnose_program::unit_fits("heater_degC", "K"));
   CHECK_FALSE(diagnose_program::unit_fits("speed_m_s", "rad"));

@@ -107,6 +107,23 @@ TEST_CASE("hysteresis solves its differential equation") {
   }
 }
 
+TEST_CASE("hysteresis of any exponent holds those of exponent 1 and 2, and solves its equation between them") {
+  using namespace effects;
+  const double width = 0.3, small = 1e-5;
+  for (const double z : {-0.25, -0.1, 0.0, 0.2}) {
+    for (const double way : {-0.5, -0.04, 0.02, 0.9}) {
+      CHECK(bouc_wen(z, way, width, 1, 1) == doctest::Approx(bouc_wen_1(z, way, width)).epsilon(1e-4));
+      CHECK(bouc_wen(z, way, width, 0, 2) == doctest::Approx(bouc_wen_2(z, way, width)).epsilon(1e-4));
+    }
+    for (const double side : {-1.0, 1.0}) {
+      const double slope = (bouc_wen(z, side * small, width, 0.4, 1.5) - z) / (side * small);
+      const double away = std::pow(std::abs(z) / width, 1.5);
+      CHECK(slope == doctest::Approx(side * z > 0 ? 1 - away : 1 + 0.4 * away).epsilon(1e-3));
+    }
+  }
+  CHECK(std::isfinite(bouc_wen(0, 1e6, width, 0.4, 6)));
+}
+
 TEST_CASE("hysteresis takes energy out of an oscillation, as much at any step") {
   for (const Effect& effect : {effects::hysteresis(), effects::hysteresis_squared()}) {
     std::vector<double> last;

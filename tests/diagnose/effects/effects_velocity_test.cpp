@@ -218,6 +218,17 @@ TEST_CASE("cubic stiffness and cogging are springs without losses") {
   }
 }
 
+TEST_CASE("a second harmonic of cogging repeats twice as often, and is nothing at first") {
+  const Effect plain = effects::cogging(), richer = effects::cogging_harmonics();
+  CHECK(richer.extends == std::vector<std::string>{""});
+  for (const double at : {0.0, 0.07, 0.31}) {
+    const EffectContext here{.position = at};
+    const std::vector<double> none{0.2, -0.1, 0.5, 0, 0}, second{0, 0, 0.5, 0.2, -0.1}, half{0.2, -0.1, 0.25};
+    CHECK(richer.force(here, none, {}) == plain.force(here, std::vector<double>{0.2, -0.1, 0.5}, {}));
+    CHECK(richer.force(here, second, {}) == doctest::Approx(plain.force(here, half, {})));
+  }
+}
+
 TEST_CASE("cogging repeats with its period") {
   const Effect effect = effects::cogging();
   const std::vector<double> p = {0.7, -0.4, 0.3};

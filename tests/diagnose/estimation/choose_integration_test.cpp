@@ -3,6 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <utility>
+
+#include "surefoot/diagnose/estimation/fit.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 #include "tests/support/walking_robot.hpp"
 
@@ -51,6 +54,24 @@ TEST_CASE("the integration is fine enough for the recording that needs it most, 
   CHECK(first.order > easy.order);
   CHECK(first.order == last.order);
   CHECK(first.step == last.step);
+}
+
+TEST_CASE("what is much faster than rows is integrated in as many steps as it takes to run") {
+  const auto fast = [](double leak) {
+    BoundSimulator bound = bind_simulator(toys::LeakyTank{}, {toys::tank_recording(0, 1000)});
+    Hypothesis hypothesis = nominal_hypothesis(bound);
+    hypothesis.parameters[1] = leak;
+    bound.integration = integration_that_runs(bound, hypothesis, serially());
+    return std::pair{bound.integration, choose_integration(bound, hypothesis, Vec<1>(1e-3), bound.integration, {0},
+                                                           serially())};
+  };
+  const double row = 0.05;
+  CHECK(fast(1).first.step == 0);  // one step a row will do
+  const auto [runs, chosen] = fast(30 / row);  // 30 time constants a row; Runge-Kutta's fourth order bears 2.8 a step
+  CHECK(runs.step > row / 16);
+  CHECK(runs.step < row / 10);
+  CHECK(chosen.step <= runs.step);
+  CHECK(chosen.step > row / 128);
 }
 
 TEST_CASE("a map is left as it is") {

@@ -42,6 +42,36 @@ TEST_CASE("two standard errors cover the truth about as often as they should, al
   }
 }
 
+/// A tank whose gain is a product of two parameters.
+struct TwiceUnknownTank {
+  using State = Vec<1>;
+  using Input = Vec<1>;
+  using Output = Vec<1>;
+  SimulatorInfo info() const {
+    SimulatorInfo info = LeakyTank{}.info();
+    info.signals.clear();
+    info.parameters = {{"gain", "m/s", 1, 0.2, 5}, {"factor", "1", 1, 0.2, 5}, {"leak", "1/s", 1, 0.2, 5}};
+    return info;
+  }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& p) const {
+    return State(p[0] * p[1] * u[0] - p[2] * x[0]);
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return x; }
+};
+
+TEST_CASE("parameters that only matter together are said to be unknown, however exact the recordings") {
+  for (const double noise : {0.02, 1e-5}) {
+    const BoundSimulator bound = bind_simulator(TwiceUnknownTank{}, tanks(4, 200, 1.5, 0.7, noise));
+    const FitProblem problem = problem_of(4, noise);
+    const Fit fitted = fit(bound, nominal_hypothesis(bound), problem, serially());
+    const StandardErrors errors = standard_errors(bound, fitted.hypothesis, problem, serially());
+    REQUIRE(errors.deviation.size() == 3);
+    for (const int k : {0, 1}) CHECK(errors.deviation[k] > 0.4 * fitted.hypothesis.parameters[k]);
+    CHECK(errors.correlation(0, 1) < -0.99);
+    CHECK(errors.deviation[2] < 0.1 * noise / 0.02);
+  }
+}
+
 TEST_CASE("parameters that trade off are correlated, and a hypothesis without parameters has no errors") {
   const BoundSimulator bound = bind_simulator(LeakyTank{}, tanks(2, 200, 1.5, 0.7, 0.02));
   const StandardErrors errors = standard_errors(bound, nominal_hypothesis(bound), problem_of(2, 0.02), serially());

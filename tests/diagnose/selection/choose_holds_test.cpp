@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
@@ -69,6 +70,48 @@ TEST_CASE("recordings say what an input is between rows, where the model does no
     for (const InputHold from : {zero_order, linear, before}) CHECK(chosen(SaidTank{}, truth, from) == truth);
     CHECK(chosen(SaidTank{{}, zero_order}, truth) == zero_order);
   }
+}
+
+/// A dancer roller between two rollers whose speeds are measured: only their difference moves it.
+struct Dancer {
+  using State = Vec<1>;
+  using Input = Vec<2>;
+  using Output = Vec<1>;
+  std::optional<InputHold> hold = {};
+  SimulatorInfo info() const {
+    return {.name = "dancer",
+            .states = {{"x", "m"}},
+            .inputs = {{"fast", "m/s", hold}, {"slow", "m/s", hold}},
+            .outputs = {{"x_m", "m"}},
+            .parameters = {{"gain", "1", 1, 0.5, 2}, {"back", "1/s", 1, 0.5, 2}}};
+  }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& p) const {
+    return State(p[0] * (u[0] - u[1]) - p[1] * x[0]);
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return x; }
+};
+
+TEST_CASE("inputs of which only the difference acts are interpolated together") {
+  std::vector<Recording> recordings;
+  Rng rng(8);
+  for (int r = 0; r < 4; ++r) {
+    Recording recording = toys::blank_recording(Dancer{}.info(), 150, 0.05);
+    for (Eigen::Index i = 0; i < recording.rows(); ++i) {
+      const double t = recording.time[i], both = 8 * t;  // speeding up: half a row late this is much
+      recording.inputs(0, i) = both + 0.3 * std::sin((3 + 0.4 * r) * t);
+      recording.inputs(1, i) = both;
+    }
+    const auto machine = toys::machine({1.1, 0.9}, {});
+    recording.outputs = simulate_augmented(Dancer{InputHold::linear}, machine, recording).outputs;
+    for (double& position : recording.outputs.reshaped()) position += 0.0005 * rng.normal();
+    recordings.push_back(std::move(recording));
+  }
+  const BoundSimulator bound = bind_simulator(Dancer{}, recordings);
+  SearchProblem problem = tank_problem();
+  problem.fit.weighting.sigma.setConstant(0.0005);
+  Fit fitted = fit(bound, nominal_hypothesis(bound), problem.fit, serially());
+  CHECK(choose_holds(bound, fitted, problem, serially()));
+  CHECK(problem.fit.integration.inputs == std::vector<InputHold>{InputHold::linear, InputHold::linear});
 }
 
 TEST_CASE("what stands still in most rows is not interpolated") {

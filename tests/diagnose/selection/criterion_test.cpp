@@ -10,6 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "surefoot/diagnose/effects/first_order_lag.hpp"
+#include "surefoot/diagnose/effects/hysteresis.hpp"
+#include "surefoot/diagnose/effects/not_settled.hpp"
 #include "tests/diagnose/verdict/tank_setup.hpp"
 
 namespace surefoot::diagnosis {
@@ -60,6 +63,19 @@ TEST_CASE("a difference that may come of the form of effects counts as one error
   CHECK(behind(0.9, 1e6, 1, 0.2) > -0.1);
   CHECK(behind(1.4, 100, 1, 0.2) > 10 * small);  // beyond it
   CHECK(behind(1.4, 100, 1, 0.2) < behind(1.4, 100, 1, 0));
+}
+
+TEST_CASE("beside what leaves only noise, errors of form are as small as a diagnosis tolerates them") {
+  SearchProblem problem;
+  problem.least = Eigen::VectorXd::Constant(1, 9.0);
+  const auto negligible = [&](double mean_square) { return negligible_beside(errors_of({mean_square}), problem)[0]; };
+  CHECK(negligible(1) == 9);  // the noise is not known
+  problem.noise = Eigen::VectorXd::Constant(1, 1.0);
+  CHECK(negligible(1) == selection_criteria.tolerated_form);
+  CHECK(negligible(1.3) == selection_criteria.tolerated_form);
+  CHECK(negligible(2) == 9);  // nothing is of quite the right form
+  problem.least.setConstant(0.1);
+  CHECK(negligible(1) == 0.1);
 }
 
 TEST_CASE("the scale of a recording is its own in part: errors that differ from one to the next are no worse for it") {
@@ -206,7 +222,10 @@ TEST_CASE("an effect is idle if a structure without it is as close") {
 TEST_CASE("every parameter counts that an effect has") {
   EvaluatedHypothesis one;
   CHECK(one.parameter_count() == 0);
-  one.hypothesis.values = {Eigen::VectorXd::Zero(2), Eigen::VectorXd::Zero(1)};
+  for (const Effect& effect : {effects::hysteresis(), effects::not_settled(effects::first_order_lag())}) {
+    one.hypothesis.effects.push_back({std::make_shared<const Effect>(effect), 0, -1, "level", 0});
+    one.hypothesis.values.push_back(Eigen::VectorXd::Zero(9));  // where recordings begin counts as part of each
+  }
   CHECK(one.parameter_count() == 3);
 }
 

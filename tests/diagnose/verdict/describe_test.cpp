@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -27,8 +28,8 @@ TEST_CASE("intervals are two-sided 95 % of the standard errors, within the bound
   const BoundSimulator bound = tank();
   const auto parameters = calibrated_parameters(bound, nominal_hypothesis(bound), errors_of(0.1, 1, 0));
   REQUIRE(parameters.size() == 2);
-  CHECK(parameters[0].fit.low == doctest::Approx(1 - 0.196));
-  CHECK(parameters[0].fit.high == doctest::Approx(1.196));
+  CHECK(parameters[0].fit.low == doctest::Approx(std::exp(-0.196)));  // searched by its logarithm
+  CHECK(parameters[0].fit.high == doctest::Approx(std::exp(0.196)));
   CHECK(parameters[1].fit.low == 0.2);
   CHECK_FALSE(parameters[0].at_bound);
 }
@@ -88,7 +89,11 @@ TEST_CASE("every verdict has its sentence") {
         "The model leaves something out that no known effect explains; a part of it: a leak; it shows where level > 2 "
         "m. With that, the error on held-out recordings falls by 75 %, to 4 times the noise; 1 of 2 agree.");
   diagnosis.verdict = Verdict::unfinished;
-  CHECK(verdict_sentence(diagnosis, {}).starts_with("The search was not finished"));
+  CHECK(verdict_sentence(diagnosis, {}).starts_with("The search was not finished, so that nothing is concluded; the"));
+  diagnosis.noise_ratio = 1.2;
+  CHECK(verdict_sentence(diagnosis, {}).starts_with(
+      "The search was not finished, so that others may explain it as well as what was found: a leak."));
+  diagnosis.noise_ratio = 4;
   diagnosis.effects.clear();
   diagnosis.verdict = Verdict::unexplained;
   CHECK(verdict_sentence(diagnosis, {}).ends_with("Its error is 4 times the noise."));

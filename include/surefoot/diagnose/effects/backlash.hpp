@@ -39,6 +39,7 @@ inline Effect backlash() {
               names_of({"input_delay", "sensor_delay", "hysteresis", "coulomb_friction", "joint_elasticity"}),
           .experiment = "slow reversals at two amplitudes: lost motion is the same for both",
           .hidden_states = 1,
+          .start_measure = Measure{.position = 1},
           .start = +[](const EffectContext& m, Values, HiddenStates hidden) { hidden[0] = m.position; },
           .advance = +[](const EffectContext& m, Values p,
                          HiddenStates hidden) { hidden[0] = behind_gap(hidden[0], m.position, p[0]); },

@@ -28,6 +28,7 @@
 #include "surefoot/diagnose/effects/joint_elasticity.hpp"
 #include "surefoot/diagnose/effects/leak.hpp"
 #include "surefoot/diagnose/effects/load_dependent_friction.hpp"
+#include "surefoot/diagnose/effects/not_settled.hpp"
 #include "surefoot/diagnose/effects/overflow.hpp"
 #include "surefoot/diagnose/effects/parameter_drift.hpp"
 #include "surefoot/diagnose/effects/quadratic_drag.hpp"
@@ -61,11 +62,13 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
                              effects::hysteresis(),
                              effects::hysteresis_squared(),
                              effects::hysteresis_asymmetric(),
+                             effects::hysteresis_general(),
                              effects::backlash(),
                              effects::backlash_gap(),
                              effects::backlash_motor(),
                              effects::joint_elasticity(),
                              effects::cogging(),
+                             effects::cogging_harmonics(),
                              effects::gravity_offset(),
                              effects::end_stop_upper(),
                              effects::end_stop_lower(),
@@ -76,6 +79,8 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
     if (all[i].needs_drive) all.push_back(effects::with_presliding(all[i]));
     all.push_back(effects::smoothed(all[i]));
   }
+  all.push_back(effects::with_presliding(effects::stribeck_friction()));
+  all.back().extends = {"", "smooth"};
   return all;
 }
 
@@ -121,6 +126,9 @@ SUREFOOT_ONCE std::vector<Effect> all_effects() {
     all.insert(all.end(), place.begin(), place.end());
   }
   all.push_back(effects::supply_sag_current());  // a form of an effect on inputs
+  for (std::size_t i = 0, count = all.size(); i < count; ++i) {
+    if (all[i].start_measure && !all[i].from_rest) all.push_back(effects::not_settled(all[i]));
+  }
   return all;
 }
 

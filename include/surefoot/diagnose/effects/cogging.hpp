@@ -1,12 +1,15 @@
 // Cogging or torque ripple: a force that repeats along the way,
-//   sine * sin(2 pi q/period) + cosine * cos(2 pi q/period).
+//   sine * sin(2 pi q/period) + cosine * cos(2 pi q/period),
+// and in the form "two harmonics" the same of half the period beside it.
 // J. Holtz, L. Springob: "Identification and compensation of torque ripple in high-precision permanent magnet motor
 // drives", IEEE Trans. Ind. Electron. 43(2), 1996.
 // Confusable with gravity when the period is about a turn, and with stick-slip of Stribeck friction at slow speeds.
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <utility>
 
 #include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
@@ -35,6 +38,27 @@ inline Effect cogging() {
             const double phase = 2 * std::numbers::pi * m.position / p[2];
             return p[0] * std::sin(phase) + p[1] * std::cos(phase);
           }};
+}
+
+/// Slots and poles repeat with more than one period: the same with half the period beside it.
+inline Effect cogging_harmonics() {
+  Effect effect = cogging();
+  effect.sentence =
+      "cogging with a period of {period}, amplitudes {sine} and {cosine}, and {sine_2} and {cosine_2} of half the "
+      "period, at {at}";
+  effect.form = "two harmonics";
+  effect.extends = {""};
+  for (std::size_t k = 0; k < 2; ++k) {
+    EffectParameter second = effect.parameters[k];
+    second.name += "_2";
+    second.starts = {0};
+    effect.parameters.push_back(std::move(second));
+  }
+  effect.force = +[](const EffectContext& m, Values p, Values) {
+    const double phase = 2 * std::numbers::pi * m.position / p[2];
+    return p[0] * std::sin(phase) + p[1] * std::cos(phase) + p[3] * std::sin(2 * phase) + p[4] * std::cos(2 * phase);
+  };
+  return effect;
 }
 
 }  // namespace surefoot::effects

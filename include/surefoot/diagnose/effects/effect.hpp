@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -77,8 +78,12 @@ struct Effect {
   std::vector<std::string> confusable_with = {};  // names of effects with a similar signature
   std::string experiment = {};                    // that shows this effect by itself
   std::string form = {};                          // tells variants of one name apart, mostly empty
+  std::vector<std::string> extends = {};          // forms that are special cases of it; it is only tried where one of
+                                          // them was found, from its fit and the starts of the further parameters
 
   int hidden_states = 0;
+  std::optional<Measure> start_measure = {};  // of the first hidden state, where a recording may find it at any value
+  bool starts_anywhere = false;  // and does: what `start` says is off by a number that each recording tells
   bool needs_drive = false;
   bool needs_damping = false;
   bool is_impulsive =

@@ -37,6 +37,7 @@ inline Effect first_order_lag() {
               "sharp steps of the input at random times: after a lag it starts at once, after a delay nothing "
               "moves",
           .hidden_states = 2,
+          .start_measure = Measure{.value = 1},
           .start =
               +[](const EffectContext& m, Values, HiddenStates hidden) {
                 hidden[0] = m.value;

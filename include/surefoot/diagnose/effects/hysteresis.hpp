@@ -3,10 +3,12 @@
 //   z' = v - |v| z / width  (exponent 1, beta alone),   force = -force * z / width.
 // Form "n = 2" has exponent 2 and beta = gamma: dz/dq = 1 - (z/width)^2 on the way up, 1 on the way back. Form
 // "asymmetric" has exponent 1 and any gamma: dz/dq = 1 - (1 - shape) |z|/width on the way out, 1 + (1 + shape)
-// |z|/width on the way back, with shape = -gamma / beta; beyond 1 it stiffens on the way out. All are functions of the
-// distance travelled since the last step, so they are evaluated in closed form and stable for any step. HiddenStates:
-// z, position after the last step. With a width far below the travel it is dry friction that is reached after some
-// presliding (P. R. Dahl, 1968), and called so; confusable with backlash, which also forgets the way at each reversal.
+// |z|/width on the way back, with shape = -gamma / beta; beyond 1 it stiffens on the way out. These are functions of
+// the distance travelled since the last step, evaluated in closed form and stable for any step. Form "any exponent" has
+// dz/dq = 1 - (|z|/width)^exponent on the way out, 1 + back (|z|/width)^exponent on the way back, and is integrated.
+// HiddenStates: z, position after the last step. With a width far below the travel it is dry friction that is reached
+// after some presliding (P. R. Dahl, 1968), and called so; confusable with backlash, which also forgets the way at each
+// reversal.
 #pragma once
 
 #include <algorithm>
@@ -68,6 +70,25 @@ inline EffectParameter presliding_width_parameter(std::vector<double> starts) {
       .name = "width", .measure = {.position = 1}, .low = 0.001, .high = presliding_width, .starts = std::move(starts)};
 }
 
+/// With any exponent and beta + gamma = 1, by Runge-Kutta steps of at most a tenth of the width. `back` is beta -
+/// gamma: by how much it is steeper on the way back. Cost: ten steps per width of way.
+inline double bouc_wen(double z, double way, double width, double back, double exponent) {
+  constexpr double steps_per_width = 10, most_widths = 20;  // of way: then it is at its level
+  const double side = way < 0 ? -1 : 1, left = std::min(std::abs(way) / width, most_widths);
+  const auto slope = [back, exponent](double up) {
+    const double bent = std::pow(std::abs(up), exponent);
+    return up < 0 ? 1 + back * bent : 1 - bent;
+  };
+  const int steps = std::max(1, static_cast<int>(std::ceil(left * steps_per_width)));
+  const double h = left / steps;
+  double up = side * z / width;  // seen in the direction of motion
+  for (int i = 0; i < steps; ++i) {
+    const double a = slope(up), b = slope(up + 0.5 * h * a), c = slope(up + 0.5 * h * b), d = slope(up + h * c);
+    up += h / 6 * (a + 2 * b + 2 * c + d);
+  }
+  return side * width * up;
+}
+
 /// HiddenStates of a path that begins: z, and the position.
 inline void start_of_path(const EffectContext& m, Values /*p*/, HiddenStates hidden) {
   hidden[0] = 0;
@@ -87,6 +108,7 @@ Effect hysteresis_of(std::string form) {
       .experiment = "slow reversals of growing amplitude, from far below to far above the width",
       .form = std::move(form),
       .hidden_states = 2,
+      .start_measure = Measure{.position = 1},
       .force = +[](const EffectContext& m, Values p,
                    Values hidden) { return -p[0] * Move(hidden[0], m.position - hidden[1], p[1]) / p[1]; },
       .start = start_of_path,
@@ -119,6 +141,7 @@ inline Effect with_presliding(Effect friction) {
   friction.parameters.push_back(presliding_width_parameter({0.01}));
   friction.form += friction.form.empty() ? "presliding" : ", presliding";
   friction.hidden_states = 2;
+  friction.start_measure = Measure{.position = 1};
   friction.force = [level = std::exchange(friction.dry, {})](const EffectContext& m, Values p, Values hidden) {
     return -level(m, p) * bouc_wen_1(hidden[0], m.position - hidden[1], p.back()) / p.back();
   };
@@ -141,6 +164,26 @@ inline Effect hysteresis_asymmetric() {
   };
   effect.advance = +[](const EffectContext& m, Values p, HiddenStates hidden) {
     hidden[0] = bouc_wen_asymmetric(hidden[0], m.position - hidden[1], p[1], p[2]);
+    hidden[1] = m.position;
+  };
+  return effect;
+}
+
+/// The exponent says how sharply the force turns from rising to its level.
+inline Effect hysteresis_general() {
+  Effect effect = hysteresis();
+  effect.sentence =
+      "hysteresis of {force} and exponent {exponent}, {back} steeper on the way back, reached after {width} of travel, "
+      "at {at}";
+  effect.parameters.push_back({.name = "back", .low = -1, .high = 2, .starts = {0, 1}});
+  effect.parameters.push_back({.name = "exponent", .low = 0.5, .high = 6, .starts = {1, 2}});
+  effect.form = "any exponent";
+  effect.extends = {"", "n = 2"};
+  effect.force = +[](const EffectContext& m, Values p, Values hidden) {
+    return -p[0] * bouc_wen(hidden[0], m.position - hidden[1], p[1], p[2], p[3]) / p[1];
+  };
+  effect.advance = +[](const EffectContext& m, Values p, HiddenStates hidden) {
+    hidden[0] = bouc_wen(hidden[0], m.position - hidden[1], p[1], p[2], p[3]);
     hidden[1] = m.position;
   };
   return effect;

@@ -23,6 +23,7 @@ inline Effect rate_limit() {
           .confusable_with = names_of({"first_order_lag", "input_delay", "saturation"}),
           .experiment = "steps of the input of several sizes: the time to follow grows with the size",
           .hidden_states = 1,
+          .start_measure = Measure{.value = 1},
           .start = +[](const EffectContext& m, Values, HiddenStates hidden) { hidden[0] = m.value; },
           .advance =
               +[](const EffectContext& m, Values p, HiddenStates hidden) {

@@ -16,6 +16,11 @@ Integration choose_integration(const BoundSimulator& bound, const Hypothesis& hy
                                const Eigen::VectorXd& residual_size, const Integration& now,
                                const std::vector<std::size_t>& recordings, const Parallel& parallel);
 
+/// The coarsest step at which any of the recordings can be simulated at all: one row, or a power of two shorter, where
+/// the model holds something much faster than rows, such as the current of a coil. As it is now where none helps, and
+/// in maps. Cost: mostly a simulation of each recording.
+Integration integration_that_runs(const BoundSimulator& bound, const Hypothesis& hypothesis, const Parallel& parallel);
+
 /// The same where it is finer than now: what effects explain leaves smaller residuals. None where it is not.
 std::optional<Integration> finer_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                              const Eigen::VectorXd& residual_size, const Integration& now,

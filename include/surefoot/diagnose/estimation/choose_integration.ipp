@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -15,6 +16,9 @@
 #include "surefoot/diagnose/estimation/hypothesis.hpp"
 
 namespace surefoot::diagnosis {
+
+/// Steps of a row, of what is held to be exact; and the most that are tried to run at all.
+inline constexpr double reference_steps = 8, most_steps = 128;
 
 /// The median interval of the recording that has the shortest.
 SUREFOOT_ONCE double shortest_interval(const BoundSimulator& bound, const std::vector<std::size_t>& recordings) {
@@ -49,24 +53,46 @@ SUREFOOT_ONCE Eigen::VectorXd differences_of_runs(const std::vector<SimulatedRun
   return squares;
 }
 
+SUREFOOT_ONCE bool any_is_finite(const std::vector<SimulatedRun>& runs) {
+  return std::any_of(runs.begin(), runs.end(), [](const SimulatedRun& run) { return run.finite; });
+}
+
+/// Slack of a step, so that rounding does not add one.
+inline constexpr double step_slack = 0.1;  // of a step
+
+SUREFOOT_ONCE Integration integration_that_runs(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                const Parallel& parallel) {
+  if (bound.info.kind == SimulatorKind::map) return bound.integration;
+  std::vector<std::size_t> all(bound.recordings.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  Integration now = bound.integration;
+  const double row = shortest_interval(bound, all);
+  for (double steps = 1; steps <= most_steps; steps *= 2) {
+    if (steps > 1) now.step = row / (steps - step_slack);
+    if (any_is_finite(simulate_all(bound, hypothesis, all, now, parallel))) return now;
+  }
+  return bound.integration;
+}
+
 SUREFOOT_ONCE Integration choose_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                              const Eigen::VectorXd& residual_size, const Integration& now,
                                              const std::vector<std::size_t>& recordings, const Parallel& parallel) {
-  constexpr double reference_steps = 8;  // per row, of what is held to be exact
-  // Steps are a little longer than one, and a little shorter than a half or a quarter of a row, so that rounding does
-  // not add one.
-  constexpr double one_step = 1.5, two_steps = 1.9, four_steps = 3.9;
+  constexpr double one_step = 1.5;  // a little longer than a row, so that rounding does not add one
   if (bound.info.kind == SimulatorKind::map) return now;
   const double row = shortest_interval(bound, recordings);
   Integration fine = now;
   fine.order = 4;
-  fine.step = row / reference_steps;
-  const std::vector<SimulatedRun> exact = simulate_all(bound, hypothesis, recordings, fine, parallel);
-  bool any_finite = false;
-  for (const SimulatedRun& run : exact) any_finite = any_finite || run.finite;
-  if (!any_finite) return fine;
-  for (const auto& [order, step] :
-       {std::pair{2, one_step * row}, {4, one_step * row}, {4, row / two_steps}, {4, row / four_steps}}) {
+  // of what is held to be exact: eight steps a row, or eight times as many as are needed to run at all
+  double steps = std::max(1.0, now.step > 0 ? std::round(row / now.step) : 1.0);
+  std::vector<SimulatedRun> exact;
+  for (; steps <= most_steps && !any_is_finite(exact); steps *= 2) {
+    fine.step = row / (reference_steps * steps);
+    exact = simulate_all(bound, hypothesis, recordings, fine, parallel);
+  }
+  if (!any_is_finite(exact)) return fine;
+  std::vector<std::pair<int, double>> coarser{{2, one_step * row}, {4, one_step * row}};
+  for (double more = 2; row / more > 1.5 * fine.step; more *= 2) coarser.emplace_back(4, row / (more - step_slack));
+  for (const auto& [order, step] : coarser) {
     Integration coarse = now;
     coarse.order = order;
     coarse.step = step;

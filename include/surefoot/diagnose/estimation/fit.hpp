@@ -59,9 +59,18 @@ class FitFunctions {
 
   /// Forward differences from z, where the residuals are `here`. A free initial state moves the residuals of its own
   /// recording only.
-  Eigen::MatrixXd jacobian(const Eigen::VectorXd& z, const Eigen::VectorXd& here) const;
+  Eigen::MatrixXd jacobian(const Eigen::VectorXd& z, const Eigen::VectorXd& here) const {
+    return differences(z, here, false);
+  }
+
+  /// The same by differences to both sides, at twice the cost: so that what parameters do only together cancels out.
+  Eigen::MatrixXd central_jacobian(const Eigen::VectorXd& z, const Eigen::VectorXd& here) const {
+    return differences(z, here, true);
+  }
 
  private:
+  Eigen::MatrixXd differences(const Eigen::VectorXd& z, const Eigen::VectorXd& here, bool central) const;
+
   Eigen::VectorXd residuals_of(const Hypothesis& hypothesis, std::size_t i) const;
 
   const BoundSimulator& bound_;

@@ -29,8 +29,8 @@ SUREFOOT_INLINE FitFunctions::FitFunctions(const BoundSimulator& bound, const Hy
                                            const FitProblem& problem, const Parallel& parallel)
     : bound_(bound), base_(start), problem_(problem), parallel_(parallel) {
   variables_ = variables_of(bound, start, problem.recordings, problem.free);
-  shared_ = static_cast<std::size_t>(std::count_if(
-      variables_.begin(), variables_.end(), [](const Variable& v) { return v.kind != Variable::Kind::initial; }));
+  shared_ = static_cast<std::size_t>(
+      std::count_if(variables_.begin(), variables_.end(), [](const Variable& v) { return !is_of_one_recording(v); }));
   begin_.push_back(0);
   for (const std::size_t r : problem.recordings) {
     cells_.push_back(cells_of(bound.recordings[r]));
@@ -75,7 +75,8 @@ SUREFOOT_INLINE Eigen::VectorXd FitFunctions::residuals(const Eigen::VectorXd& z
   return all;
 }
 
-SUREFOOT_INLINE Eigen::MatrixXd FitFunctions::jacobian(const Eigen::VectorXd& z, const Eigen::VectorXd& here) const {
+SUREFOOT_INLINE Eigen::MatrixXd FitFunctions::differences(const Eigen::VectorXd& z, const Eigen::VectorXd& here,
+                                                          bool central) const {
   constexpr double difference = 1e-4;  // in units of the search, about 1e-4 of a variable: between noise and curvature
   const auto columns = static_cast<Eigen::Index>(variables_.size());
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(begin_.back(), columns);
@@ -88,13 +89,19 @@ SUREFOOT_INLINE Eigen::MatrixXd FitFunctions::jacobian(const Eigen::VectorXd& z,
   parallel_(jobs.size(), [&](std::size_t j) {
     const auto [v, i] = jobs[j];
     const auto k = static_cast<Eigen::Index>(v);
-    const double high = to_search(variables_[v], variables_[v].high);
+    const double low = to_search(variables_[v], variables_[v].low), high = to_search(variables_[v], variables_[v].high);
     const double step = z[k] + 2 * difference > high ? -difference : difference;
+    const bool both_sides = central && z[k] - difference > low && z[k] + difference < high;
     Eigen::VectorXd moved = z;
-    moved[k] += step;
+    moved[k] = z[k] + step;
     const Eigen::Index length = begin_[i + 1] - begin_[i];
     const Eigen::VectorXd there = residuals_of(at(moved), i);
-    for (Eigen::Index n = 0; n < length; ++n) jacobian(begin_[i] + n, k) = (there[n] - here[begin_[i] + n]) / step;
+    moved[k] = z[k] - step;
+    const Eigen::VectorXd back = both_sides ? residuals_of(at(moved), i) : Eigen::VectorXd();
+    for (Eigen::Index n = 0; n < length; ++n) {
+      const double behind = both_sides ? back[n] : here[begin_[i] + n];
+      jacobian(begin_[i] + n, k) = (there[n] - behind) / (both_sides ? 2 * step : step);
+    }
   });
   for (Eigen::Index i = 0; i < jacobian.size(); ++i) {
     if (!std::isfinite(jacobian.data()[i])) jacobian.data()[i] = 0;
@@ -206,7 +213,10 @@ SUREFOOT_INLINE Fit fit(const BoundSimulator& bound, const Hypothesis& start, co
 SUREFOOT_INLINE Hypothesis with_estimated_initial_states(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                                          const std::vector<std::size_t>& recordings, FitProblem problem,
                                                          const Parallel& parallel) {
-  if (!has_unknown_initial_state(bound, recordings)) return hypothesis;
+  const bool effects_start_anywhere =
+      std::any_of(hypothesis.effects.begin(), hypothesis.effects.end(),
+                  [](const AttachedEffect& one) { return one.effect->starts_anywhere; });
+  if (!effects_start_anywhere && !has_unknown_initial_state(bound, recordings)) return hypothesis;
   problem.recordings = recordings;
   problem.free = Free::initial_only;
   return fit(bound, hypothesis, problem, parallel).hypothesis;

@@ -12,7 +12,8 @@
 
 namespace surefoot::diagnosis {
 
-/// Values are in units of the model.
+/// Values are in units of the model. Those of an effect are its parameters and, if it begins anywhere, by how much its
+/// first hidden state is off at the beginning of each recording of the bound.
 struct Hypothesis {
   std::vector<AttachedEffect> effects;
   Eigen::VectorXd parameters;
@@ -31,6 +32,9 @@ std::vector<SimulatedRun> simulate_all(const BoundSimulator& bound, const Hypoth
                                        const std::vector<std::size_t>& recordings, const Integration& integration,
                                        const Parallel& parallel);
 
+/// The parameters among the values of an effect, with nothing known yet of how it begins in each of the recordings.
+Eigen::VectorXd values_before_starts(const Effect& effect, const Eigen::VectorXd& values, std::size_t recordings);
+
 /// Size in the recordings of a measure at the place an effect is attached to.
 double measure_size(const BoundSimulator& bound, const AttachedEffect& attached, const Measure& measure);
 
@@ -41,7 +45,7 @@ std::string measure_unit(const BoundSimulator& bound, const AttachedEffect& atta
 
 /// A scalar that a fit may change.
 struct Variable {
-  enum class Kind : unsigned char { parameter, effect, initial } kind = Kind::parameter;
+  enum class Kind : unsigned char { parameter, effect, initial, start } kind = Kind::parameter;
   std::size_t index = 0;  // of the parameter, of the effect, of the state
   std::size_t item = 0;   // parameter of the effect; recording
   double low = 0, high = 0, scale = 1;
@@ -49,6 +53,11 @@ struct Variable {
 };
 
 double& value_of(Hypothesis& hypothesis, const Variable& variable);
+
+/// Whether one recording has the variable for itself: how it begins.
+inline bool is_of_one_recording(const Variable& variable) {
+  return variable.kind == Variable::Kind::initial || variable.kind == Variable::Kind::start;
+}
 
 /// Searched coordinates of a variable: its value, or the logarithm, in units of its scale.
 inline double to_search(const Variable& variable, double value) {
@@ -59,7 +68,8 @@ inline double from_search(const Variable& variable, double z) {
   return std::clamp(value, variable.low, variable.high);
 }
 
-/// What a fit may change. all_but_effects: the parameters of the simulator and initial states.
+/// What a fit may change. all_but_effects: the parameters of the simulator and initial states, those of effects as
+/// well.
 enum class Free : unsigned char { everything, all_but_effects, initial_only };
 
 /// What a fit of this hypothesis to these recordings may change, initial states last.

@@ -36,6 +36,15 @@ SUREFOOT_INLINE std::vector<SimulatedRun> simulate_all(const BoundSimulator& bou
   return result;
 }
 
+SUREFOOT_INLINE Eigen::VectorXd values_before_starts(const Effect& effect, const Eigen::VectorXd& values,
+                                                     std::size_t recordings) {
+  const auto parameters = static_cast<Eigen::Index>(effect.parameters.size());
+  const auto starts = static_cast<Eigen::Index>(effect.starts_anywhere ? recordings : 0);
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(parameters + starts);
+  for (Eigen::Index k = 0; k < parameters; ++k) result[k] = values[k];
+  return result;
+}
+
 SUREFOOT_INLINE double measure_size(const BoundSimulator& bound, const AttachedEffect& attached,
                                     const Measure& measure) {
   const auto at = static_cast<std::size_t>(attached.at);
@@ -119,6 +128,10 @@ SUREFOOT_INLINE double& value_of(Hypothesis& hypothesis, const Variable& variabl
       return hypothesis.parameters[static_cast<Eigen::Index>(variable.index)];
     case Variable::Kind::effect:
       return hypothesis.values[variable.index][static_cast<Eigen::Index>(variable.item)];
+    case Variable::Kind::start: {
+      const std::size_t parameters = hypothesis.effects[variable.index].effect->parameters.size();
+      return hypothesis.values[variable.index][static_cast<Eigen::Index>(parameters + variable.item)];
+    }
     case Variable::Kind::initial:
       break;
   }
@@ -164,6 +177,12 @@ SUREFOOT_INLINE std::vector<Variable> variables_of(const BoundSimulator& bound, 
       const double middle = recording.initial[i];
       variables.push_back({Variable::Kind::initial, static_cast<std::size_t>(i), r, middle - initial_range * scale,
                            middle + initial_range * scale, scale, false});
+    }
+    for (std::size_t e = 0; e < hypothesis.effects.size(); ++e) {
+      const AttachedEffect& attached = hypothesis.effects[e];
+      if (!attached.effect->starts_anywhere) continue;
+      const double scale = measure_size(bound, attached, *attached.effect->start_measure);
+      variables.push_back({Variable::Kind::start, e, r, -initial_range * scale, initial_range * scale, scale, false});
     }
   }
   return variables;

@@ -125,7 +125,7 @@ SUREFOOT_INLINE VariablePlaces places_of(const std::vector<Variable>& variables,
                                          const std::vector<std::size_t>& recordings) {
   VariablePlaces places{{}, std::vector<std::vector<Eigen::Index>>(recordings.size())};
   for (std::size_t v = 0; v < variables.size(); ++v) {
-    const bool initial = variables[v].kind == Variable::Kind::initial;
+    const bool initial = is_of_one_recording(variables[v]);
     if (!initial) places.shared.push_back(static_cast<Eigen::Index>(v));
     for (std::size_t i = 0; i < recordings.size() && initial; ++i) {
       if (recordings[i] == variables[v].item) places.own[i].push_back(static_cast<Eigen::Index>(v));

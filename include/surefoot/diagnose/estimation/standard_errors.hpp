@@ -19,7 +19,8 @@ struct StandardErrors {
   Eigen::MatrixXd correlation;  // of the searched coordinates
 };
 
-/// Cost: one Jacobian (see FitFunctions), and the cube of the number of variables.
+/// What recordings do not determine has the width of its prior (prior_width). Cost: a central Jacobian (see
+/// FitFunctions), and the cube of the number of variables.
 StandardErrors standard_errors(const BoundSimulator& bound, const Hypothesis& hypothesis, const FitProblem& problem,
                                const Parallel& parallel);
 

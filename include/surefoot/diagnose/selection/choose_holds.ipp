@@ -37,6 +37,20 @@ SUREFOOT_ONCE bool moves(const BoundSimulator& bound, const std::vector<std::siz
   return 2 * moving > rows;
 }
 
+/// The inputs of which the model does not say what they do between rows: each, and then all at once, since what comes
+/// late in one may be hidden by what comes late in another.
+SUREFOOT_ONCE std::vector<std::vector<std::size_t>> undeclared_inputs(const SimulatorInfo& info) {
+  std::vector<std::vector<std::size_t>> result;
+  std::vector<std::size_t> all;
+  for (std::size_t i = 0; i < info.inputs.size(); ++i) {
+    if (info.inputs[i].hold.has_value()) continue;
+    result.push_back({i});
+    all.push_back(i);
+  }
+  if (all.size() > 1) result.push_back(all);
+  return result;
+}
+
 SUREFOOT_ONCE bool choose_holds(const BoundSimulator& bound, Fit& fitted, SearchProblem& problem,
                                 const Parallel& parallel) {
   if (bound.info.kind == SimulatorKind::map) return false;
@@ -46,18 +60,22 @@ SUREFOOT_ONCE bool choose_holds(const BoundSimulator& bound, Fit& fitted, Search
         error_squares(bound, one.hypothesis, with.recordings, with.integration, problem.scale, parallel)};
   };
   bool changed = false;
-  for (std::size_t i = 0; i < bound.info.inputs.size(); ++i) {
-    if (bound.info.inputs[i].hold.has_value()) continue;
+  for (const std::vector<std::size_t>& some : undeclared_inputs(bound.info)) {
     const FitProblem before = problem.fit;
     const Fit now = fitted;
     double most = std::log(problem.criteria.named_odds);
     for (const InputHold hold : {InputHold::zero_order, InputHold::linear, InputHold::before}) {
       if (problem.stopped()) return changed;
       FitProblem other = before;
-      other.integration.inputs.resize(bound.info.inputs.size(), InputHold::zero_order);
-      if (other.integration.inputs[i] == hold) continue;
-      if (hold == InputHold::linear && !moves(bound, before.recordings, i)) continue;
-      other.integration.inputs[i] = hold;
+      std::vector<InputHold>& inputs = other.integration.inputs;
+      inputs.resize(bound.info.inputs.size(), InputHold::zero_order);
+      bool otherwise = false, moving = true;
+      for (const std::size_t i : some) {
+        otherwise = otherwise || inputs[i] != hold;
+        moving = moving && moves(bound, before.recordings, i);
+        inputs[i] = hold;
+      }
+      if (!otherwise || (hold == InputHold::linear && !moving)) continue;
       if (!differ(bound, now.hypothesis, before, other.integration, parallel)) continue;
       const Fit then = fit(bound, now.hypothesis, other, parallel);
       if (!then.ok) continue;

@@ -26,14 +26,7 @@ SUREFOOT_ONCE double odds_of_freeing(const BoundSimulator& bound, const Fit& fre
         error_squares(bound, one.hypothesis, problem.fit.recordings, problem.fit.integration, problem.scale, parallel)};
   };
   const EvaluatedHypothesis with = evaluate(free), without = evaluate(known);
-  const ErrorSquares& errors = with.errors;
-  double cost = 0;
-  for (Eigen::Index r = 0; r < errors.counts.rows(); ++r) {
-    double independent = 0;
-    for (Eigen::Index k = 0; k < errors.counts.cols(); ++k) independent += errors.counts(r, k) / errors.memory[k];
-    cost += 0.5 * std::log(std::max(1.0, independent));
-  }
-  return log_odds(with, without, problem.criteria) - states * cost;
+  return log_odds(with, without, problem.criteria) - states * cost_of_own_numbers(with.errors);
 }
 
 /// Fits with one state free, first alone; not ok if that does not help.

@@ -33,6 +33,7 @@ struct SelectionCriteria {
   double degrees = 12;        // of freedom of the prior of a recording's own scale: it differs by about a fifth
   double least_error = 1e-3;  // of the output's standard deviation: smaller errors are those of the integration
   double form_error = 0.05;   // of the error without effects: the form of an effect is never quite that of the machine
+  double tolerated_form = 0.4;  // of the noise's mean square: no more, where another structure leaves no more than that
 
   // Decision:
   double named_odds = 20;      // that something is missing, from which on it is named: 5 % to be wrong
@@ -100,6 +101,7 @@ struct SearchProblem {
   FitProblem fit;                     // all recordings but those held out
   Weighting scale;                    // in units of which errors are compared; the same for all hypotheses
   Eigen::VectorXd least;              // as in ErrorSquares, for all hypotheses
+  Eigen::VectorXd noise = {};         // mean square of the noise by output, in the unit of errors; 0: not known
   std::vector<std::size_t> screened;  // recordings that screen proposals
   Hypothesis nominal;                 // the same without calibration: a second place to start from
   bool scatter = true;                // start the model's parameters from elsewhere too, beside a first effect
@@ -120,6 +122,10 @@ struct SearchProblem {
 
 /// Variance of weighted errors that are as small as those of the integration.
 double least_variance(const SearchProblem& problem);
+
+/// What a number that each recording has for itself costs, such as where a state begins [nat]: half the log of its
+/// independent errors, summed over recordings (BIC).
+double cost_of_own_numbers(const ErrorSquares& errors);
 
 /// Measures a fit on each of its recordings.
 EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, const Fit& fitted, const SearchProblem& problem,

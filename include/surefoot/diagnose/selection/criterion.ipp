@@ -19,7 +19,7 @@ namespace surefoot::diagnosis {
 
 SUREFOOT_INLINE std::size_t EvaluatedHypothesis::parameter_count() const {
   std::size_t count = 0;
-  for (const Eigen::VectorXd& values : hypothesis.values) count += static_cast<std::size_t>(values.size());
+  for (const AttachedEffect& one : hypothesis.effects) count += one.effect->parameters.size();
   return count;
 }
 
@@ -32,6 +32,43 @@ SUREFOOT_INLINE double least_variance(const SearchProblem& problem) {
   return sum;
 }
 
+/// Mean squares over all recordings, by output.
+SUREFOOT_INLINE Eigen::VectorXd pooled(const ErrorSquares& errors) {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(errors.counts.cols());
+  for (Eigen::Index k = 0; k < result.size(); ++k) {
+    double sum = 0, count = 0;
+    for (Eigen::Index r = 0; r < errors.counts.rows(); ++r) {
+      sum += errors.mean_squares(r, k) * errors.counts(r, k);
+      count += errors.counts(r, k);
+    }
+    if (count > 0) result[k] = sum / count;
+  }
+  return result;
+}
+
+/// Differences to a hypothesis that mean nothing. What leaves only noise is of the right form: beside that, errors of
+/// form are as small as a diagnosis tolerates them.
+SUREFOOT_ONCE Eigen::VectorXd negligible_beside(const ErrorSquares& errors, const SearchProblem& problem) {
+  Eigen::VectorXd least = problem.least;
+  const Eigen::VectorXd left = pooled(errors);
+  const double tolerated = problem.criteria.tolerated_form;
+  for (Eigen::Index k = 0; k < std::min(least.size(), problem.noise.size()); ++k) {
+    const double noise = problem.noise[k];
+    if (noise > 0 && left[k] <= (1 + tolerated) * noise) least[k] = std::min(least[k], tolerated * noise);
+  }
+  return least;
+}
+
+SUREFOOT_ONCE double cost_of_own_numbers(const ErrorSquares& errors) {
+  double cost = 0;
+  for (Eigen::Index r = 0; r < errors.counts.rows(); ++r) {
+    double independent = 0;
+    for (Eigen::Index k = 0; k < errors.counts.cols(); ++k) independent += errors.counts(r, k) / errors.memory[k];
+    cost += 0.5 * std::log(std::max(1.0, independent));
+  }
+  return cost;
+}
+
 SUREFOOT_INLINE EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, const Fit& fitted,
                                                  const SearchProblem& problem, const Parallel& parallel) {
   EvaluatedHypothesis result{
@@ -39,7 +76,10 @@ SUREFOOT_INLINE EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, co
       error_squares(bound, fitted.hypothesis, problem.fit.recordings, problem.fit.integration, problem.scale, parallel),
       log_prior(bound, fitted.hypothesis, problem.known, problem.candidates, problem.criteria) +
           log_occam_factor(bound, fitted.hypothesis, problem.fit, least_variance(problem), parallel)};
-  result.errors.least = problem.least;
+  result.errors.least = negligible_beside(result.errors, problem);
+  for (const AttachedEffect& one : fitted.hypothesis.effects) {
+    if (one.effect->starts_anywhere) result.log_prior -= cost_of_own_numbers(result.errors);
+  }
   return result;
 }
 
@@ -67,24 +107,11 @@ SUREFOOT_INLINE double log_prior(const BoundSimulator& bound, const Hypothesis& 
     const double share = (to_search(variable, value_of(copy, variable)) - low) / (high - low);
     const bool idle = is_spare_strength(hypothesis, variable) && share < nothing;  // a simpler effect does as well
     if (idle) sum -= criteria.bound_cost;
-    const bool natural = variable.low == 0 && share < middle;  // a strength near zero is told by the densities
+    // a strength near zero is told by the densities, unless it still says how its input began
+    const bool natural = variable.low == 0 && share < middle && !hypothesis.effects[variable.index].effect->from_rest;
     if (!natural && (share < criteria.bound_share || share > 1 - criteria.bound_share)) sum -= criteria.bound_cost;
   }
   return sum;
-}
-
-/// Mean squares over all recordings, by output.
-SUREFOOT_INLINE Eigen::VectorXd pooled(const ErrorSquares& errors) {
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(errors.counts.cols());
-  for (Eigen::Index k = 0; k < result.size(); ++k) {
-    double sum = 0, count = 0;
-    for (Eigen::Index r = 0; r < errors.counts.rows(); ++r) {
-      sum += errors.mean_squares(r, k) * errors.counts(r, k);
-      count += errors.counts(r, k);
-    }
-    if (count > 0) result[k] = sum / count;
-  }
-  return result;
 }
 
 SUREFOOT_INLINE Eigen::VectorXd negligible_differences(const ErrorSquares& without_effects,

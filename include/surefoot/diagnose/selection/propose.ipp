@@ -61,7 +61,7 @@ SUREFOOT_ONCE Hypothesis with_effect(Hypothesis base, const AttachedEffect& effe
                                      std::size_t before) {
   const auto at = static_cast<std::ptrdiff_t>(before);
   base.effects.insert(base.effects.begin() + at, effect);
-  base.values.insert(base.values.begin() + at, values);
+  base.values.insert(base.values.begin() + at, values_before_starts(*effect.effect, values, base.initial.size()));
   return base;
 }
 
@@ -226,6 +226,7 @@ SUREFOOT_ONCE std::vector<Trial> trials_of(const BoundSimulator& bound, const Hy
   std::vector<std::vector<Trial>> by_candidate(candidates.size());
   parallel(candidates.size(), [&](std::size_t c) {
     const AttachedEffect& candidate = candidates[c];
+    if (!candidate.effect->extends.empty()) return;
     const auto add = [&](std::size_t before, const std::vector<Observed>& seen) {
       for (const Eigen::VectorXd& start : starting_values(bound, candidate, seen)) {
         by_candidate[c].push_back({c, before, start});

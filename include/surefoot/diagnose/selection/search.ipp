@@ -21,6 +21,7 @@
 #include "surefoot/diagnose/estimation/restarts.hpp"
 #include "surefoot/diagnose/selection/choose_holds.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
+#include "surefoot/diagnose/selection/richer_forms.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
 
 namespace surefoot::diagnosis {
@@ -60,6 +61,17 @@ SUREFOOT_ONCE void reweight(Search& search, const EvaluatedHypothesis& best) {
 /// Whether a hypothesis leaves more than noise: what leaves only noise needs no second effect, nor another start.
 SUREFOOT_ONCE bool leaves_structure(const Search& search, const EvaluatedHypothesis& one) {
   return search.problem.structured(one.hypothesis, search.problem.fit);
+}
+
+/// Richer forms for the best structures, where these leave more than noise.
+SUREFOOT_ONCE void enrich(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
+  const auto& [bound, problem, candidates, parallel] = search;
+  constexpr double none_is_hopeless = std::numeric_limits<double>::infinity();
+  for (const EvaluatedHypothesis& one :
+       best_structures(pool, problem.effort.finalists, none_is_hopeless, problem.criteria)) {
+    if (problem.stopped() || !leaves_structure(search, one)) continue;
+    if (const auto richer = in_richer_forms(search, one)) keep_best_form(pool, *richer, problem.criteria);
+  }
 }
 
 /// The children of one parent into the pool of children; no fits for what cannot come near the best structure so far.
@@ -199,6 +211,7 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool, 
     for (const EvaluatedHypothesis& one : beam) done.push_back(one.hypothesis);
     std::vector<EvaluatedHypothesis> children = extended(search, beam, best);
     if (search.effects(best) == 0 && depth == 0) begin_elsewhere(search, children);
+    enrich(search, children);
     for (const EvaluatedHypothesis& child : children) keep_best_form(pool, child, criteria);
     if (depth == 0 && yields(search, pool)) break;
     const EvaluatedHypothesis now = pool[best_of(pool, criteria)];
@@ -500,7 +513,7 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
     selection = ranked(search, pool);
     settle(search, selection.chosen);
     const auto fewer = weigh_effects(search, selection);
-    if (!fewer || search.problem.stopped()) break;
+    if (!fewer) break;
     std::erase_if(pool, [&](const EvaluatedHypothesis& one) {
       return same_structure(one.hypothesis, selection.chosen.hypothesis);
     });

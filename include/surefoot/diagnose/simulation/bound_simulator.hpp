@@ -87,8 +87,9 @@ BoundSimulator bind_simulator(const S& simulator, std::vector<Recording> recordi
                           const Augmentation& augmentation, const Eigen::VectorXd& initial,
                           const Integration& integration) {
     S s = pool->take(i, self.recordings[i]);
+    const Augmentation own{augmentation.effects, augmentation.values, i};
     SimulatedRun result =
-        SimulationRun<S>(s, self.info, self.structure, self.sizes, self.recordings[i], p, augmentation, integration)
+        SimulationRun<S>(s, self.info, self.structure, self.sizes, self.recordings[i], p, own, integration)
             .run(initial);
     pool->give_back(i, std::move(s));
     return result;

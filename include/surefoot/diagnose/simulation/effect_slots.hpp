@@ -15,7 +15,8 @@ namespace surefoot::diagnosis {
 /// Effects with the values of their parameters.
 struct Augmentation {
   std::span<const AttachedEffect> effects;
-  std::span<const Eigen::VectorXd> values;  // one vector per effect, in units of the model
+  std::span<const Eigen::VectorXd> values;  // one vector per effect, in units of the model (see Hypothesis::values)
+  std::size_t recording = 0;                // that is simulated, for what effects begin with
 };
 
 inline constexpr int most_hidden = 24;
@@ -31,6 +32,7 @@ struct EffectSlot {
   int position = -1;       // the state whose speed it is attached to
   int begin = 0;           // of its hidden states
   Values p = {};           // its parameters
+  double start = 0;        // by which its first hidden state begins off
   double size = 1;         // typical, of what it is attached to
 
   Values hidden(const Hidden& z) const { return {z.data() + begin, static_cast<std::size_t>(effect->hidden_states)}; }

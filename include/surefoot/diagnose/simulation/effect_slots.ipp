@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -32,7 +33,10 @@ SUREFOOT_INLINE EffectSlots assign_slots(const Augmentation& augmentation, const
     const bool on_state = effect.place == Place::velocity || effect.place == Place::state;
     EffectSlot slot{.effect = &effect, .number = i, .at = attached.at, .other = attached.other, .begin = slots.hidden};
     slot.position = on_state ? structure.position_of[at] : -1;
-    slot.p = {augmentation.values[i].data(), static_cast<std::size_t>(augmentation.values[i].size())};
+    const Eigen::VectorXd& values = augmentation.values[i];
+    slot.p = {values.data(), std::min(effect.parameters.size(), static_cast<std::size_t>(values.size()))};
+    const auto start = static_cast<Eigen::Index>(effect.parameters.size() + augmentation.recording);
+    if (effect.starts_anywhere && start < values.size()) slot.start = values[start];
     slot.size = size_at(sizes, effect, at);
     slots.hidden += effect.hidden_states;
     if (slots.hidden > most_hidden) {

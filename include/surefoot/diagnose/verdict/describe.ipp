@@ -13,8 +13,18 @@
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
 #include "surefoot/diagnose/text.hpp"
 #include "surefoot/diagnose/verdict/describe.hpp"
+#include "surefoot/diagnose/verdict/verdict.hpp"
 
 namespace surefoot::diagnosis {
+
+/// The 95 % interval of a value, within the bounds of its variable; in proportion where that is searched by its
+/// logarithm.
+SUREFOOT_ONCE void set_interval(FittedValue& fitted, const Variable& variable, double deviation) {
+  const double half = normal_quantile_95 * deviation, value = fitted.value;
+  const bool logarithmic = variable.logarithmic && value > 0;
+  fitted.low = std::max(logarithmic ? value * std::exp(-half / value) : value - half, std::min(variable.low, value));
+  fitted.high = std::min(logarithmic ? value * std::exp(half / value) : value + half, std::max(variable.high, value));
+}
 
 SUREFOOT_ONCE std::vector<CalibratedParameter> calibrated_parameters(const BoundSimulator& bound,
                                                                      const Hypothesis& hypothesis,
@@ -28,9 +38,7 @@ SUREFOOT_ONCE std::vector<CalibratedParameter> calibrated_parameters(const Bound
     for (std::size_t v = 0; v < errors.variables.size(); ++v) {
       const Variable& variable = errors.variables[v];
       if (variable.kind != Variable::Kind::parameter || variable.index != i) continue;
-      const double half = normal_quantile_95 * errors.deviation[static_cast<Eigen::Index>(v)];
-      one.fit.low = std::max(value - half, info.low);
-      one.fit.high = std::min(value + half, info.high);
+      set_interval(one.fit, variable, errors.deviation[static_cast<Eigen::Index>(v)]);
       const double near = criteria.bound_share * (info.high - info.low);
       one.at_bound =
           value <= info.low + near * (variable.logarithmic ? value / info.high : 1) || value >= info.high - near;
@@ -72,9 +80,7 @@ SUREFOOT_ONCE FoundEffect describe(const BoundSimulator& bound, const Hypothesis
     for (std::size_t v = 0; errors != nullptr && v < errors->variables.size(); ++v) {
       const Variable& variable = errors->variables[v];
       if (variable.kind != Variable::Kind::effect || variable.index != effect || variable.item != k) continue;
-      const double half = normal_quantile_95 * errors->deviation[static_cast<Eigen::Index>(v)];
-      one.low = value - half;
-      one.high = value + half;
+      set_interval(one, variable, errors->deviation[static_cast<Eigen::Index>(v)]);
     }
     found.parameters.push_back(std::move(one));
   }
@@ -179,6 +185,13 @@ SUREFOOT_ONCE std::string gain_sentence(const Diagnosis& diagnosis) {
          std::to_string(diagnosis.per_recording.size()) + " agree.";
 }
 
+/// Whether all recordings are within what an explanation may leave.
+SUREFOOT_ONCE bool within_noise(const Diagnosis& diagnosis) {
+  return diagnosis.noise_ratio <= VerdictCriteria{}.largest_ratio &&
+         std::none_of(diagnosis.per_recording.begin(), diagnosis.per_recording.end(),
+                      [](const RecordingFit& one) { return one.beyond_noise; });
+}
+
 SUREFOOT_ONCE std::string clean_sentence(const Diagnosis& diagnosis, const std::string& parameters) {
   const std::string noise = against_noise(diagnosis);
   return "Nothing is missing: with " + parameters + " parameters the model agrees with the recordings" +
@@ -204,6 +217,10 @@ SUREFOOT_ONCE std::string verdict_sentence(const Diagnosis& diagnosis, const std
     case Verdict::missing_physics:
       return "Left out of the model: " + in_list(effects) + "." + gain_sentence(diagnosis) + tie_sentence(ties);
     case Verdict::unfinished:
+      if (!effects.empty() && within_noise(diagnosis)) {
+        return "The search was not finished, so that others may explain it as well as what was found: " +
+               in_list(effects) + "." + gain_sentence(diagnosis);
+      }
       return "The search was not finished, so that nothing is concluded" +
              (effects.empty() ? "." : "; the best so far: " + in_list(effects) + "." + gain_sentence(diagnosis));
     case Verdict::unexplained:

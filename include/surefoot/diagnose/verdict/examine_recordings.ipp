@@ -25,8 +25,9 @@ SUREFOOT_ONCE Hypothesis nominal_with_known(const BoundSimulator& bound, const D
   Hypothesis hypothesis = nominal_hypothesis(bound);
   for (const NamedEffect& named : options.known) {
     hypothesis.effects.push_back(attach(bound.info, named, effects));
-    hypothesis.values.emplace_back(static_cast<Eigen::Index>(named.values.size()));
-    std::copy(named.values.begin(), named.values.end(), hypothesis.values.back().data());
+    const Eigen::Map<const Eigen::VectorXd> values(named.values.data(), static_cast<Eigen::Index>(named.values.size()));
+    hypothesis.values.push_back(
+        values_before_starts(*hypothesis.effects.back().effect, values, bound.recordings.size()));
   }
   return hypothesis;
 }
@@ -63,7 +64,10 @@ SUREFOOT_ONCE LogExamination examine_with_effects(const BindSimulator& bind, con
     Hypothesis hypothesis = nominal_hypothesis(bound);
     hypothesis.parameters = found.hypothesis.parameters;
     hypothesis.effects = found.hypothesis.effects;
-    hypothesis.values = found.hypothesis.values;
+    for (std::size_t e = 0; e < hypothesis.effects.size(); ++e) {
+      hypothesis.values.push_back(
+          values_before_starts(*hypothesis.effects[e].effect, found.hypothesis.values[e], bound.recordings.size()));
+    }
     return hypothesis;
   };
   return examine(bind_as_found, recordings, model, run);

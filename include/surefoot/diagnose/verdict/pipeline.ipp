@@ -306,6 +306,19 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
   }
 }
 
+/// The simulator with as many steps a row as it needs to run over these recordings.
+SUREFOOT_ONCE BindSimulator with_integration_that_runs(const BindSimulator& bind,
+                                                       const std::vector<Recording>& recordings,
+                                                       const RunContext& run) {
+  const BoundSimulator bound = bind(recordings);
+  const Integration runs = integration_that_runs(bound, nominal_with_known(bound, run.options), run.parallel);
+  return [bind, runs](std::vector<Recording> some) {
+    BoundSimulator result = bind(std::move(some));
+    result.integration.step = runs.step;
+    return result;
+  };
+}
+
 SUREFOOT_ONCE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorInfo& info,
                                      std::vector<Recording> recordings, const DiagnoseOptions& options,
                                      const Parallel& parallel, std::uint64_t seed, std::stop_token stop) {
@@ -316,10 +329,11 @@ SUREFOOT_ONCE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorI
   sort_recordings(recordings);
   const Eigen::Index kept = shorten_recordings(recordings, options.max_rows);
   if (kept > 0) remarks.push_back({"", shortening_sentence(kept)});
-  LogExamination log = examine_recordings(bind, recordings, run);
+  const BindSimulator bind_to_run = with_integration_that_runs(bind, recordings, run);
+  LogExamination log = examine_recordings(bind_to_run, recordings, run);
   const std::string warning = caution(log.faults);
   try {
-    Diagnosis diagnosis = diagnose_and_examine_again(bind, recordings, std::move(log), remarks, run);
+    Diagnosis diagnosis = diagnose_and_examine_again(bind_to_run, recordings, std::move(log), remarks, run);
     diagnosis.model = info.name;
     diagnosis.seed = seed;
     diagnosis.sentence = caution(diagnosis.log_faults) + diagnosis.sentence;

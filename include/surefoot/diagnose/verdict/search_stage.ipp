@@ -1,6 +1,7 @@
 // Definitions of surefoot/diagnose/verdict/search_stage.hpp.
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/sensor_noise.hpp"
 #include "surefoot/diagnose/screening.hpp"
 #include "surefoot/diagnose/selection/choose_initial_states.hpp"
 #include "surefoot/diagnose/verdict/evidence.hpp"
@@ -48,6 +50,11 @@ SUREFOOT_ONCE SearchProblem search_problem(const EstimationSetup& setup, const C
   SearchProblem problem;
   problem.fit = setup.problem;
   problem.scale = error_scale_of(setup);
+  problem.noise.resize(problem.scale.sigma.size());
+  for (Eigen::Index k = 0; k < problem.noise.size(); ++k) {
+    const double ratio = noise_of(setup.bound, training, k) / problem.scale.sigma[k];
+    problem.noise[k] = setup.noise == NoiseKind::measurement ? ratio * ratio : 0;
+  }
   problem.nominal = calibration.nominal;
   problem.known = run.options.known.size();
   const double rival = calibration.freed_together.log_odds;

@@ -1,0 +1,95 @@
+// Definitions of surefoot/diagnose/selection/richer_forms.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/starting_values.hpp"
+#include "surefoot/diagnose/selection/richer_forms.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_ONCE bool extends(const AttachedEffect& richer, const AttachedEffect& one) {
+  const auto& forms = richer.effect->extends;
+  return same_but_for_form(richer, one) && richer.other == one.other &&
+         std::find(forms.begin(), forms.end(), one.effect->form) != forms.end();
+}
+
+/// How many parameters two forms have in common: the first ones.
+SUREFOOT_ONCE Eigen::Index shared_parameters(const Effect& a, const Effect& b) {
+  const auto same = [](const EffectParameter& one, const EffectParameter& other) { return one.name == other.name; };
+  const auto [end, other] =
+      std::mismatch(a.parameters.begin(), a.parameters.end(), b.parameters.begin(), b.parameters.end(), same);
+  return end - a.parameters.begin();
+}
+
+/// The same with one effect in a richer form: with the starts of its further parameters that come nearest to the
+/// special case.
+SUREFOOT_ONCE Hypothesis with_form(const Search& search, const Hypothesis& found, std::size_t e,
+                                   const AttachedEffect& richer) {
+  const FitProblem& problem = search.problem.fit;
+  const std::size_t recordings = search.bound.recordings.size();
+  const Eigen::Index known = shared_parameters(*found.effects[e].effect, *richer.effect);
+  Hypothesis best;
+  double least = std::numeric_limits<double>::infinity();
+  std::set<std::vector<double>> tried;
+  for (Eigen::VectorXd values : starting_values(search.bound, richer, {})) {
+    for (Eigen::Index k = 0; k < known; ++k) values[k] = found.values[e][k];
+    if (!tried.insert({values.begin(), values.end()}).second) continue;  // starts of the known ones do not count
+    Hypothesis one = found;
+    one.effects[e] = richer;
+    one.values[e] = values_before_starts(*richer.effect, values, recordings);
+    const FitFunctions functions(search.bound, one, problem, search.parallel);
+    const double loss = mean_loss(functions.residuals(functions.start()), problem.weighting.robust);
+    if (!best.effects.empty() && !(loss < least)) continue;
+    least = loss;
+    best = std::move(one);
+  }
+  return best;
+}
+
+/// Not ok where it cannot help.
+SUREFOOT_ONCE Fit fit_richer(const Search& search, const EvaluatedHypothesis& found, std::size_t e,
+                             const AttachedEffect& richer) {
+  const FitProblem& problem = search.problem.fit;
+  Hypothesis start = with_form(search, found.hypothesis, e, richer);
+  if (richer.effect->starts_anywhere) {
+    FitProblem beginnings = problem;
+    beginnings.free = Free::initial_only;
+    const Fit first = fit(search.bound, start, beginnings, search.parallel);
+    if (!first.ok || !(first.loss < found.loss)) return {};
+    start = first.hypothesis;
+  }
+  return fit(search.bound, start, problem, search.parallel);
+}
+
+SUREFOOT_ONCE std::optional<EvaluatedHypothesis> in_richer_forms(const Search& search,
+                                                                 const EvaluatedHypothesis& found) {
+  const SearchProblem& problem = search.problem;
+  const double needed = std::log(problem.criteria.named_odds);
+  EvaluatedHypothesis best = found;
+  bool any = false;
+  for (std::size_t e = problem.known; e < found.hypothesis.effects.size(); ++e) {
+    for (const AttachedEffect& richer : search.candidates) {
+      if (!extends(richer, best.hypothesis.effects[e]) || problem.stopped()) continue;
+      const Fit fitted = fit_richer(search, best, e, richer);
+      if (!fitted.ok) continue;
+      const EvaluatedHypothesis one = evaluate_fit(search.bound, fitted, problem, search.parallel);
+      if (!(log_odds(one, best, problem.criteria) > needed)) continue;
+      best = one;
+      any = true;
+    }
+  }
+  if (!any) return std::nullopt;
+  return best;
+}
+
+}  // namespace surefoot::diagnosis

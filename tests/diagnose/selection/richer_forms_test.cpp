@@ -1,0 +1,98 @@
+// Forms that others are special cases of; effects with a memory where recordings begin in the middle of what they do.
+#include "surefoot/diagnose/selection/richer_forms.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/diagnose.hpp"
+#include "tests/diagnose/small_simulators.hpp"
+
+namespace surefoot {
+namespace {
+
+/// A block on a damped spring; both are known.
+struct SprungBlock : toys::SlidingBlock {
+  SimulatorInfo info() const {
+    SimulatorInfo info = SlidingBlock::info();
+    info.parameters[1].value = 2;
+    info.parameters[2].value = 20;
+    return info;
+  }
+};
+
+/// Six logs of 4 s, with noise of 1 mm and 1 mm/s, of which the first `cut` rows were not kept.
+std::vector<Recording> block_logs(const NamedEffect& effect, Eigen::Index cut) {
+  std::vector<Recording> logs;
+  Rng rng(11);
+  for (std::size_t r = 0; r < 6; ++r) {
+    Recording whole = toys::blank_recording(SprungBlock{}.info(), 200 + cut, 0.02);
+    for (Eigen::Index i = 0; i < whole.rows(); ++i) {
+      const double t = whole.time[i] - 0.3 * static_cast<double>(r);
+      whole.inputs(0, i) = (std::fmod(t + 9, 2.2) < 1 ? 9 : -7) + 2 * std::sin(2.1 * t);
+    }
+    const SimulatedRun run = simulate_augmented(SprungBlock{}, toys::machine({2, 2, 20}, {effect}), whole);
+    whole.outputs = run.outputs;
+    Recording log = part_of(whole, cut, whole.rows(), run.states.col(cut), Eigen::VectorXd::Zero(2));
+    for (Eigen::Index i = 0; i < log.rows(); ++i) log.time[i] = 0.02 * static_cast<double>(i);
+    for (double& reading : log.outputs.reshaped()) reading += 0.001 * rng.normal();
+    log.name = "block " + std::to_string(r);
+    logs.push_back(std::move(log));
+  }
+  return logs;
+}
+
+Diagnosis diagnosed(const NamedEffect& effect, Eigen::Index cut) {
+  return diagnose(SprungBlock{}, block_logs(effect, cut), DiagnoseOptions{}, Threads{}, 1);
+}
+
+TEST_CASE("what an actuator was at when a recording begins is found, and its name with it") {
+  for (const NamedEffect& effect :
+       {NamedEffect{"first_order_lag", "push", {}, {}, {0.6}}, NamedEffect{"rate_limit", "push", {}, {}, {9}}}) {
+    const Diagnosis found = diagnosed(effect, 60);
+    INFO(found.sentence);
+    CHECK(found.verdict == Verdict::missing_physics);
+    REQUIRE(found.effects.size() == 1);
+    CHECK(found.effects[0].name == effect.name);
+    CHECK(found.effects[0].form == "not settled");
+    CHECK(found.effects[0].parameters[0].value == doctest::Approx(effect.values[0]).epsilon(0.03));
+    CHECK(found.noise_ratio < 1.1);
+  }
+}
+
+TEST_CASE("a memory that recordings find settled is called by its plain name") {
+  const Diagnosis found = diagnosed({"hysteresis", "v", {}, {}, {4, 0.2}}, 0);
+  REQUIRE(found.effects.size() == 1);
+  CHECK(found.effects[0].name == "hysteresis");
+  CHECK(found.effects[0].form.find("not settled") == std::string::npos);
+}
+
+TEST_CASE("a force that was there before the first row is found with its hysteresis") {
+  const Diagnosis found = diagnosed({"hysteresis", "v", {}, {}, {4, 0.2}}, 60);
+  INFO(found.sentence);
+  REQUIRE(found.effects.size() == 1);
+  CHECK(found.effects[0].name == "hysteresis");
+  CHECK(found.effects[0].form == "not settled");
+  CHECK(found.noise_ratio < 1.1);
+}
+
+TEST_CASE("a hysteresis between two forms is found in the one that holds both, a plain one in its own") {
+  const Diagnosis between = diagnosed({"hysteresis", "v", "any exponent", {}, {4, 0.2, 0, 1.5}}, 0);
+  INFO(between.sentence);
+  REQUIRE(between.effects.size() == 1);
+  CHECK(between.effects[0].form == "any exponent");
+  CHECK(between.effects[0].parameters[3].value == doctest::Approx(1.5).epsilon(0.1));
+  CHECK(between.noise_ratio < 1.1);
+  const Diagnosis plain = diagnosed({"hysteresis", "v", "n = 2", {}, {4, 0.2}}, 0);
+  REQUIRE(plain.effects.size() == 1);
+  CHECK(plain.effects[0].form == "n = 2");
+}
+
+}  // namespace
+}  // namespace surefoot
