@@ -70,6 +70,7 @@ inline std::vector<Form> forms() {
        "as dry friction, and longer rests: it sticks, then slips"},
       {"stribeck_friction", "tailed", "the same with exp(-|v / speed|^exponent)"},
       {"stribeck_friction", "smooth", "the plain form with tanh(v / onset) in place of sign(v)"},
+      {"stribeck_friction", "presliding", "the plain form, times z / width of hysteresis in place of sign(v)"},
       {"load_dependent_friction",
        "drive",
        "dry friction of factor |drive|, the force due to the inputs",
@@ -98,6 +99,10 @@ inline std::vector<Form> forms() {
        {0.03, 0.1},
        "depends on the way and not on the speed: after each reversal it builds up over the width"},
       {"hysteresis", "n = 2", "F = -force z / width, dz/dq = 1 - (z / width)^2 on the way out, 1 on the way back"},
+      {"hysteresis", "any exponent",
+       "F = -force z / width, dz/dq = 1 - (z / width)^exponent on the way out, 1 + back |z / width|^exponent on the "
+       "way "
+       "back"},
       {"hysteresis", "asymmetric",
        "F = -force z / width, dz/dq = 1 - (1 - shape) |z| / width on the way out, 1 + (1 + shape) |z| / width on the "
        "way back"},
@@ -123,6 +128,7 @@ inline std::vector<Form> forms() {
        "F = sine sin(2 pi q / period) + cosine cos(2 pi q / period)",
        {0.03, 0, 0.2},
        "ripples at fixed positions, whichever way it moves"},
+      {"cogging", "two harmonics", "the same, and sine_2 and cosine_2 of half the period beside it"},
       {"gravity_offset",
        "",
        "F = weight cos(q)",
@@ -177,6 +183,7 @@ inline std::vector<Form> forms() {
       {"sensor_bias", "", "y = y + bias", {0.03}, "a constant, from the first row on"},
       {"sensor_scale", "", "y = y (1 + excess)", {0.1}, "a copy of the reading itself"},
       {"sensor_delay", "", "y(t - delay)", {0.03}, "a copy of the reading's slope"},
+      {"sensor_delay", "in motion", "the same, on a straight line before the first row instead of at its value there"},
       {"sensor_drift", "", "y = y + rate t", {0.01}, "a ramp, whatever the machine does"},
       {"sensor_drift", "settling", "y = y + change (1 - exp(-t / time))"},
       {"quantization",

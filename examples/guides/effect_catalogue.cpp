@@ -147,7 +147,8 @@ class Catalogue {
   explicit Catalogue(bool pictures, std::filesystem::path docs) : pictures_(pictures), docs_(std::move(docs)) {}
 
   std::string write() {
-    const std::vector<Effect> all = surefoot::all_effects();
+    std::vector<Effect> all = surefoot::all_effects();
+    const auto unsettled = std::erase_if(all, [](const Effect& effect) { return effect.starts_anywhere; });
     std::vector<std::string> names;
     for (const Effect& effect : all) {
       if (std::ranges::find(names, effect.name) == names.end()) names.push_back(effect.name);
@@ -174,6 +175,9 @@ class Catalogue {
              "the typical size that a parameter of this kind has in the recordings. The machines are an arm (torque "
              "in, angle out), "
              "two tanks (inflow in, level of the upper one out), and a robot that walks.\n\n"
+             "Forms with a memory that a recording may find at any value are also there as `..., not settled` ("
+          << unsettled
+          << " more): each recording then tells where it begins.\n\n"
              "This page is written by `examples/guides/effect_catalogue.cpp` from the compiled library.\n";
     for (const Section& section : sections()) {
       text_ << "\n## " << section.title << "\n\nAttaches to " << section.where << ".\n";

@@ -49,6 +49,9 @@ TEST_CASE("a late sensor reads a ramp late, between rows of any spacing") {
     for (std::size_t i = 0; i < y.size(); ++i) CHECK(y[i] == doctest::Approx(3 * std::max(2.0, uneven[i] - delay)));
   }
   CHECK(read(effects::sensor_delay(), {2}, {0, 1, 2, 3}, {5, 6, 7, 8}) == std::vector<double>{5, 5, 5, 6});
+  CHECK(read(effects::sensor_delay_in_motion(), {1.5}, {0, 1, 2, 3}, {5, 6, 8, 8}) ==
+        std::vector<double>{3.5, 4.5, 5.5, 7});
+  CHECK(read(effects::sensor_delay_in_motion(), {0.1}, {0}, {5}) == std::vector<double>{5});
   CHECK(read(effects::sensor_delay(), {0.1}, {0}, {5}) == std::vector<double>{5});
   CHECK(read(effects::sensor_delay(), {0.1}, {}, {}).empty());
 }

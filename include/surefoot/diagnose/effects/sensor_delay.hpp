@@ -1,6 +1,6 @@
-// A sensor that reads late: y(t - delay), interpolated between rows; before the first row its value there counts. Delay
-// in seconds, for maps in steps. Cost: linear in the rows.
-// Confusable with a late input (the near twin unless the sensor is fed back) and with a lag.
+// A sensor that reads late: y(t - delay), interpolated between rows. Before the first row its value there counts or,
+// form "in motion", the straight line through the first two rows. Delay in seconds, for maps in steps. Cost: linear in
+// the rows. Confusable with a late input (the near twin unless the sensor is fed back) and with a lag.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,10 @@
 
 namespace surefoot::effects {
 
-inline void read_late(const Series& series, double delay) {
+/// What came before the first row: what is read in it, or the line that begins there.
+enum class Before : unsigned char { still, line };
+
+inline void read_late(const Series& series, double delay, Before before) {
   const std::size_t rows = series.readings.size();
   if (rows == 0) return;
   const std::vector<double> now(series.readings.begin(), series.readings.end());
@@ -20,7 +23,9 @@ inline void read_late(const Series& series, double delay) {
     const double t = series.time[row] - delay;
     while (after < rows && series.time[after] <= t) ++after;
     if (after == 0) {
-      series.readings[row] = now[0];
+      const bool moving = before == Before::line && rows > 1;
+      const double slope = moving ? (now[1] - now[0]) / (series.time[1] - series.time[0]) : 0;
+      series.readings[row] = now[0] + slope * (t - series.time[0]);
     } else if (after == rows) {
       series.readings[row] = now[rows - 1];
     } else {
@@ -43,7 +48,15 @@ inline Effect sensor_delay() {
           .confusable_with = names_of({"input_delay", "first_order_lag", "backlash"}),
           .experiment = "move it by hand, or by a known drive, past a mark seen by a second sensor",
           .delay = +[](Values p) { return p[0]; },
-          .sensor = +[](const Series& series, Values p) { read_late(series, p[0]); }};
+          .sensor = +[](const Series& series, Values p) { read_late(series, p[0], Before::still); }};
+}
+
+inline Effect sensor_delay_in_motion() {
+  Effect effect = sensor_delay();
+  effect.form = "in motion";
+  effect.extends = {""};
+  effect.sensor = +[](const Series& series, Values p) { read_late(series, p[0], Before::line); };
+  return effect;
 }
 
 }  // namespace surefoot::effects
