@@ -56,6 +56,7 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
                              effects::load_dependent_friction(),
                              effects::load_dependent_friction_under_load(),
                              effects::load_dependent_friction_in_gears(),
+                             effects::load_dependent_friction_on_both_sides(),
                              effects::quadratic_drag(),
                              effects::constant_force(),
                              effects::cubic_stiffness(),

@@ -79,7 +79,7 @@ struct Effect {
   std::string experiment = {};                    // that shows this effect by itself
   std::string form = {};                          // tells variants of one name apart, mostly empty
   std::vector<std::string> extends = {};          // forms that are special cases of it; it is only tried where one of
-                                          // them was found, from its fit and the starts of the further parameters
+                                                  // them was found, from its fit and the starts of its other parameters
 
   int hidden_states = 0;
   std::optional<Measure> start_measure = {};  // of the first hidden state, where a recording may find it at any value

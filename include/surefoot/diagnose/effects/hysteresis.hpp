@@ -140,6 +140,7 @@ inline Effect with_presliding(Effect friction) {
   friction.parameters[0].starts = {0.1};
   friction.parameters.push_back(presliding_width_parameter({0.01}));
   friction.form += friction.form.empty() ? "presliding" : ", presliding";
+  for (std::string& form : friction.extends) form += ", presliding";
   friction.hidden_states = 2;
   friction.start_measure = Measure{.position = 1};
   friction.force = [level = std::exchange(friction.dry, {})](const EffectContext& m, Values p, Values hidden) {

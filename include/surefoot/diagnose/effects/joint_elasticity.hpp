@@ -14,7 +14,9 @@ inline TwoMasses elastic_joint(Values p) { return TwoMasses{.ratio = p[0], .freq
 inline Effect joint_elasticity() {
   return {
       .name = "joint_elasticity",
-      .sentence = "an elastic joint with {ratio} times the inertia behind it, swinging at {frequency}, at {at}",
+      .sentence =
+          "an elastic joint with {ratio} times the inertia behind it, swinging at the angular frequency {frequency}, "
+          "at {at}",
       .place = Place::velocity,
       .parameters =
           parameters_of({{.name = "ratio", .measure = {}, .low = 0, .high = 10, .starts = {0.01}, .strength = true},

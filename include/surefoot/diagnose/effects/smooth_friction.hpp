@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,7 @@ inline Effect smoothed(Effect friction) {
   friction.parameters.push_back(
       {.name = "onset", .measure = {.value = 1}, .low = 0.001, .high = 0.2, .starts = std::move(starts)});
   friction.form += friction.form.empty() ? "smooth" : ", smooth";
+  for (std::string& form : friction.extends) form += ", smooth";
   friction.force = [level = std::exchange(friction.dry, {})](const EffectContext& m, Values p, Values /*hidden*/) {
     return -level(m, p) * std::tanh(m.value / p.back());
   };

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -23,12 +24,13 @@ SUREFOOT_ONCE bool extends(const AttachedEffect& richer, const AttachedEffect& o
          std::find(forms.begin(), forms.end(), one.effect->form) != forms.end();
 }
 
-/// How many parameters two forms have in common: the first ones.
-SUREFOOT_ONCE Eigen::Index shared_parameters(const Effect& a, const Effect& b) {
-  const auto same = [](const EffectParameter& one, const EffectParameter& other) { return one.name == other.name; };
-  const auto [end, other] =
-      std::mismatch(a.parameters.begin(), a.parameters.end(), b.parameters.begin(), b.parameters.end(), same);
-  return end - a.parameters.begin();
+/// The value of a parameter of this name; none if the effect has no such.
+SUREFOOT_ONCE std::optional<double> value_named(const std::string& name, const Effect& effect,
+                                                const Eigen::VectorXd& values) {
+  for (std::size_t k = 0; k < effect.parameters.size(); ++k) {
+    if (effect.parameters[k].name == name) return values[static_cast<Eigen::Index>(k)];
+  }
+  return std::nullopt;
 }
 
 /// The same with one effect in a richer form: with the starts of its further parameters that come nearest to the
@@ -37,12 +39,14 @@ SUREFOOT_ONCE Hypothesis with_form(const Search& search, const Hypothesis& found
                                    const AttachedEffect& richer) {
   const FitProblem& problem = search.problem.fit;
   const std::size_t recordings = search.bound.recordings.size();
-  const Eigen::Index known = shared_parameters(*found.effects[e].effect, *richer.effect);
   Hypothesis best;
   double least = std::numeric_limits<double>::infinity();
   std::set<std::vector<double>> tried;
   for (Eigen::VectorXd values : starting_values(search.bound, richer, {})) {
-    for (Eigen::Index k = 0; k < known; ++k) values[k] = found.values[e][k];
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+      const std::string& name = richer.effect->parameters[static_cast<std::size_t>(k)].name;
+      values[k] = value_named(name, *found.effects[e].effect, found.values[e]).value_or(values[k]);
+    }
     if (!tried.insert({values.begin(), values.end()}).second) continue;  // starts of the known ones do not count
     Hypothesis one = found;
     one.effects[e] = richer;

@@ -63,13 +63,11 @@ SUREFOOT_ONCE bool leaves_structure(const Search& search, const EvaluatedHypothe
   return search.problem.structured(one.hypothesis, search.problem.fit);
 }
 
-/// Richer forms for the best structures, where these leave more than noise.
-SUREFOOT_ONCE void enrich(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
+/// Richer forms for the best structures, none of them `hopeless` behind the best [nat].
+SUREFOOT_ONCE void enrich(const Search& search, std::vector<EvaluatedHypothesis>& pool, double hopeless) {
   const auto& [bound, problem, candidates, parallel] = search;
-  constexpr double none_is_hopeless = std::numeric_limits<double>::infinity();
-  for (const EvaluatedHypothesis& one :
-       best_structures(pool, problem.effort.finalists, none_is_hopeless, problem.criteria)) {
-    if (problem.stopped() || !leaves_structure(search, one)) continue;
+  for (const EvaluatedHypothesis& one : best_structures(pool, problem.effort.finalists, hopeless, problem.criteria)) {
+    if (problem.stopped()) return;
     if (const auto richer = in_richer_forms(search, one)) keep_best_form(pool, *richer, problem.criteria);
   }
 }
@@ -211,7 +209,7 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool, 
     for (const EvaluatedHypothesis& one : beam) done.push_back(one.hypothesis);
     std::vector<EvaluatedHypothesis> children = extended(search, beam, best);
     if (search.effects(best) == 0 && depth == 0) begin_elsewhere(search, children);
-    enrich(search, children);
+    enrich(search, children, std::numeric_limits<double>::infinity());
     for (const EvaluatedHypothesis& child : children) keep_best_form(pool, child, criteria);
     if (depth == 0 && yields(search, pool)) break;
     const EvaluatedHypothesis now = pool[best_of(pool, criteria)];
@@ -366,8 +364,9 @@ SUREFOOT_ONCE void try_confusable(const Search& search, std::vector<EvaluatedHyp
     const EvaluatedHypothesis rest = evaluate_fit(search.bound, without, problem, search.parallel);
     for (const std::vector<AttachedEffect>& rivals : {others, same_name}) {
       const Search among{search.bound, problem, rivals, search.parallel};
-      const auto fitted =
+      std::vector<EvaluatedHypothesis> fitted =
           next_effects(among, rest, proposals_for(among, rest), rivals.size(), problem.effort.compared_finalists);
+      enrich(search, fitted, std::numeric_limits<double>::infinity());
       for (const EvaluatedHypothesis& one : fitted) keep_best_form(pool, one, problem.criteria);
     }
   }
@@ -484,6 +483,7 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
   for (int round = 0; round < 2 && search.effects(pool[best_of(pool, criteria)]) > 0; ++round) {
     reweight(search, pool[best_of(pool, criteria)]);
     refit_best(search, pool);
+    enrich(search, pool, search.problem.effort.hopeless);
     if (take_back_holds(search, pool)) done.clear();
     take_effects_away(search, pool);
     const Hypothesis compared = pool[best_of(pool, criteria)].hypothesis;
