@@ -144,13 +144,20 @@ TEST_CASE("missing keys and tables are named with what they are for") {
 }
 
 TEST_CASE("a missing unit is refused") {
-  check_model_refused(with(servo_model, ", unit = \"ohm\"", ""), "[parameters] R: the key 'unit' is missing");
+  check_model_refused(with(servo_model, "unit = \"rad\", noise", "noise"), "the key 'unit' is missing");
   check_model_refused(with(servo_model, "\"goal_rad\"", "\"goal\""),
                       "line 7, [inputs] goal: the column 'goal' does not end in its unit");
   check_model_refused(with(servo_model, "theta_rad = {", "theta = {"),
                       "[outputs] theta: the column 'theta' does not end in its unit");
   check_model_refused(with(servo_model, "unit = \"rad\", noise", "unit = \"deg\", noise"),
                       "the column's name ends in rad");
+}
+
+TEST_CASE("a parameter without a unit is a plain number") {
+  const auto model = parse_model_file(with(servo_model, ", unit = \"ohm\"", ""), "servo.toml");
+  const auto place = std::ranges::find(model.parameters, "R", &surefoot::ParameterInfo::name);
+  REQUIRE(place != model.parameters.end());
+  CHECK(place->unit == "1");
 }
 
 TEST_CASE("a unit may be written as the column's name ends") {

@@ -124,6 +124,19 @@ TEST_CASE("hysteresis of any exponent holds those of exponent 1 and 2, and solve
   CHECK(std::isfinite(bouc_wen(0, 1e6, width, 0.4, 6)));
 }
 
+TEST_CASE("a hysteresis that begins under load has at most the force of its level") {
+  const auto kept = [](const Effect& effect, std::vector<double> p, double z) {
+    std::vector<double> hidden{z, 0};
+    effect.limit_start(p, hidden);
+    return hidden[0];
+  };
+  CHECK(kept(effects::hysteresis(), {2, 0.3}, 5) == 0.3);
+  CHECK(kept(effects::hysteresis(), {2, 0.3}, -0.1) == -0.1);
+  CHECK(kept(effects::coulomb_friction_presliding(), {2, 0.01}, -5) == -0.01);
+  CHECK(kept(effects::hysteresis_asymmetric(), {2, 0.3, 0.5}, 5) == doctest::Approx(0.6));
+  CHECK(kept(effects::hysteresis_asymmetric(), {2, 0.3, 1.4}, 5) == 3);  // stiffens: there is no level
+}
+
 TEST_CASE("hysteresis takes energy out of an oscillation, as much at any step") {
   for (const Effect& effect : {effects::hysteresis(), effects::hysteresis_squared()}) {
     std::vector<double> last;

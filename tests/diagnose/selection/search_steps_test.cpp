@@ -32,6 +32,9 @@ TEST_CASE("the pool keeps the better of two forms of a structure") {
 TEST_CASE("a form with fewer parameters that leaves no more is kept, whatever the odds") {
   const TankBench bench({});
   EvaluatedHypothesis plain = bench.with({"constant_rate"}), vague = plain;
+  Effect longer = *vague.hypothesis.effects[0].effect;
+  longer.parameters.push_back(longer.parameters[0]);
+  vague.hypothesis.effects[0].effect = std::make_shared<const Effect>(longer);
   vague.hypothesis.values[0] = Eigen::VectorXd::Ones(2);
   vague.log_prior += 100;
   REQUIRE(vague.parameter_count() > plain.parameter_count());

@@ -107,6 +107,8 @@ struct Effect {
   std::function<double(const EffectContext&, Values p)> dry = {};
   /// Hidden states: values at the start (zero without this), rates, and what is done once after each step.
   std::function<void(const EffectContext&, Values p, HiddenStates hidden)> start = {};
+  /// Where the first hidden state starts anywhere: keeps it to what it can be.
+  std::function<void(Values p, HiddenStates hidden)> limit_start = {};
   std::function<void(const EffectContext&, Values p, Values hidden, HiddenStates rates)> hidden_rate = {};
   std::function<void(const EffectContext&, Values p, HiddenStates hidden)> advance = {};
   /// What becomes of an input or a signal.

@@ -95,6 +95,11 @@ inline void start_of_path(const EffectContext& m, Values /*p*/, HiddenStates hid
   hidden[1] = m.position;
 }
 
+/// z between the levels of the force on both sides, `widths` of travel away.
+inline void keep_between_levels(HiddenStates hidden, double width, double widths = 1) {
+  hidden[0] = std::clamp(hidden[0], -widths * width, widths * width);
+}
+
 template <double (*Move)(double, double, double)>
 Effect hysteresis_of(std::string form) {
   return {
@@ -112,6 +117,7 @@ Effect hysteresis_of(std::string form) {
       .force = +[](const EffectContext& m, Values p,
                    Values hidden) { return -p[0] * Move(hidden[0], m.position - hidden[1], p[1]) / p[1]; },
       .start = start_of_path,
+      .limit_start = +[](Values p, HiddenStates hidden) { keep_between_levels(hidden, p[1]); },
       .advance =
           +[](const EffectContext& m, Values p, HiddenStates hidden) {
             hidden[0] = Move(hidden[0], m.position - hidden[1], p[1]);
@@ -147,6 +153,7 @@ inline Effect with_presliding(Effect friction) {
     return -level(m, p) * bouc_wen_1(hidden[0], m.position - hidden[1], p.back()) / p.back();
   };
   friction.start = start_of_path;
+  friction.limit_start = +[](Values p, HiddenStates hidden) { keep_between_levels(hidden, p.back()); };
   friction.advance = +[](const EffectContext& m, Values p, HiddenStates hidden) {
     hidden[0] = bouc_wen_1(hidden[0], m.position - hidden[1], p.back());
     hidden[1] = m.position;
@@ -160,6 +167,10 @@ inline Effect hysteresis_asymmetric() {
   effect.parameters[0].starts = {0.1};
   effect.parameters.push_back({.name = "shape", .low = -2, .high = 2, .starts = {-0.7, 1.2}});
   effect.form = "asymmetric";
+  effect.limit_start = +[](Values p, HiddenStates hidden) {
+    constexpr double stiffening = 10;  // widths, where it has no level
+    keep_between_levels(hidden, p[1], p[2] < 1 - 1 / stiffening ? 1 / (1 - p[2]) : stiffening);
+  };
   effect.force = +[](const EffectContext& m, Values p, Values hidden) {
     return -p[0] * bouc_wen_asymmetric(hidden[0], m.position - hidden[1], p[1], p[2]) / p[1];
   };

@@ -123,6 +123,10 @@ struct SearchProblem {
 /// Variance of weighted errors that are as small as those of the integration.
 double least_variance(const SearchProblem& problem);
 
+/// Differences to a hypothesis that mean nothing. What leaves only noise is of the right form: beside that, errors of
+/// form are as small as a diagnosis tolerates them.
+Eigen::VectorXd negligible_beside(const ErrorSquares& errors, const SearchProblem& problem);
+
 /// What a number that each recording has for itself costs, such as where a state begins [nat]: half the log of its
 /// independent errors, summed over recordings (BIC).
 double cost_of_own_numbers(const ErrorSquares& errors);

@@ -46,8 +46,6 @@ SUREFOOT_INLINE Eigen::VectorXd pooled(const ErrorSquares& errors) {
   return result;
 }
 
-/// Differences to a hypothesis that mean nothing. What leaves only noise is of the right form: beside that, errors of
-/// form are as small as a diagnosis tolerates them.
 SUREFOOT_ONCE Eigen::VectorXd negligible_beside(const ErrorSquares& errors, const SearchProblem& problem) {
   Eigen::VectorXd least = problem.least;
   const Eigen::VectorXd left = pooled(errors);

@@ -189,7 +189,9 @@ class SimulationRun {
     rates(m_, now.x, now.z, u_.between(t, 1e-9, 0), dz, t, 1e-9, sliding);  // so that effects have seen a first value
     for (const EffectSlot& slot : m_.slots.updates) {
       if (slot.effect->start) slot.effect->start(update_context(m_, slot, now, t, 0), slot.p, slot.hidden(now.z));
-      if (slot.start != 0) slot.hidden(now.z)[0] += slot.start;
+      if (slot.start == 0) continue;
+      slot.hidden(now.z)[0] += slot.start;
+      if (slot.effect->limit_start) slot.effect->limit_start(slot.p, slot.hidden(now.z));
     }
   }
 
