@@ -38,6 +38,11 @@ TEST_CASE("a leaf of two opinions takes the one of more samples") {
   CHECK(learnt([](double, Rng& rng) { return rng.uniform() < 0.4 ? 0.9 : -0.8; }) == doctest::Approx(-0.8));
 }
 
+TEST_CASE("a step within a leaf is one of its sides and no slope between them") {
+  CHECK(learnt([](double x, Rng&) { return x < 0.4 ? -1.0 : 1.0; }) == doctest::Approx(1).epsilon(0.01));
+  CHECK(learnt([](double x, Rng&) { return x < 0.6 ? -1.0 : 1.0; }) == doctest::Approx(-1).epsilon(0.01));
+}
+
 TEST_CASE("a few samples far off are noise and no second opinion") {
   const double action = learnt([](double, Rng& rng) { return rng.uniform() < 0.05 ? 1.0 : 0.0; });
   CHECK(action > 0);
