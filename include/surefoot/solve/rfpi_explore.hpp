@@ -1,4 +1,4 @@
-// How much the runs of an iteration explore: no more than they survive.
+// The chance of exploration that the runs of an iteration survive.
 // Where random actions soon end a run (a pole falls), exploring runs never come to what the policy does later (balance
 // it in the middle of the track), and all samples are of how runs begin and of falls. Where a policy reaches a goal,
 // exploring runs last longer than its own and nothing is taken back.
