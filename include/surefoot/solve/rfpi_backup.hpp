@@ -148,7 +148,7 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& given, const
                                const Rng& rng, std::uint64_t evaluation_seed, std::stop_token stop) {
   RfpiOptions options = given;
   options.backup_steps = backup_steps_for(before.length, options);
-  if (before.follows) options.lookahead.follow = options.backup_steps;
+  if (before.follows) options.lookahead.follow = followed;
   RfpiState<P> after;
   after.work = before.work;
   StateSamples<P>& samples = after.samples;

@@ -1,9 +1,7 @@
 // Trials of whether lookaheads should follow the policy for some transitions before the value counts.
 // Where a policy holds what it controls (a balanced pole), runs that begin with different actions come together again,
 // and with them the errors of the values, which else outweigh what an action changes. Where it does not yet, to follow
-// a poor policy hides what an action is worth, and costs several times as much. They follow for as long as backups are,
-// a share of a run: with a fixed number of transitions, runs of a finely stepped simulator would hardly have come
-// nearer.
+// a poor policy hides what an action is worth, and costs several times as much.
 #pragma once
 
 #include <algorithm>
@@ -23,6 +21,9 @@
 #include "surefoot/solve/rfpi_state.hpp"
 
 namespace surefoot::detail {
+
+/// Transitions of the policy that a lookahead follows: as many as backups have at least without noise.
+constexpr int followed = least_backup_steps;
 
 /// Iterations from one trial of the other way to the next, and states for each that a trial looks at: it costs about as
 /// much as the lookaheads of one iteration, and the other way has to do better with fewer samples.
@@ -58,12 +59,12 @@ StateSamples<P> look_ahead_from_some(const P& problem, const RfpiOptions& option
 
 /// Learns a policy from lookaheads that follow the policy where the others of this iteration do not, and the reverse;
 /// takes it, and the way it came about from now on, if it does better than the one that costs `usual`. The cost of the
-/// policy that is taken. `options`: with the backup_steps of this iteration.
+/// policy that is taken.
 template <Problem P, Executor E>
 PolicyCost try_other_way(const P& problem, RfpiOptions options, const RfpiState<P>& before, RfpiState<P>& after,
                          const ForestPolicy<P>& policy, const PolicyCost& usual, const E& executor, const Rng& rng,
                          std::uint64_t evaluation_seed, std::stop_token stop) {
-  options.lookahead.follow = before.follows ? 0 : options.backup_steps;
+  options.lookahead.follow = before.follows ? 0 : followed;
   const StateSamples<P> some =
       look_ahead_from_some(problem, options, before, policy, after.samples, executor, rng.stream(0), after.work, stop);
   options.policy_forest.max_leaves = after.leaves;
