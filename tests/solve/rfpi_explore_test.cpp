@@ -45,11 +45,10 @@ TEST_CASE("runs explore as asked for where they last") {
 
 TEST_CASE("runs explore less where that would soon end them") {
   RfpiWork work;
-  const double chance = explored({.missteps = 1}, 200, work);
-  // They last (1 - (1 - chance)^200) / chance steps on average: half of the 200 from 0.008 down.
-  CHECK(chance <= 0.3 / 16);
-  CHECK(chance >= 0.3 / 64);
-  CHECK(explored({.missteps = 20}, 200, work) == 0.3 / 4);  // 3 of 20 steps are random with it, a quarter with 0.3 / 2
+  // With 0.3 / 1.41^i a share of 2 / (2 + (1 - chance) / chance) of the steps is random, one each ends a run.
+  CHECK(explored({.missteps = 1}, 200, work) == doctest::Approx(0.3 / std::pow(1.41, 6)));
+  CHECK(explored({.missteps = 20}, 200, work) == doctest::Approx(0.3 / std::pow(1.41, 3)));  // after 76, 103 steps
+  CHECK(explored({.missteps = 20}, 100, work) == 0.3);
 }
 
 TEST_CASE("runs of a policy that soon ends them itself explore as asked for") {
