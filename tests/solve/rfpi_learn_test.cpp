@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 #include "surefoot/core/executor.hpp"
@@ -69,6 +70,35 @@ TEST_CASE("of two sizes the policy that does better is kept") {
     least = std::min(least, cost.discounted);
   }
   CHECK(kept.discounted == least);
+}
+
+TEST_CASE("now and then opinions of the other kind are tried, and kept where they do better") {
+  RfpiOptions options = learning_options();
+  options.policy_forest.max_leaves = 1;
+  RfpiState<DoubleIntegrator> samples = state_with_samples();
+  for (std::size_t i = 0; i < samples.samples.size(); ++i) {  // full left or full right, the leaf lies across the step
+    samples.samples.actions[i][0] = samples.samples.states[i].sum() < 0 ? 1.5 : -1.5;
+  }
+  const auto cost_by = [&](OpinionsOf opinions) {
+    RfpiWork work;
+    const auto policy =
+        fit_policy(mass, samples.samples, {}, opinions, options.policy_forest, Serial{}, Rng(1), work, {});
+    return counted_cost(mass, policy, options, Serial{}, 7, work).discounted;
+  };
+  const double by_distances = cost_by(OpinionsOf::distances), by_actions = cost_by(OpinionsOf::actions);
+  REQUIRE(by_distances != by_actions);
+  const OpinionsOf best = by_distances < by_actions ? OpinionsOf::distances : OpinionsOf::actions;
+  for (const OpinionsOf first : {OpinionsOf::distances, OpinionsOf::actions}) {
+    RfpiState<DoubleIntegrator> before, after = samples;
+    before.leaves = 1;
+    before.opinions = first;
+    before.iteration = opinions_tried_at + 1;
+    learn_policy(mass, options, before, after, Serial{}, Rng(1), 7, {});
+    CHECK(after.opinions == first);
+    before.iteration = opinions_tried_at;
+    learn_policy(mass, options, before, after, Serial{}, Rng(1), 7, {});
+    CHECK(after.opinions == best);
+  }
 }
 
 TEST_CASE("a value forest has learnt the values of its samples") {

@@ -238,6 +238,16 @@ TEST_CASE("a checkpoint keeps whether lookaheads follow the policy") {
   }
 }
 
+TEST_CASE("a checkpoint keeps the kind of opinions that did best") {
+  const toy::TemporaryFile file("opinions");
+  for (const OpinionsOf opinions : {OpinionsOf::distances, OpinionsOf::actions}) {
+    RfpiState<toy::DoubleIntegrator> state;
+    state.opinions = opinions;
+    save_checkpoint(file.path.string(), 7, state);
+    CHECK(load_checkpoint<toy::DoubleIntegrator>(file.path.string(), 7).opinions == opinions);
+  }
+}
+
 TEST_CASE("no state outside of the box is learnt from, however unstable the runs") {
   struct Unstable : toy::DoubleIntegrator {
     Step<State> step(const State& state, const Action& action, Rng& rng) const {

@@ -23,6 +23,7 @@
 #include "surefoot/solve/forest_policy.hpp"
 #include "surefoot/solve/lookahead.hpp"
 #include "surefoot/solve/rfpi_adapt.hpp"
+#include "surefoot/solve/rfpi_explore.hpp"
 #include "surefoot/solve/rfpi_follow.hpp"
 #include "surefoot/solve/rfpi_hold.hpp"
 #include "surefoot/solve/rfpi_learn.hpp"
@@ -66,7 +67,12 @@ std::vector<typename P::State> choose_states(const P& problem, const RfpiOptions
   };
   if (!initial) {
     const ForestPolicy<P> policy(problem, before.policy, options.agreement);
-    states = visit([&](std::span<const typename P::State> some) { return policy.act(some); }, options.exploration);
+    const ActOnBatch<P> acting = [&](std::span<const typename P::State> some) { return policy.act(some); };
+    const double exploration =
+        !options.adapt ? options.exploration
+                       : survived_exploration(problem, acting, before.policy.trees(), options.exploration,
+                                              before.length, options.horizon, executor, rng.stream(2), work, stop);
+    states = visit(acting, exploration);
     work.steps += states.size();
     work.lookups += states.size() * before.policy.trees();
   } else {

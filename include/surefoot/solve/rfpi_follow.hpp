@@ -68,8 +68,8 @@ PolicyCost try_other_way(const P& problem, RfpiOptions options, const RfpiState<
   const StateSamples<P> some =
       look_ahead_from_some(problem, options, before, policy, after.samples, executor, rng.stream(0), after.work, stop);
   options.policy_forest.max_leaves = after.leaves;
-  auto another = fit_policy(problem, some, StateSamples<P>{}, options.policy_forest, executor, rng.stream(1),
-                            after.work, std::move(stop));
+  auto another = fit_policy(problem, some, StateSamples<P>{}, after.opinions, options.policy_forest, executor,
+                            rng.stream(1), after.work, std::move(stop));
   const PolicyCost cost = counted_cost(problem, another, options, executor, evaluation_seed, after.work);
   if (cost.discounted >= usual.discounted) return usual;
   after.policy = std::move(another);

@@ -41,8 +41,9 @@ inline std::uint64_t fit_work(std::size_t samples, std::size_t inputs, const Ext
 
 /// The forest of actions learnt from two sets of samples.
 template <Problem P, Executor E>
-auto fit_policy(const P& problem, const StateSamples<P>& a, const StateSamples<P>& b, const ExtraTreesOptions& options,
-                const E& executor, const Rng& rng, RfpiWork& work, std::stop_token stop) {
+auto fit_policy(const P& problem, const StateSamples<P>& a, const StateSamples<P>& b, OpinionsOf opinions,
+                const ExtraTreesOptions& options, const E& executor, const Rng& rng, RfpiWork& work,
+                std::stop_token stop) {
   Dataset<feature_dim<P>(), P::action_dim> data;
   data.inputs = feature_matrix(problem, a, b);
   data.outputs.resize(P::action_dim, data.inputs.cols());
@@ -56,7 +57,10 @@ auto fit_policy(const P& problem, const StateSamples<P>& a, const StateSamples<P
     }
   }
   work.fits += fit_work(a.size() + b.size(), static_cast<std::size_t>(feature_dim<P>()), options);
-  Trees trees = train_extra_trees<ActionLeaf>(data, options, executor, Rng(rng).bits(), std::move(stop)).raw();
+  const std::uint64_t seed = Rng(rng).bits();
+  Trees trees = opinions == OpinionsOf::actions
+                    ? train_extra_trees<LikeActionLeaf>(data, options, executor, seed, std::move(stop)).raw()
+                    : train_extra_trees<ActionLeaf>(data, options, executor, seed, std::move(stop)).raw();
   constexpr std::size_t numbers = feature_dim<P>() + 3;  // of a leaf, per dimension of the action
   for (std::size_t i = 0; i < trees.parameters.size(); ++i) {
     const auto dimension = static_cast<Eigen::Index>(i / numbers % P::action_dim);
@@ -99,30 +103,42 @@ PolicyCost counted_cost(const P& problem, const typename RfpiState<P>::ActionFor
   return policy_cost(problem, policy, options, runs, executor, evaluation_seed);
 }
 
-/// Learns the policy in two sizes and keeps the one that does better on the evaluation runs.
+/// Iterations from one trial of the other kind of opinions to the next, and the one of them that has it.
+constexpr int opinions_tried_every = 4, opinions_tried_at = 2;
+
+/// Learns the policy in two sizes, now and then with opinions of the other kind too, and keeps the one that does best
+/// on the evaluation runs.
 template <Problem P, Executor E>
 PolicyCost learn_policy(const P& problem, const RfpiOptions& options, const RfpiState<P>& before, RfpiState<P>& after,
                         const E& executor, const Rng& rng, std::uint64_t evaluation_seed, std::stop_token stop) {
   const int most = options.policy_forest.max_leaves;
-  const auto learn = [&](int leaves) {
+  const auto learn = [&](int leaves, OpinionsOf opinions) {
     ExtraTreesOptions forest = options.policy_forest;
     forest.max_leaves = leaves;
-    return fit_policy(problem, after.samples, after.previous, forest, executor, rng, after.work, stop);
+    return fit_policy(problem, after.samples, after.previous, opinions, forest, executor, rng, after.work, stop);
   };
   const auto cost_of = [&](const typename RfpiState<P>::ActionForest& policy) {
     return counted_cost(problem, policy, options, executor, evaluation_seed, after.work);
   };
   after.leaves = !options.adapt ? most : before.leaves > 0 ? before.leaves : std::max(1, most / 10);
-  after.policy = learn(after.leaves);
-  const PolicyCost usual = cost_of(after.policy);
-  if (most == 0 || !options.adapt) return usual;
-  const int other = other_size(after.leaves, most, before.iteration);
-  auto another = learn(other);
-  const PolicyCost cost = cost_of(another);
-  if (cost.discounted >= usual.discounted) return usual;
-  after.policy = std::move(another);
-  after.leaves = other;
-  return cost;
+  after.opinions = before.opinions;
+  after.policy = learn(after.leaves, after.opinions);
+  PolicyCost best = cost_of(after.policy);
+  if (most == 0 || !options.adapt) return best;
+  const auto try_other = [&](int leaves, OpinionsOf opinions) {
+    auto another = learn(leaves, opinions);
+    const PolicyCost cost = cost_of(another);
+    if (cost.discounted >= best.discounted) return;
+    best = cost;
+    after.policy = std::move(another);
+    after.leaves = leaves;
+    after.opinions = opinions;
+  };
+  try_other(other_size(after.leaves, most, before.iteration), after.opinions);
+  if (before.iteration % opinions_tried_every == opinions_tried_at) {
+    try_other(after.leaves, after.opinions == OpinionsOf::actions ? OpinionsOf::distances : OpinionsOf::actions);
+  }
+  return best;
 }
 
 }  // namespace surefoot::detail

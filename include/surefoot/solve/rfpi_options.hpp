@@ -77,8 +77,9 @@ struct RfpiOptions {
 
   double agreement = 0.5;  // actions of trees that are further apart are of different opinions, and the policy does
                            // what most say [half widths of the action box]; infinite: the mean of all
-  bool adapt = true;  // finds out by itself: whether there is noise (else single samples, longer backups), for how long
-                      // lookaheads hold an action, how many leaves, up to policy_forest's, do best
+  bool adapt = true;  // finds out by itself: whether there is noise (else single samples, longer backups), how much
+                      // exploration runs survive, for how long lookaheads hold an action, how many leaves, up to
+                      // policy_forest's, do best
   int evaluation_runs = 0;  // runs, always the same, that tell which policy is the best; 0: 50'000 transitions of them
   std::string checkpoint = {};    // file to resume from; empty: none is written
   double checkpoint_seconds = 5;  // wall time between two writes of it; the first follows the first iteration

@@ -16,6 +16,7 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/problem.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/solve/action_leaf.hpp"
 #include "surefoot/solve/forest_policy.hpp"
 #include "surefoot/solve/lookahead.hpp"
 #include "surefoot/solve/rfpi_adapt.hpp"
@@ -108,7 +109,8 @@ RfpiState<P> improve_by_rollouts(const P& problem, const RfpiOptions& options, c
       fill(executor, samples.size(), action_of, stop, Results<Action>{samples.actions}, Results<RfpiWork>{done});
   if (!complete) return after;
   collect_work();
-  after.policy = fit_policy(problem, samples, {}, options.policy_forest, executor, rng.stream(6), after.work, stop);
+  after.policy = fit_policy(problem, samples, {}, OpinionsOf::distances, options.policy_forest, executor, rng.stream(6),
+                            after.work, stop);
   const int runs = evaluation_runs(options);
   after.cost = policy_cost(problem, after.policy, options, runs, executor, evaluation_seed).cost.mean;
   const std::uint64_t steps = static_cast<std::uint64_t>(runs) * static_cast<std::uint64_t>(options.horizon);

@@ -16,6 +16,7 @@
 #include "surefoot/forest/forest.hpp"
 #include "surefoot/forest/leaf.hpp"
 #include "surefoot/forest/serialize.hpp"
+#include "surefoot/solve/action_leaf.hpp"
 #include "surefoot/solve/forest_policy.hpp"
 #include "surefoot/solve/rfpi_options.hpp"
 #include "surefoot/solve/value_forest.hpp"
@@ -66,6 +67,7 @@ struct RfpiState {
   double length = 0;    // of its evaluation runs, mean [transitions]
   int leaves = 0;       // per tree, the size of policy that did best; 0: none yet
   bool follows = false;  // whether lookaheads follow the policy
+  OpinionsOf opinions = OpinionsOf::distances;  // of the policy's leaves, the kind that did best
   ActionForest best_policy;
   double best_cost = 0;
   int worse = 0;  // iterations in a row that gave a clearly worse policy than the best
@@ -74,7 +76,7 @@ struct RfpiState {
 
 namespace detail {
 
-constexpr FileFormat checkpoint_format{"SURERFPI", 4, "a checkpoint of RFPI"};
+constexpr FileFormat checkpoint_format{"SURERFPI", 5, "a checkpoint of RFPI"};
 constexpr FileFormat first_checkpoint_format{"SURERFPI", 1, "a checkpoint of RFPI"};  // no trend, no sizes
 
 template <class Vector>
@@ -164,6 +166,7 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const R
   out.f64(state.length);
   out.u32(static_cast<std::uint32_t>(state.leaves));
   out.u8(state.follows ? 1 : 0);
+  out.u8(state.opinions == OpinionsOf::actions ? 1 : 0);
   detail::write_optional(out, state.best_policy);
   out.f64(state.best_cost);
   out.u32(static_cast<std::uint32_t>(state.worse));
@@ -206,6 +209,7 @@ RfpiState<P> load_checkpoint(std::span<const std::byte> bytes, const std::string
     state.length = in.f64();
     state.leaves = static_cast<int>(in.u32() & 0x7FFFFFFFU);
     state.follows = in.u8() != 0;
+    state.opinions = in.u8() != 0 ? OpinionsOf::actions : OpinionsOf::distances;
   }
   state.best_policy = detail::read_optional<typename RfpiState<P>::ActionForest>(in);
   state.best_cost = in.f64();
