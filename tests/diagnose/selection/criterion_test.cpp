@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <memory>
@@ -76,6 +77,20 @@ TEST_CASE("beside what leaves only noise, errors of form are as small as a diagn
   CHECK(negligible(2) == 9);  // nothing is of quite the right form
   problem.least.setConstant(0.1);
   CHECK(negligible(1) == 0.1);
+}
+
+TEST_CASE("a further effect may mend the form of another, and is no better for that; an effect in its place is") {
+  EvaluatedHypothesis one = evaluated({3}), two = evaluated({1});
+  two.errors.least = Eigen::VectorXd::Constant(1, 9.0);
+  two.errors.least_of_as_many = Eigen::VectorXd::Constant(1, 0.4);
+  const auto effects = [](std::size_t count) { return std::vector<AttachedEffect>(count); };
+  one.hypothesis.effects = effects(1);
+  two.hypothesis.effects = effects(2);
+  const double against_fewer = log_odds(two, one, selection_criteria);
+  one.hypothesis.effects = effects(2);
+  CHECK(log_odds(two, one, selection_criteria) > 10 * std::max(1.0, against_fewer));
+  const std::vector<double> share = probabilities({one, two}, selection_criteria);
+  CHECK(share[1] > 0.99);
 }
 
 TEST_CASE("the scale of a recording is its own in part: errors that differ from one to the next are no worse for it") {

@@ -123,8 +123,9 @@ struct SearchProblem {
 /// Variance of weighted errors that are as small as those of the integration.
 double least_variance(const SearchProblem& problem);
 
-/// Differences to a hypothesis that mean nothing. What leaves only noise is of the right form: beside that, errors of
-/// form are as small as a diagnosis tolerates them.
+/// Differences to a hypothesis, from one with no fewer effects, that mean nothing. What leaves only noise is of the
+/// right form: beside that, errors of form are as small as a diagnosis tolerates them. Not so from one with fewer, for
+/// a further effect may mend the form of another.
 Eigen::VectorXd negligible_beside(const ErrorSquares& errors, const SearchProblem& problem);
 
 /// What a number that each recording has for itself costs, such as where a state begins [nat]: half the log of its
@@ -144,9 +145,10 @@ double log_prior(const BoundSimulator& bound, const Hypothesis& hypothesis, std:
 
 /// Log density of each recording [nat], but for a constant that is the same for all hypotheses with the same
 /// reference: the closest of those to be compared. Differences of mean squares up to `reference.least` may be errors of
-/// form, which last for all of a recording: they count as one error.
+/// form, which last for all of a recording: they count as one error. `fewer`: the errors are of fewer effects than the
+/// reference.
 std::vector<double> log_densities(const ErrorSquares& errors, const ErrorSquares& reference,
-                                  const SelectionCriteria& criteria);
+                                  const SelectionCriteria& criteria, bool fewer = true);
 
 /// The one with the largest sum of log densities and log prior, in units that make all comparable: a good reference.
 std::size_t best_of(const std::vector<EvaluatedHypothesis>& evaluated, const SelectionCriteria& criteria);

@@ -74,7 +74,8 @@ SUREFOOT_INLINE EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, co
       error_squares(bound, fitted.hypothesis, problem.fit.recordings, problem.fit.integration, problem.scale, parallel),
       log_prior(bound, fitted.hypothesis, problem.known, problem.candidates, problem.criteria) +
           log_occam_factor(bound, fitted.hypothesis, problem.fit, least_variance(problem), parallel)};
-  result.errors.least = negligible_beside(result.errors, problem);
+  result.errors.least = problem.least;
+  result.errors.least_of_as_many = negligible_beside(result.errors, problem);
   for (const AttachedEffect& one : fitted.hypothesis.effects) {
     if (one.effect->starts_anywhere) result.log_prior -= cost_of_own_numbers(result.errors);
   }
@@ -133,7 +134,9 @@ SUREFOOT_INLINE double log_density(double n, double mean_square, double degrees)
 }
 
 SUREFOOT_INLINE std::vector<double> log_densities(const ErrorSquares& errors, const ErrorSquares& reference,
-                                                  const SelectionCriteria& criteria) {
+                                                  const SelectionCriteria& criteria, bool fewer) {
+  const Eigen::VectorXd& least =
+      fewer || reference.least_of_as_many.size() == 0 ? reference.least : reference.least_of_as_many;
   const Eigen::VectorXd scale = pooled(reference);
   std::vector<double> result(static_cast<std::size_t>(errors.counts.rows()), 0.0);
   for (Eigen::Index r = 0; r < errors.counts.rows(); ++r) {
@@ -141,7 +144,7 @@ SUREFOOT_INLINE std::vector<double> log_densities(const ErrorSquares& errors, co
       const double cells = errors.counts(r, k);
       if (!(cells > 0)) continue;
       const double unit = std::max(scale[k], criteria.least_error * criteria.least_error);
-      const double margin = reference.least.size() > 0 ? reference.least[k] : 0;
+      const double margin = least.size() > 0 ? least[k] : 0;
       const double best = reference.mean_squares(r, k), own = errors.mean_squares(r, k);
       const double beyond_form = best + shrunk(own - best, margin);
       result[static_cast<std::size_t>(r)] +=
@@ -150,6 +153,13 @@ SUREFOOT_INLINE std::vector<double> log_densities(const ErrorSquares& errors, co
     }
   }
   return result;
+}
+
+SUREFOOT_ONCE std::vector<double> log_densities_beside(const EvaluatedHypothesis& one,
+                                                       const EvaluatedHypothesis& reference,
+                                                       const SelectionCriteria& criteria) {
+  const bool fewer = one.hypothesis.effects.size() < reference.hypothesis.effects.size();
+  return log_densities(one.errors, reference.errors, criteria, fewer);
 }
 
 SUREFOOT_INLINE std::size_t best_of(const std::vector<EvaluatedHypothesis>& evaluated,
@@ -163,9 +173,8 @@ SUREFOOT_INLINE std::size_t best_of(const std::vector<EvaluatedHypothesis>& eval
 
 SUREFOOT_INLINE double log_odds(const EvaluatedHypothesis& a, const EvaluatedHypothesis& b,
                                 const SelectionCriteria& criteria) {
-  const bool a_is_closer = a.errors.rms() < b.errors.rms();
-  const ErrorSquares& reference = a_is_closer ? a.errors : b.errors;
-  const auto of_a = log_densities(a.errors, reference, criteria), of_b = log_densities(b.errors, reference, criteria);
+  const EvaluatedHypothesis& reference = a.errors.rms() < b.errors.rms() ? a : b;
+  const auto of_a = log_densities_beside(a, reference, criteria), of_b = log_densities_beside(b, reference, criteria);
   double sum = a.log_prior - b.log_prior;
   for (std::size_t r = 0; r < of_a.size(); ++r) sum += of_a[r] - of_b[r];
   return sum;
@@ -174,6 +183,7 @@ SUREFOOT_INLINE double log_odds(const EvaluatedHypothesis& a, const EvaluatedHyp
 SUREFOOT_ONCE double log_odds_of_forms(EvaluatedHypothesis a, EvaluatedHypothesis b,
                                        const SelectionCriteria& criteria) {
   a.errors.least = b.errors.least = {};
+  a.errors.least_of_as_many = b.errors.least_of_as_many = {};
   return log_odds(a, b, criteria);
 }
 
@@ -181,13 +191,13 @@ SUREFOOT_ONCE std::vector<double> probabilities(const std::vector<EvaluatedHypot
                                                 const SelectionCriteria& criteria) {
   std::vector<double> result(evaluated.size(), 0.0);
   if (evaluated.empty()) return result;
-  const ErrorSquares& reference = std::min_element(evaluated.begin(), evaluated.end(),
-                                                   [](const EvaluatedHypothesis& a, const EvaluatedHypothesis& b) {
-                                                     return a.errors.rms() < b.errors.rms();
-                                                   })
-                                      ->errors;
+  const EvaluatedHypothesis& reference = *std::min_element(
+      evaluated.begin(), evaluated.end(),
+      [](const EvaluatedHypothesis& a, const EvaluatedHypothesis& b) { return a.errors.rms() < b.errors.rms(); });
   std::vector<std::vector<double>> densities;
-  for (const EvaluatedHypothesis& one : evaluated) densities.push_back(log_densities(one.errors, reference, criteria));
+  for (const EvaluatedHypothesis& one : evaluated) {
+    densities.push_back(log_densities_beside(one, reference, criteria));
+  }
   const std::size_t recordings = densities.front().size();
   Rng rng(criteria.seed, 0xb4a9u);
   std::vector<double> weight(recordings), score(evaluated.size());

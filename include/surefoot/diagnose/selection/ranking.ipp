@@ -45,6 +45,7 @@ SUREFOOT_ONCE std::size_t closest_of_tie(const Search& search, const std::vector
   const auto as_it_is = [&](std::size_t i) {
     EvaluatedHypothesis one = pool[i];
     one.errors.least.resize(0);
+    one.errors.least_of_as_many.resize(0);
     return one;
   };
   std::size_t closest = best;
