@@ -38,8 +38,9 @@ std::string summary(const surefoot::Diagnosis& d, const std::filesystem::path& o
     text << "  on " << d.held_out.size() << " held-out recording(s): error " << rounded(d.held_out_before);
     if (!d.effects.empty()) text << " before, " << rounded(d.held_out_after) << " after";
     text << "; forest " << rounded(d.held_out_forest);
-    if (std::isfinite(d.noise_ratio)) text << ", noise floor " << rounded(d.noise_floor);
-    if (std::isfinite(d.noise_ratio)) text << " (" << rounded(d.noise_ratio) << " times it is left)";
+    if (std::isfinite(d.noise_ratio)) {
+      text << ", noise floor " << rounded(d.noise_floor) << " (" << rounded(d.noise_ratio) << " times it is left)";
+    }
     text << '\n';
   }
   if (d.forest_residual.kept) {

@@ -104,8 +104,7 @@ inline std::vector<Form> forms() {
       {"hysteresis", "n = 2", "F = -force z / width, dz/dq = 1 - (z / width)^2 on the way out, 1 on the way back"},
       {"hysteresis", "any exponent",
        "F = -force z / width, dz/dq = 1 - (z / width)^exponent on the way out, 1 + back |z / width|^exponent on the "
-       "way "
-       "back"},
+       "way back"},
       {"hysteresis", "asymmetric",
        "F = -force z / width, dz/dq = 1 - (1 - shape) |z| / width on the way out, 1 + (1 + shape) |z| / width on the "
        "way back"},

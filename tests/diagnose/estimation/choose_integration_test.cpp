@@ -56,6 +56,16 @@ TEST_CASE("the integration is fine enough for the recording that needs it most, 
   CHECK(first.step == last.step);
 }
 
+TEST_CASE("an integration that is chosen again is as fine as before, not finer") {
+  const BoundSimulator bound = bind_simulator(toys::LeakyTank{}, {toys::tank_recording(0, 100)});
+  for (const double size : {0.1, 1e-6, 1e-12}) {
+    const Integration once = chosen(size, 1);
+    const Integration twice = choose_integration(bound, nominal_hypothesis(bound), Vec<1>(size), once, {0}, serially());
+    CHECK(twice.step == once.step);
+    CHECK(twice.order == once.order);
+  }
+}
+
 TEST_CASE("what is much faster than rows is integrated in as many steps as it takes to run") {
   const auto fast = [](double leak) {
     BoundSimulator bound = bind_simulator(toys::LeakyTank{}, {toys::tank_recording(0, 1000)});

@@ -1,9 +1,9 @@
 // Dry friction that grows with the force carried, as in gears: level = factor * |force|.
 // M. Duclusaud, G. Passault, V. Padois, O. Ly: "Extended friction models for the physics simulation of servo
 // actuators", 2024. Forms: "drive", the force due to the inputs; "load", the force that remains with inputs and speed
-// at zero (say, weight); "gears", what the gears pass on, half the difference of the two; "both",
-// a share of each. Confusable with plain dry
-// friction when the load hardly changes, and with a weaker drive when it always moves.
+// at zero (say, weight); "gears", what the gears pass on, half the difference of the two; "both", a
+// share of each. Confusable with plain dry friction when the load hardly changes, and with a weaker drive when it
+// always moves.
 #pragma once
 
 #include <cmath>

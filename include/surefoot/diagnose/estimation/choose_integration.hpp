@@ -11,7 +11,8 @@
 namespace surefoot::diagnosis {
 
 /// The cheapest integration whose error over all of these recordings is small (5 %) against the residuals of each
-/// output (`residual_size`, in its unit). Cost: at most 56 evaluations a row.
+/// output (`residual_size`, in its unit). Cost: at most 60 evaluations a row, in a
+/// model that runs with one step.
 Integration choose_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                const Eigen::VectorXd& residual_size, const Integration& now,
                                const std::vector<std::size_t>& recordings, const Parallel& parallel);

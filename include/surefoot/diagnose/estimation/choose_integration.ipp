@@ -17,7 +17,8 @@
 
 namespace surefoot::diagnosis {
 
-/// Steps of a row, of what is held to be exact; and the most that are tried to run at all.
+/// Steps of what is held to be exact, for each that it takes to run at all; and the most of a row that are tried for
+/// that.
 inline constexpr double reference_steps = 8, most_steps = 128;
 
 /// The median interval of the recording that has the shortest.
@@ -60,18 +61,25 @@ SUREFOOT_ONCE bool any_is_finite(const std::vector<SimulatedRun>& runs) {
 /// Slack of a step, so that rounding does not add one.
 inline constexpr double step_slack = 0.1;  // of a step
 
+/// `now` with as few steps of a row as these recordings can be simulated with at all; as it is where none helps.
+SUREFOOT_ONCE Integration coarsest_that_runs(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                             const Integration& now, double row,
+                                             const std::vector<std::size_t>& recordings, const Parallel& parallel) {
+  Integration coarse = now;
+  coarse.step = 0;
+  for (double steps = 1; steps <= most_steps; steps *= 2) {
+    if (steps > 1) coarse.step = row / (steps - step_slack);
+    if (any_is_finite(simulate_all(bound, hypothesis, recordings, coarse, parallel))) return coarse;
+  }
+  return now;
+}
+
 SUREFOOT_ONCE Integration integration_that_runs(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                                 const Parallel& parallel) {
   if (bound.info.kind == SimulatorKind::map) return bound.integration;
   std::vector<std::size_t> all(bound.recordings.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  Integration now = bound.integration;
-  const double row = shortest_interval(bound, all);
-  for (double steps = 1; steps <= most_steps; steps *= 2) {
-    if (steps > 1) now.step = row / (steps - step_slack);
-    if (any_is_finite(simulate_all(bound, hypothesis, all, now, parallel))) return now;
-  }
-  return bound.integration;
+  return coarsest_that_runs(bound, hypothesis, bound.integration, shortest_interval(bound, all), all, parallel);
 }
 
 SUREFOOT_ONCE Integration choose_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
@@ -82,13 +90,9 @@ SUREFOOT_ONCE Integration choose_integration(const BoundSimulator& bound, const 
   const double row = shortest_interval(bound, recordings);
   Integration fine = now;
   fine.order = 4;
-  // of what is held to be exact: eight steps a row, or eight times as many as are needed to run at all
-  double steps = std::max(1.0, now.step > 0 ? std::round(row / now.step) : 1.0);
-  std::vector<SimulatedRun> exact;
-  for (; steps <= most_steps && !any_is_finite(exact); steps *= 2) {
-    fine.step = row / (reference_steps * steps);
-    exact = simulate_all(bound, hypothesis, recordings, fine, parallel);
-  }
+  const Integration runs = coarsest_that_runs(bound, hypothesis, fine, row, recordings, parallel);
+  fine.step = (runs.step > 0 ? std::min(row, runs.step) : row) / reference_steps;
+  const std::vector<SimulatedRun> exact = simulate_all(bound, hypothesis, recordings, fine, parallel);
   if (!any_is_finite(exact)) return fine;
   std::vector<std::pair<int, double>> coarser{{2, one_step * row}, {4, one_step * row}};
   for (double more = 2; row / more > 1.5 * fine.step; more *= 2) coarser.emplace_back(4, row / (more - step_slack));
