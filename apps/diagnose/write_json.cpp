@@ -87,7 +87,8 @@ Json alternatives_json(const Diagnosis& diagnosis) {
       effects.push_back({{"name", name}, {"attached_to", attached_to}});
     }
     list.push_back({{"effects", effects},
-                    {"heldout_rmse", finite_or_null(alternative.fitted_rmse)},
+                    {"fitted_rmse", finite_or_null(alternative.fitted_rmse)},
+                    {"heldout_rmse", finite_or_null(alternative.held_out_rmse)},
                     {"probability", finite_or_null(alternative.probability)},
                     {"indistinguishable", alternative.indistinguishable}});
   }
@@ -100,9 +101,13 @@ Json structures_json(const Diagnosis& diagnosis) {
   for (const auto& effect : diagnosis.effects) {
     chosen.push_back({{"name", effect.name}, {"attached_to", effect.attached_to}});
   }
-  list.push_back({{"effects", chosen}, {"probability", finite_or_null(diagnosis.probability)}});
+  list.push_back({{"effects", chosen},
+                  {"probability", finite_or_null(diagnosis.probability)},
+                  {"heldout_rmse", finite_or_null(diagnosis.held_out_after)}});
   for (const Json& other : alternatives_json(diagnosis)) {
-    list.push_back({{"effects", other["effects"]}, {"probability", other["probability"]}});
+    list.push_back({{"effects", other["effects"]},
+                    {"probability", other["probability"]},
+                    {"heldout_rmse", other["heldout_rmse"]}});
   }
   return list;
 }

@@ -52,7 +52,7 @@ LinearProblem linearise(const Prepared& prepared, const std::vector<surefoot::At
   const Eigen::VectorXd start = functions.start(), residuals = functions.residuals(start);
   result.residuals = residuals.unaryExpr([limit](double r) { return std::clamp(r, -limit, limit); });
   result.jacobian = functions.jacobian(start, residuals);
-  for (const Proposal& proposal : propose(bound, base, problem, candidates, parallel)) {
+  for (const Proposal& proposal : propose(bound, base, problem, candidates, 0, parallel)) {
     if (!(proposal.visible > 0)) continue;  // has no signature that the parameters could not
     const auto more = unknowns_of(bound, proposal.effect, proposal.tried, result.candidates.size());
     result.unknowns.insert(result.unknowns.end(), more.begin(), more.end());

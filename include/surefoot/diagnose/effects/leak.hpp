@@ -18,7 +18,7 @@ inline Effect leak() {
           .place = Place::state,
           .parameters = parameters_of({{.name = "leak",
                                         .measure = {.effort = 1, .value = -1},
-                                        .low = -3,
+                                        .low = 0,
                                         .high = 3,
                                         .starts = {0.003, 0.1},
                                         .strength = true}}),

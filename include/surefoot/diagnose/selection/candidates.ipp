@@ -103,15 +103,15 @@ SUREFOOT_ONCE std::vector<bool> zero_at_first(const BoundSimulator& bound,
   return zero;
 }
 
-/// Whether a position in this unit is no angle; one of unknown unit may be.
-SUREFOOT_ONCE bool is_length_unit(const std::string& unit) {
-  constexpr std::array lengths{"m", "cm", "mm", "km"};
-  return std::find(lengths.begin(), lengths.end(), unit) != lengths.end();
+/// Whether a position in this unit may be an angle: unless its unit is known to be another.
+SUREFOOT_ONCE bool may_be_angle(const std::string& unit) {
+  constexpr std::array units{"", "1", "rad", "deg"};
+  return std::find(units.begin(), units.end(), unit) != units.end();
 }
 
 SUREFOOT_ONCE bool fits_velocity(const BoundSimulator& bound, const Effect& effect, std::size_t state) {
   const int position = bound.structure.position_of[state];
-  if (effect.needs_angle && (position < 0 || is_length_unit(bound.info.states[static_cast<std::size_t>(position)].unit))) {
+  if (effect.needs_angle && (position < 0 || !may_be_angle(bound.info.states[static_cast<std::size_t>(position)].unit))) {
     return false;
   }
   if (!effect.needs_unit.empty() && bound.info.states[state].unit != effect.needs_unit) return false;

@@ -83,6 +83,7 @@ struct SearchEffort {
   std::size_t pair_finalists = 3;            // fits of pairs that are finished and evaluated
   std::size_t compared_shortlist = 8;        // for what may stand in an effect's place
   std::size_t compared_finalists = 3;        // fits of these that are finished and evaluated
+  std::size_t predicted = 8;                 // structures that are compared by their predictions
 };
 
 /// A fitted hypothesis with its errors.
@@ -91,6 +92,7 @@ struct EvaluatedHypothesis {
   double loss = std::numeric_limits<double>::infinity();  // on the recordings of the fit
   ErrorSquares errors;
   double log_prior = 0;  // of the structure, and the Occam factor of its parameters [nat]
+  double predicted = std::numeric_limits<double>::quiet_NaN();  // root mean square of the errors of predictions
 
   /// Parameters of all effects.
   std::size_t parameter_count() const;
@@ -104,6 +106,7 @@ struct SearchProblem {
   Eigen::VectorXd noise = {};         // mean square of the noise by output, in the unit of errors; 0: not known
   std::vector<std::size_t> screened;  // recordings that screen proposals
   Hypothesis nominal;                 // the same without calibration: a second place to start from
+  std::vector<std::vector<std::size_t>> folds = {};  // of the recordings, each to be predicted from the others
   bool scatter = true;                // start the model's parameters from elsewhere too, beside a first effect
   std::size_t known = 0;              // effects that are part of the model already: the first ones, never removed
   std::size_t candidates = 1;         // effects and places that may be tried
@@ -119,6 +122,9 @@ struct SearchProblem {
   SelectionCriteria criteria = {};
   SearchEffort effort = {};
 };
+
+/// Mean squares over all recordings, by output.
+Eigen::VectorXd pooled(const ErrorSquares& errors);
 
 /// Variance of weighted errors that are as small as those of the integration.
 double least_variance(const SearchProblem& problem);

@@ -32,7 +32,6 @@ SUREFOOT_INLINE double least_variance(const SearchProblem& problem) {
   return sum;
 }
 
-/// Mean squares over all recordings, by output.
 SUREFOOT_INLINE Eigen::VectorXd pooled(const ErrorSquares& errors) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(errors.counts.cols());
   for (Eigen::Index k = 0; k < result.size(); ++k) {

@@ -15,7 +15,7 @@ struct ProposedPair {
   double gain = 0;
 };
 
-/// The pairs with the largest gains, best first. Cost: the square of the number of signatures, times their length.
+/// The pairs with the largest gains, best first, each in one form only: more of them would crowd others out. Cost: the square of the number of signatures, times their length.
 std::vector<ProposedPair> propose_pairs(const std::vector<Proposal>& proposals, std::size_t count);
 
 }  // namespace surefoot::diagnosis

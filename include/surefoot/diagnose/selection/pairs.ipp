@@ -137,10 +137,16 @@ SUREFOOT_INLINE std::vector<ProposedPair> propose_pairs(const std::vector<Propos
     }
   }
   sort_items(ranked, [](const Ranked& a, const Ranked& b) { return a.shares.gain > b.shares.gain; });
-  if (ranked.size() > count) ranked.resize(count);
   std::vector<ProposedPair> pairs;
   for (const auto& [first, second, shares] : ranked) {
+    if (pairs.size() == count) break;
     const Proposal &a = proposals[first], &b = proposals[second];
+    const bool in_other_forms = std::any_of(pairs.begin(), pairs.end(), [&](const ProposedPair& other) {
+      const AttachedEffect &c = other.first.effect, &d = other.second.effect;
+      return (same_but_for_form(a.effect, c) && same_but_for_form(b.effect, d)) ||
+             (same_but_for_form(a.effect, d) && same_but_for_form(b.effect, c));
+    });
+    if (in_other_forms) continue;
     pairs.push_back({started(a, shares.value, 0), started(b, shares.value, a.beyond.cols()), shares.gain});
   }
   return pairs;

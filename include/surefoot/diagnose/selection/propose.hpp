@@ -16,6 +16,8 @@ struct ProposalCriteria {
   double visible_share = 0.05;          // of the residuals' squares, that an effect must take away to be seen
   double negligible_signature = 1e-12;  // of the residuals' squares: rounding, the effect does nothing here
   double ridge = 1e-12;                 // of the signatures' squares: where two strengths do the same
+  double resized_from = 0.5;            // residuals over a signature: below, it is tried smaller,
+  int resizings = 2;                    // at most so often
   double order_matters = 0.01;          // of the residuals' squares, explained more in front of others: not by rounding
 };
 
@@ -61,6 +63,12 @@ Hypothesis with_effect(Hypothesis base, const AttachedEffect& effect, const Eige
 Eigen::MatrixXd signatures(const BoundSimulator& bound, const Hypothesis& base, const FitProblem& problem,
                            const Eigen::VectorXd& residuals, const AttachedEffect& candidate,
                            const Eigen::VectorXd& start, std::size_t before);
+
+/// The same values, with each strength that causes more than what is left made smaller: a change of the simulation is in
+/// proportion to a strength only near the size in question (a pendulum that has come to rest stays so).
+Eigen::VectorXd as_large_as_residuals(const AttachedEffect& candidate, const Eigen::VectorXd& values,
+                                      const Eigen::MatrixXd& signatures, const OpenResiduals& open,
+                                      const ProposalCriteria& criteria = {});
 
 /// Predicts what an effect would explain; no effect in it if its signatures are empty.
 Proposal predict_gain(const BoundSimulator& bound, const OpenResiduals& open, const AttachedEffect& candidate,

@@ -85,6 +85,21 @@ SUREFOOT_ONCE Eigen::MatrixXd signatures(const BoundSimulator& bound, const Hypo
   return result;
 }
 
+SUREFOOT_ONCE Eigen::VectorXd as_large_as_residuals(const AttachedEffect& candidate, const Eigen::VectorXd& values,
+                                                    const Eigen::MatrixXd& signatures, const OpenResiduals& open,
+                                                    const ProposalCriteria& criteria) {
+  Eigen::VectorXd result = values;
+  if (candidate.effect->is_impulsive) return result;
+  const double residuals = sum_of_squares(open.residuals);
+  const std::vector<Eigen::Index> strengths = strengths_of(*candidate.effect);
+  for (std::size_t m = 0; m < strengths.size(); ++m) {
+    const double squares = sum_of_squares(surefoot::detail::column_of(signatures, static_cast<Eigen::Index>(m)));
+    const double ratio = std::sqrt(residuals / std::max(squares, never_zero));
+    if (ratio < criteria.resized_from) result[strengths[m]] *= ratio;
+  }
+  return result;
+}
+
 /// Limits of the multiples of the signatures: those of the strengths; 0 to 1 where there is none.
 SUREFOOT_ONCE std::pair<Eigen::VectorXd, Eigen::VectorXd> limits_of_shares(const BoundSimulator& bound,
                                                                            const AttachedEffect& candidate,
@@ -254,8 +269,18 @@ SUREFOOT_ONCE std::vector<Proposal> propose(const BoundSimulator& bound, const H
   std::vector<Proposal> tried(trials.size());
   parallel(trials.size(), [&](std::size_t j) {
     const auto& [c, before, start] = trials[j];
-    tried[j] = predict_gain(bound, open, candidates[c], start,
-                            signatures(bound, base, problem, open.residuals, candidates[c], start, before), criteria);
+    const auto signatures_of = [&, c = c, before = before](const Eigen::VectorXd& values) {
+      return signatures(bound, base, problem, open.residuals, candidates[c], values, before);
+    };
+    Eigen::VectorXd values = start;
+    Eigen::MatrixXd changes = signatures_of(values);
+    for (int round = 0; round < criteria.resizings && changes.cols() > 0; ++round) {
+      const Eigen::VectorXd smaller = as_large_as_residuals(candidates[c], values, changes, open, criteria);
+      if (std::equal(smaller.begin(), smaller.end(), values.begin())) break;
+      values = smaller;
+      changes = signatures_of(values);
+    }
+    tried[j] = predict_gain(bound, open, candidates[c], values, changes, criteria);
     tried[j].before = before;
   });
   return best_of_each_effect(std::move(tried), base.effects.size(), criteria);

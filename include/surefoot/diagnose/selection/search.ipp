@@ -21,6 +21,7 @@
 #include "surefoot/diagnose/estimation/restarts.hpp"
 #include "surefoot/diagnose/selection/choose_holds.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
+#include "surefoot/diagnose/selection/predictions.hpp"
 #include "surefoot/diagnose/selection/richer_forms.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
 
@@ -510,7 +511,8 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
   }
   Selection selection;
   while (true) {
-    selection = ranked(search, pool);
+    selection = ranked(search, with_predictions(search, pool));
+    restore_errors_of_fits(selection, pool);
     settle(search, selection.chosen);
     const auto fewer = weigh_effects(search, selection);
     if (!fewer) break;

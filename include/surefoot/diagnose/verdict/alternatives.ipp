@@ -49,6 +49,7 @@ SUREFOOT_ONCE Alternatives find_alternatives(const Selection& selection, const S
     if (other.hypothesis.effects.size() <= known) continue;
     Alternative alternative;
     alternative.fitted_rmse = other.errors.rms();
+    alternative.held_out_rmse = other.predicted;
     alternative.probability = selection.alternative_probabilities[i];
     for (std::size_t e = known; e < other.hypothesis.effects.size(); ++e) {
       alternative.effects.emplace_back(other.hypothesis.effects[e].effect->name, other.hypothesis.effects[e].place);

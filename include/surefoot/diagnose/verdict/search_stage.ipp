@@ -56,6 +56,7 @@ SUREFOOT_ONCE SearchProblem search_problem(const EstimationSetup& setup, const C
     problem.noise[k] = setup.noise == NoiseKind::measurement ? ratio * ratio : 0;
   }
   problem.nominal = calibration.nominal;
+  problem.folds = setup.split.folds;
   problem.known = run.options.known.size();
   const double rival = calibration.freed_together.log_odds;
   if (rival > std::log(problem.criteria.named_odds)) problem.rival = rival;

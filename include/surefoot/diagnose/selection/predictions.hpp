@@ -1,0 +1,31 @@
+// Errors of predictions: how well structures predict recordings that they were not fitted to. Where something is left
+// that noise does not explain, every structure is of a wrong form somewhere, and a close fit may come of parameters bent
+// to these recordings; what it says of others tells. An error of form is then as large as what the closest prediction
+// leaves, or as a diagnosis tolerates anyway.
+#pragma once
+
+#include <vector>
+
+#include "surefoot/diagnose/selection/children.hpp"
+#include "surefoot/diagnose/selection/ranking.hpp"
+
+namespace surefoot::diagnosis {
+
+/// Errors of each recording by fits to those folds (SearchProblem::folds) that it is not in, its unknown initial states
+/// estimated; at least two folds. Cost: a fit for each fold.
+ErrorSquares errors_of_predictions(const Search& search, const EvaluatedHypothesis& one);
+
+/// The structures of a pool that may be chosen, the best first, and the model without effects: those not `hopeless`
+/// behind the best one, at most SearchEffort::predicted of them. Each has its root mean square error of predictions
+/// and, where the best one leaves more than noise, is measured by these. The pool as it is where there are no two folds
+/// or no time is left.
+std::vector<EvaluatedHypothesis> with_predictions(const Search& search, const std::vector<EvaluatedHypothesis>& pool);
+
+/// All structures of a selection with the errors of their fits, those of the pool that it was made from.
+void restore_errors_of_fits(Selection& selection, const std::vector<EvaluatedHypothesis>& pool);
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/selection/predictions.ipp"
+#endif
