@@ -20,6 +20,8 @@ A robot in MuJoCo's format, told which columns belong to which joints; augmented
   surefoot-diagnose --model robot.xml --setup robot.toml --out diagnosis log.csv
 Exit codes: 0 a verdict was reached; 2 wrong options or files; 130 stopped by Ctrl-C, what was known by then is kept.)";
 
+constexpr double longest_budget = 1e6;  // [s]: twelve days
+
 }  // namespace
 
 std::optional<CommandLine> parse_command_line(int argc, const char* const* argv, bool with_model) {
@@ -49,7 +51,7 @@ std::optional<CommandLine> parse_command_line(int argc, const char* const* argv,
       ->check(CLI::Range(std::size_t{2}, std::size_t{1000000000}))
       ->capture_default_str();
   program.add_option("--budget", line.budget, "seconds after which calibration and search end; 0: no limit")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0.0, longest_budget));
   program.add_option("--seed", line.seed, "of all randomness; the same seed gives the same result")
       ->capture_default_str();
   program.add_option("--threads", line.threads, "0: as many as the machine has; results do not depend on it")

@@ -198,9 +198,9 @@ std::string forest_part(const surefoot::ForestResidual& forest) {
                               " with it and " + rounded(forest.held_out_before) + " without.";
   if (!forest.kept) {
     return html + paragraph(
-                      "A forest that corrects the simulated outputs by what it learned from the residuals does "
-                      "not clearly improve simulations of recordings it has not seen, and is not kept. " +
-                      figures);
+                      "A forest that corrects the simulated outputs by what it learned from the residuals is not kept: "
+                      "where each recording of the fit is left out in turn it takes away " +
+                      percent(forest.gain) + " (standard error " + percent(forest.gain_stderr) + "). " + figures);
   }
   return html + paragraph(std::string(residual_file) +
                           " corrects the simulated outputs by what a forest learned from the residuals: no explanation,"

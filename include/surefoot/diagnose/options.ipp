@@ -10,8 +10,18 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
 #include "surefoot/diagnose/options.hpp"
+#include "surefoot/diagnose/text.hpp"
 
 namespace surefoot {
+
+/// Names of effects, each once, whatever their forms.
+SUREFOOT_ONCE std::vector<std::string> distinct_names(const std::vector<Effect>& effects) {
+  std::vector<std::string> names;
+  for (const Effect& effect : effects) {
+    if (std::find(names.begin(), names.end(), effect.name) == names.end()) names.push_back(effect.name);
+  }
+  return names;
+}
 
 SUREFOOT_ONCE void check(const DiagnoseOptions& options) {
   const auto fail = [](const std::string& text) { throw DiagnoseError("DiagnoseOptions::" + text); };
@@ -37,8 +47,7 @@ SUREFOOT_ONCE void check(const DiagnoseOptions& options) {
   for (const std::string& name : options.effects) {
     if (!exists(name)) {
       fail("effects: there is no effect called '" + name +
-           "'; all_effects() lists those of the library, and "
-           "more_effects takes your own");
+           "'; there are " + in_list(distinct_names(every)) + " (in C++, more_effects adds your own)");
     }
   }
   for (const NamedEffect& known : options.known) {

@@ -116,7 +116,8 @@ struct Effect {
   /// Delay of an input or a signal [s, or steps]. Beside `sensor`: how old its readings are, so that an initial state
   /// is read off a later one.
   std::function<double(Values p)> delay = {};
-  /// Starting values of the first parameter, in place of `starts`, that readings suggest: those of the sensor attached
+  /// Starting values of the first parameter, in place of `starts`, that readings suggest (without `starts`, an effect is
+  /// not tried unless they do): those of the sensor attached
   /// to, or of one that reads the state attached to (for a velocity: what it is the speed of).
   /// Beside each reading stands what was simulated without the effect.
   std::function<std::vector<double>(Values readings, Values simulated)> suggest = {};

@@ -28,7 +28,7 @@ inline Effect quantization() {
                                         .measure = {.value = 1},
                                         .low = 0.001,
                                         .high = 2,
-                                        .starts = {0.01, 0.03, 0.1, 0.2, 0.4, 0.8}}}),
+                                        .starts = {}}}),  // as readings suggest, or not at all
           .confusable_with = names_of({"backlash"}),
           .experiment = "the slowest motion possible through many steps of the sensor",
           .suggest = +[](Values readings, Values simulated) { return sensor_steps(readings, simulated, 0.5); },

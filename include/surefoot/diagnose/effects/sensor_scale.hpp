@@ -12,7 +12,7 @@ inline Effect sensor_scale() {
           .sentence = "the scale of the sensor {at} is off by {excess} of its value",
           .place = Place::output,
           .parameters = parameters_of(
-              {{.name = "excess", .measure = {}, .low = -0.8, .high = 2, .starts = {0.05}, .strength = true}}),
+              {{.name = "excess", .measure = {}, .low = -0.95, .high = 2, .starts = {0.05}, .strength = true}}),
           .confusable_with = names_of({"input_gain", "sensor_bias"}),
           .experiment = "rest in two poses far apart that are known from elsewhere",
           .at_start = true,

@@ -29,6 +29,10 @@ Eigen::MatrixXd step_correlations(const BoundSimulator& bound, const Hypothesis&
 
 bool only_final_pose(const BoundSimulator& bound);
 
+/// Whether recordings have so few readings, fewer than 20 in the median, that they say nothing of what happens between
+/// rows nor of hidden states at their beginning: what each recording may choose for itself would fit its readings.
+bool few_readings(const BoundSimulator& bound, const std::vector<std::size_t>& recordings);
+
 NoiseKind noise_kind(const BoundSimulator& bound, const Hypothesis& hypothesis,
                      const std::vector<std::size_t>& recordings);
 

@@ -70,6 +70,15 @@ SUREFOOT_INLINE bool only_final_pose(const BoundSimulator& bound) {
   return true;
 }
 
+SUREFOOT_ONCE bool few_readings(const BoundSimulator& bound, const std::vector<std::size_t>& recordings) {
+  constexpr std::size_t few = 20;
+  std::vector<std::size_t> counts;
+  for (const std::size_t r : recordings) counts.push_back(cells_of(bound.recordings[r]).size());
+  if (counts.empty()) return true;
+  std::nth_element(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2), counts.end());
+  return counts[counts.size() / 2] < few;
+}
+
 SUREFOOT_INLINE NoiseKind noise_kind(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                      const std::vector<std::size_t>& recordings) {
   if (bound.info.kind != SimulatorKind::map) return NoiseKind::measurement;

@@ -133,13 +133,20 @@ struct SingleClock {
   double amount = 0, error = std::numeric_limits<double>::infinity();
 };
 
-SUREFOOT_ONCE void compare_single(const Clocks& clocks, LogFaultKind kind, const LogDoctorCriteria& criteria,
-                                  std::optional<SingleClock>& best) {
+/// Whether a clock of this rate is off by less than a row at the end of its recording: it passes for no other clock.
+SUREFOOT_ONCE bool stays_within_a_row(const Recording& one, double rate) {
+  return std::abs(rate) * (one.time[one.rows() - 1] - one.time[0]) < median_interval(one);
+}
+
+SUREFOOT_ONCE void compare_single(const LogFit& fit, const Clocks& clocks, LogFaultKind kind,
+                                  const LogDoctorCriteria& criteria, std::optional<SingleClock>& best) {
   constexpr double kinds = 3;  // of clocks, each of which is tested
   const double common = median_value(clocks.estimates);
   for (std::size_t r = 0; r < clocks.estimates.size(); ++r) {
     const ClockEstimate& one = clocks.estimates[r];
     if (!one.usable || !is_like_others(clocks.estimates, r, criteria)) continue;
+    const bool is_rate = kind != LogFaultKind::offset;
+    if (is_rate && stays_within_a_row(fit.bound.recordings[r], one.value - common)) continue;
     const double chance =
         outlier_by_chance(clocks.estimates, r, criteria) * static_cast<double>(clocks.estimates.size()) * kinds;
     const double ratio = error_at(clocks.profiles[r], common) / one.error;
@@ -243,7 +250,7 @@ SUREFOOT_ONCE std::optional<ClockFault> differing_offsets(const LogDoctorInputs&
   const WithoutOffsets logged{fit, std::vector<double>(fit.error.size(), 0.0)};
   WithoutOffsets delayed = take_offsets_out(inputs, fit, logged, false);
   std::optional<SingleClock> single;  // beside a delay that all have in common
-  compare_single(measure_clocks(delayed.fit, LogFaultKind::offset, inputs), LogFaultKind::offset, criteria, single);
+  compare_single(fit, measure_clocks(delayed.fit, LogFaultKind::offset, inputs), LogFaultKind::offset, criteria, single);
   if (single && beats_own_parameters(inputs, delayed.fit, *single)) return single_fault(*single, fit.error.size());
   WithoutOffsets cured = take_offsets_out(inputs, fit, delayed, true);
   const WithoutOffsets other = take_offsets_out(inputs, fit, logged, true);
@@ -265,7 +272,7 @@ SUREFOOT_ONCE std::optional<ClockFault> find_clock_fault(const LogDoctorInputs& 
   if (!has_clocks(fit, inputs.criteria)) return std::nullopt;
   std::optional<SingleClock> single;
   const Clocks offsets = measure_clocks(fit, LogFaultKind::offset, inputs);
-  compare_single(offsets, LogFaultKind::offset, inputs.criteria, single);
+  compare_single(fit, offsets, LogFaultKind::offset, inputs.criteria, single);
   for (const LogFaultKind kind : {LogFaultKind::output_skew, LogFaultKind::time_skew}) {
     compare_single(measure_clocks(fit, kind, inputs), kind, inputs.criteria, single);
   }

@@ -99,12 +99,14 @@ SUREFOOT_INLINE std::string in_words(const FeatureTable& table, const Condition&
 
 SUREFOOT_INLINE std::vector<MismatchRegion> find_region(const FeatureTable& table, const Eigen::VectorXd& energy,
                                                         int conditions, int permutations, std::uint64_t seed) {
+  constexpr double denser = 1.3;  // than what a condition is cut out of, or it says nothing
   const auto samples = static_cast<std::size_t>(energy.size());
   if (samples < 50 || !(energy.sum() > 0)) return {};
   const auto cuts = deciles(table);
   std::vector<bool> inside(samples, true);
   MismatchRegion region;
   double first_score = 0;
+  std::vector<Condition> rule;
   for (int c = 0; c < conditions; ++c) {
     const Condition condition = best_condition(table, cuts, energy, inside);
     if (condition.feature < 0) break;
@@ -120,13 +122,17 @@ SUREFOOT_INLINE std::vector<MismatchRegion> find_region(const FeatureTable& tabl
       share += energy[static_cast<Eigen::Index>(j)];
       ++count;
     }
-    if (c > 0 && share / count < 1.3 * before / before_count) break;  // hardly denser: leave the rule shorter
+    if (share / count < denser * before / before_count) break;
     inside = smaller;
-    region.rule += (c > 0 ? " and " : "") + in_words(table, condition);
+    std::erase_if(rule, [&](const Condition& one) {  // a tighter limit of the same
+      return one.feature == condition.feature && one.below == condition.below;
+    });
+    rule.push_back(condition);
     region.share_of_excess = share / energy.sum();
     region.share_of_samples = count / static_cast<double>(samples);
   }
-  if (region.rule.empty()) return {};
+  if (rule.empty()) return {};
+  for (const Condition& one : rule) region.rule += (region.rule.empty() ? "" : " and ") + in_words(table, one);
   // Blocks of a twentieth of a recording, dealt anew.
   std::vector<std::size_t> begin;
   for (std::size_t from = 0; from < samples;) {

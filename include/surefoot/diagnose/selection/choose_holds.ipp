@@ -8,6 +8,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
+#include "surefoot/diagnose/estimation/noise_regime.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/selection/choose_holds.hpp"
 
@@ -53,7 +54,7 @@ SUREFOOT_ONCE std::vector<std::vector<std::size_t>> undeclared_inputs(const Simu
 
 SUREFOOT_ONCE bool choose_holds(const BoundSimulator& bound, Fit& fitted, SearchProblem& problem,
                                 const Parallel& parallel) {
-  if (bound.info.kind == SimulatorKind::map) return false;
+  if (bound.info.kind == SimulatorKind::map || few_readings(bound, problem.fit.recordings)) return false;
   const auto evaluate = [&](const Fit& one, const FitProblem& with) {
     return EvaluatedHypothesis{
         one.hypothesis, one.loss,

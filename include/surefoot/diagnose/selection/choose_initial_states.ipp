@@ -9,6 +9,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
+#include "surefoot/diagnose/estimation/noise_regime.hpp"
 #include "surefoot/diagnose/selection/choose_initial_states.hpp"
 
 namespace surefoot::diagnosis {
@@ -48,14 +49,16 @@ SUREFOOT_ONCE bool may_be_freed(const BoundSimulator& bound, std::size_t state) 
          std::all_of(bound.recordings.begin(), bound.recordings.end(), said);
 }
 
-SUREFOOT_ONCE bool begins_once(const BoundSimulator& bound, const FitProblem& problem) {
-  return bound.info.kind != SimulatorKind::map && !(problem.integration.restart > 0);
+/// Whether recordings can tell where their states begin: they begin once, and have more than a few readings.
+SUREFOOT_ONCE bool tell_beginnings(const BoundSimulator& bound, const FitProblem& problem) {
+  return bound.info.kind != SimulatorKind::map && !(problem.integration.restart > 0) &&
+         !few_readings(bound, problem.recordings);
 }
 
 SUREFOOT_ONCE FreedTogether free_together(BoundSimulator bound, const Fit& known, const SearchProblem& problem,
                                           std::size_t starts, std::uint64_t seed, const Parallel& parallel) {
   FreedTogether result{std::vector<bool>(bound.info.states.size(), false)};
-  if (!begins_once(bound, problem.fit)) return result;
+  if (!tell_beginnings(bound, problem.fit)) return result;
   int count = 0;
   for (std::size_t i = 0; i < result.states.size(); ++i) {
     if (!may_be_freed(bound, i)) continue;
@@ -74,7 +77,7 @@ SUREFOOT_ONCE std::vector<bool> free_initial_states(BoundSimulator& bound, Fit& 
                                                     const Parallel& parallel) {
   const std::size_t states = bound.info.states.size();
   std::vector<bool> freed(states, false);
-  if (!begins_once(bound, problem.fit)) return freed;
+  if (!tell_beginnings(bound, problem.fit)) return freed;
   while (!problem.stopped()) {
     double most = std::log(problem.criteria.named_odds);
     std::size_t best = states;

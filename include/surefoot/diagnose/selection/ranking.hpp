@@ -21,7 +21,8 @@ struct Selection {
   bool yields = false;                            // to a rival explanation: first effects do worse
 };
 
-/// What the errors gain, with its standard error over recordings; the p-value is that of the odds.
+/// What the errors gain, each output's in units of what it was before, with its standard error over recordings; the
+/// p-value is that of the odds.
 Comparison gain_of(const ErrorSquares& before, const ErrorSquares& after, double log_odds);
 
 /// Of the structures that cannot be told apart from the most probable one, `best`, and have no more parameters than it,

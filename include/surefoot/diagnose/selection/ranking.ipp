@@ -20,20 +20,27 @@ SUREFOOT_ONCE Comparison gain_of(const ErrorSquares& before, const ErrorSquares&
   constexpr double least_ratio = 1e-6;  // of errors: below, the second one is exact
   constexpr double largest_odds = 700;  // [nat]: exp would overflow
   Comparison result;
-  const double a = before.rms(), b = after.rms();
-  if (!(a > 0)) return result;
-  result.gain = 1 - b / a;
+  if (!(before.rms() > 0)) return result;
+  const Eigen::VectorXd size = pooled(before);
+  const auto in_sizes = [&](const ErrorSquares& errors, Eigen::Index r, Eigen::Index k) {
+    return size[k] > 0 ? before.counts(r, k) * errors.mean_squares(r, k) / size[k] : 0.0;
+  };
+  double all = 0, left = 0;
+  for (Eigen::Index r = 0; r < before.counts.rows(); ++r) {
+    for (Eigen::Index k = 0; k < before.counts.cols(); ++k) {
+      all += in_sizes(before, r, k);
+      left += in_sizes(after, r, k);
+    }
+  }
+  const double share = left / all, ratio = std::sqrt(share);
+  result.gain = 1 - ratio;
   double squares = 0;
   for (Eigen::Index r = 0; r < before.counts.rows(); ++r) {
     double off = 0;
-    for (Eigen::Index k = 0; k < before.counts.cols(); ++k) {
-      off += before.counts(r, k) * (after.mean_squares(r, k) - b * b / (a * a) * before.mean_squares(r, k));
-    }
+    for (Eigen::Index k = 0; k < before.counts.cols(); ++k) off += in_sizes(after, r, k) - share * in_sizes(before, r, k);
     squares += off * off;
   }
-  double cells = 0;
-  for (Eigen::Index i = 0; i < before.counts.size(); ++i) cells += before.counts.data()[i];
-  result.stderr_ = std::sqrt(squares) / (cells * a * a) / (2 * std::max(b / a, least_ratio));
+  result.stderr_ = std::sqrt(squares) / all / (2 * std::max(ratio, least_ratio));
   result.t = result.stderr_ > 0 ? result.gain / result.stderr_ : 0;
   result.p_value = 1 / (1 + std::exp(std::clamp(log_odds, -largest_odds, largest_odds)));
   return result;

@@ -155,9 +155,12 @@ SUREFOOT_ONCE std::string next_experiment(const Hypothesis& chosen, const Hypoth
   return text;
 }
 
-/// "1.04 times the noise", or nothing where that is unknown.
+/// "1.04 times the noise", which may be estimated from what is left, or nothing where that is unknown.
 SUREFOOT_ONCE std::string against_noise(const Diagnosis& diagnosis) {
-  return std::isfinite(diagnosis.noise_ratio) ? in_digits(diagnosis.noise_ratio) + " times the noise" : "";
+  if (!std::isfinite(diagnosis.noise_ratio)) return "";
+  const bool stated = std::all_of(diagnosis.channels.begin(), diagnosis.channels.end(),
+                                  [](const ChannelMismatch& one) { return one.noise_stated; });
+  return in_digits(diagnosis.noise_ratio) + (stated ? " times the noise" : " times the noise as estimated");
 }
 
 /// Recordings that are further off than noise explains, in a sentence of their own.

@@ -143,6 +143,7 @@ SUREFOOT_ONCE std::vector<ChannelMismatch> mismatch_by_output(const EstimationSe
         setup.noise == NoiseKind::measurement
             ? output_noise(bound, setup.split.training, output, models.chosen.by_output[k], channel.rmse_after)
             : noise_of_steps(bound, setup.split.training, output, channel.rmse_after);
+    channel.noise_stated = bound.info.outputs[k].noise > 0;
     channel.p_value = models.calibrated.by_output[k].p_value;
     result.push_back(std::move(channel));
   }

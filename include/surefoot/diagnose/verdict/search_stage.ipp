@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/noise_regime.hpp"
 #include "surefoot/diagnose/estimation/sensor_noise.hpp"
 #include "surefoot/diagnose/screening.hpp"
 #include "surefoot/diagnose/selection/choose_initial_states.hpp"
@@ -29,6 +30,9 @@ SUREFOOT_ONCE std::vector<AttachedEffect> candidate_effects(const EstimationSetu
   });
   if (setup.noise == NoiseKind::process) {  // each row starts from readings, so that a sensor's faults cannot be told
     std::erase_if(effects, [](const Effect& effect) { return effect.place == Place::output; });
+  }
+  if (few_readings(setup.bound, setup.split.training)) {
+    std::erase_if(effects, [](const Effect& effect) { return effect.starts_anywhere; });
   }
   std::vector<AttachedEffect> candidates = attachments(
       setup.bound, effects,

@@ -73,7 +73,7 @@ inline std::vector<double> lattice_steps(Values readings) {
 }
 
 /// The step whose sawtooth, step * floor(y / step + shift) - y over the simulated values y, takes away most of the
-/// squared errors (readings minus simulated); means are left out. Empty: none takes away a hundredth. Steps from the
+/// squared errors (readings minus simulated); means are left out. Empty: none takes away a twentieth. Steps from the
 /// size of the errors to a quarter of the range are tried. Cost: 3,000 samples times up to 10,000 steps.
 inline std::vector<double> sawtooth_steps(Values readings, Values simulated, double shift) {
   const std::size_t every = std::max<std::size_t>(1, readings.size() / 3000);
@@ -108,7 +108,7 @@ inline std::vector<double> sawtooth_steps(Values readings, Values simulated, dou
     return (2 * product - teeth + sum * sum / count) / squares;
   };
   const double from = 4 / range, to = std::min(1 / size, 1000 / largest), apart = 0.1 / largest;
-  double best = 0, share = 0.01;
+  double best = 0, share = 0.05;
   for (double frequency = from; frequency < to; frequency += apart) {
     const double there = taken_away(frequency);
     if (there <= share) continue;
