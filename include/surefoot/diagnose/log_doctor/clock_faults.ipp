@@ -250,7 +250,7 @@ SUREFOOT_ONCE std::optional<ClockFault> differing_offsets(const LogDoctorInputs&
   const WithoutOffsets logged{fit, std::vector<double>(fit.error.size(), 0.0)};
   WithoutOffsets delayed = take_offsets_out(inputs, fit, logged, false);
   std::optional<SingleClock> single;  // beside a delay that all have in common
-  compare_single(fit, measure_clocks(delayed.fit, LogFaultKind::offset, inputs), LogFaultKind::offset, criteria, single);
+  compare_single(delayed.fit, measure_clocks(delayed.fit, LogFaultKind::offset, inputs), LogFaultKind::offset, criteria, single);
   if (single && beats_own_parameters(inputs, delayed.fit, *single)) return single_fault(*single, fit.error.size());
   WithoutOffsets cured = take_offsets_out(inputs, fit, delayed, true);
   const WithoutOffsets other = take_offsets_out(inputs, fit, logged, true);
@@ -274,7 +274,7 @@ SUREFOOT_ONCE std::optional<ClockFault> find_clock_fault(const LogDoctorInputs& 
   const Clocks offsets = measure_clocks(fit, LogFaultKind::offset, inputs);
   compare_single(fit, offsets, LogFaultKind::offset, inputs.criteria, single);
   for (const LogFaultKind kind : {LogFaultKind::output_skew, LogFaultKind::time_skew}) {
-    compare_single(measure_clocks(fit, kind, inputs), kind, inputs.criteria, single);
+    compare_single(fit, measure_clocks(fit, kind, inputs), kind, inputs.criteria, single);
   }
   if (single && beats_own_parameters(inputs, fit, *single)) return single_fault(*single, fit.error.size());
   return differing_offsets(inputs, fit, offsets);

@@ -80,8 +80,9 @@ SUREFOOT_ONCE std::string cure_of(const LogRepair& repair) {
       return "exchange the two columns";
     case LogFaultKind::time_unit:
       return "convert it to seconds";
-    case LogFaultKind::stuck:
     case LogFaultKind::clipped:
+      return "leave these readings empty, unless the machine itself goes no further";
+    case LogFaultKind::stuck:
     case LogFaultKind::repeated:
       return "leave these readings empty";
     case LogFaultKind::gap:

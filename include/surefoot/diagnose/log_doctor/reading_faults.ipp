@@ -64,12 +64,13 @@ SUREFOOT_ONCE int end_of_range(const Recording& recording, Eigen::Index output, 
   return highest ? 1 : lowest ? -1 : 0;
 }
 
-/// Whether the model goes beyond the value of a stretch, on that side, for most of it.
+/// Whether the model goes beyond the value of a stretch, on that side, for most of it, and by more than it is off anyway:
+/// a machine that goes no further there (an end stop, a tank that overflows) is no fault of its sensor.
 SUREFOOT_ONCE bool goes_beyond(const LogFit& fit, std::size_t r, Eigen::Index output, const ConstantStretch& stretch,
                                int side) {
   Eigen::Index beyond = 0;
   for (Eigen::Index row = stretch.rows.first; row < stretch.rows.second; ++row) {
-    if (side * (fit.runs[r].outputs(output, row) - stretch.value) > 0) ++beyond;
+    if (side * (fit.runs[r].outputs(output, row) - stretch.value) > fit.typical[output]) ++beyond;
   }
   return 2 * beyond > stretch.rows.second - stretch.rows.first;
 }
