@@ -50,5 +50,14 @@ TEST_CASE("effects of the user's own may be asked for") {
   CHECK(complaint({.effects = {"wind"}, .more_effects = {wind}}).empty());
 }
 
+TEST_CASE("an effect that does not exist is answered with those that do, each once") {
+  const std::string text = complaint({.effects = {"drag"}});
+  CHECK(text.find("'drag'") != std::string::npos);
+  for (const char* one : {"quadratic_drag", "coulomb_friction"}) {
+    CHECK(text.find(one) != std::string::npos);
+    CHECK(text.find(one) == text.rfind(one));
+  }
+}
+
 }  // namespace
 }  // namespace surefoot

@@ -132,5 +132,21 @@ TEST_CASE("a longer walk counts less") {
   CHECK(whitening[0].norm() > 1.3 * whitening[59].norm());
 }
 
+TEST_CASE("recordings with a few readings each decide nothing for themselves") {
+  const auto with_readings = [](Eigen::Index kept) {
+    std::vector<Recording> recordings;
+    for (int r = 0; r < 3; ++r) {
+      Recording one = toys::tank_recording(r, 100);
+      one.outputs = simulate_augmented(toys::LeakyTank{}, toys::machine({1, 1}, {}), one).outputs;
+      one.outputs.leftCols(100 - kept).fill(std::nan(""));
+      recordings.push_back(std::move(one));
+    }
+    return bind_simulator(toys::LeakyTank{}, recordings);
+  };
+  CHECK(few_readings(with_readings(3), {0, 1, 2}));
+  CHECK_FALSE(few_readings(with_readings(60), {0, 1, 2}));
+  CHECK(few_readings(with_readings(60), {}));
+}
+
 }  // namespace
 }  // namespace surefoot::diagnosis

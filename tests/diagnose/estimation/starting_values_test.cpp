@@ -3,8 +3,12 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <vector>
+
 #include "surefoot/diagnose/effects/first_order_lag.hpp"
 #include "surefoot/diagnose/effects/overflow.hpp"
+#include "surefoot/diagnose/effects/quantization.hpp"
 #include "surefoot/diagnose/effects/stribeck_friction.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/selection/candidates.hpp"
@@ -69,6 +73,27 @@ TEST_CASE("every combination of starting values is tried once") {
   std::size_t combinations = 1;
   for (const EffectParameter& parameter : effect.parameters) combinations *= parameter.starts.size();
   CHECK(starting_values(bound, attached(bound, effect), observed(bound)).size() == combinations);
+}
+
+TEST_CASE("steps of a sensor are tried only where its readings show them") {
+  Recording recording = toys::blank_recording(toys::LeakyTank{}.info(), 400, 0.05);
+  const auto starts = [&](double step) {
+    for (Eigen::Index i = 0; i < 400; ++i) {
+      const double level = 1 + std::sin(0.02 * static_cast<double>(i)) + 0.1 * std::sin(0.31 * static_cast<double>(i));
+      recording.outputs(0, i) = step > 0 ? step * std::round(level / step) : level;
+    }
+    BoundSimulator bound = bind_simulator(toys::LeakyTank{}, {recording});
+    const Hypothesis nominal = nominal_hypothesis(bound);
+    bound.sizes = measure_sizes(bound, nominal, {0}, simulate_all(bound, nominal, {0}, {}, serially()));
+    const AttachedEffect steps = attached(bound, effects::quantization());
+    CHECK(starting_values(bound, steps, {}).empty());
+    return starting_values(bound, steps,
+                           {Observed{std::vector<double>(recording.outputs.begin(), recording.outputs.end()),
+                                     std::vector<double>(400, 0.0)}});
+  };
+  CHECK(starts(0).empty());
+  REQUIRE(starts(0.05).size() == 1);
+  CHECK(starts(0.05)[0][0] == doctest::Approx(0.05).epsilon(1e-3));
 }
 
 }  // namespace

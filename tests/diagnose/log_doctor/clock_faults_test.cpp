@@ -103,6 +103,13 @@ TEST_SUITE("log_doctor") {
     CHECK_FALSE(has_clocks(fit_log(inputs, toys::servo_log({}, 2)), inputs.criteria));
   }
 
+  TEST_CASE("a clock that is not a row off at the end of its recording is no fault") {
+    const surefoot::Recording one = toys::servo_log({}, 1).front();  // 300 rows
+    CHECK(stays_within_a_row(one, 0.003));
+    CHECK(stays_within_a_row(one, -0.003));
+    CHECK_FALSE(stays_within_a_row(one, 0.004));
+  }
+
   TEST_CASE("a delay that all recordings share is physics") {
     const Parallel parallel = serially();
     const LogDoctorInputs inputs = toys::servo_doctor(parallel);

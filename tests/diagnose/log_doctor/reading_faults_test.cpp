@@ -75,6 +75,22 @@ TEST_SUITE("log_doctor") {
     CHECK(found(off) == 0);
   }
 
+  TEST_CASE("readings are clipped only where the model goes beyond them by more than it is off") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    auto log = toys::servo_log();
+    const double largest = log[0].outputs.row(0).maxCoeff(), end = 0.7 * largest;
+    for (double& reading : log[0].outputs.row(0)) reading = std::min(reading, end);
+    LogFit fit = fit_log(inputs, log);
+    const auto any_beyond = [&] {
+      const auto stretches = constant_stretches(fit, 0, 0, 1e-4, inputs.criteria);
+      return std::any_of(stretches.begin(), stretches.end(), [](const ConstantStretch& one) { return one.beyond; });
+    };
+    CHECK(any_beyond());
+    fit.typical[0] = largest;  // such a model may as well be wrong there
+    CHECK_FALSE(any_beyond());
+  }
+
   TEST_CASE("a gap is a gap only where other intervals are short") {
     auto log = toys::servo_log({}, 2);
     CHECK(find_gaps(bind_simulator(toys::Servo{}, log), {}).empty());

@@ -116,5 +116,23 @@ TEST_CASE("energy of changes belongs to where the error arises, not to where it 
   CHECK(mismatch_energy(bound, {0}, runs, Vec<1>(0.001), table, 0).maxCoeff() == 50);  // no sample decides alone
 }
 
+TEST_CASE("two limits of one feature are told as the tighter one") {
+  const FeatureTable table = table_of(1);
+  Eigen::VectorXd energy = noise_energy(1);
+  for (Eigen::Index j = 0; j < 800; ++j) energy[j] *= std::exp(4 * table.values(1, j));
+  const auto regions = find_region(table, energy, 4, 20, 1);
+  REQUIRE(regions.size() == 1);
+  const std::string& rule = regions[0].rule;
+  CHECK(rule.find("fast >= ") != std::string::npos);
+  CHECK(rule.find("fast >= ") == rule.rfind("fast >= "));
+}
+
+TEST_CASE("a region that is hardly denser than the rest is none") {
+  const FeatureTable table = table_of(1);
+  Eigen::VectorXd energy = Eigen::VectorXd::Ones(800);
+  for (Eigen::Index j = 0; j < 800; ++j) energy[j] = table.values(1, j) > 0 ? 1.1 : 0.9;
+  CHECK(find_region(table, energy, 2, 20, 1).empty());
+}
+
 }  // namespace
 }  // namespace surefoot::diagnosis

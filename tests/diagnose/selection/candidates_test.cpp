@@ -14,6 +14,7 @@
 #include "surefoot/diagnose/effects/leak.hpp"
 #include "surefoot/diagnose/effects/overflow.hpp"
 #include "tests/diagnose/small_simulators.hpp"
+#include "tests/support/servo_pendulum.hpp"
 
 namespace surefoot::diagnosis {
 namespace {
@@ -148,6 +149,25 @@ TEST_CASE("nothing acts on the memory of a command") {
     CAPTURE(effect.name);
     CHECK(places(cart, effect) == std::vector<std::string>{"x"});
   }
+}
+
+TEST_CASE("a position in a unit that is no angle has no weight off its line") {
+  struct Circuit : toys::ServoPendulum {
+    std::string unit = "rad";
+    SimulatorInfo info() const {
+      SimulatorInfo circuit = toys::ServoPendulum::info();
+      circuit.states[0].unit = unit;
+      return circuit;
+    }
+  };
+  const auto places_in = [](const std::string& unit) {
+    Circuit circuit;
+    circuit.unit = unit;
+    return places(bind_simulator(circuit, {toys::blank_recording(circuit.info(), 100, 0.1)}),
+                  effects::gravity_offset());
+  };
+  for (const char* angle : {"rad", "deg", "1", ""}) CHECK(places_in(angle) == std::vector<std::string>{"omega"});
+  for (const char* other : {"V", "m", "mm"}) CHECK(places_in(other).empty());
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -127,6 +128,20 @@ TEST_CASE("there are as many pairs as were asked for, the best first, and none o
   CHECK(propose_pairs(proposals, 1).size() == 1);
   CHECK(propose_pairs({proposals[0]}, 10).empty());
   CHECK(propose_pairs({}, 10).empty());
+}
+
+TEST_CASE("a pair is proposed in its best form only, whichever of the two comes first") {
+  Proposal one = proposal("one", column(5, -0.5, 0), rest), other = proposal("other", column(5, 0.5, 0), rest),
+           another = proposal("another", column(0, -0.4, 1), rest), worse = proposal("one", column(5, -0.5, 1), rest);
+  const auto pairs = propose_pairs({worse, other, one, another}, 10);
+  const auto holds_both = [](const ProposedPair& pair) {
+    const std::string &a = pair.first.effect.effect->name, &b = pair.second.effect.effect->name;
+    return (a == "one" && b == "other") || (a == "other" && b == "one");
+  };
+  CHECK(std::count_if(pairs.begin(), pairs.end(), holds_both) == 1);
+  CHECK(holds_both(pairs.front()));
+  CHECK(pairs.front().first.beyond.norm() + pairs.front().second.beyond.norm() < 2 * 5.05);  // the better form
+  CHECK(pairs.size() == 3);  // and each of them with the third
 }
 
 }  // namespace

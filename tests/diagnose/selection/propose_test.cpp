@@ -191,5 +191,39 @@ TEST_CASE("strengths are the parameters in proportion to which an effect vanishe
   CHECK(strengths_of({}).empty());
 }
 
+TEST_CASE("a strength that causes more than what is left is made as small as that") {
+  const Bench b = bench({});
+  auto candidates = attachments(b.bound, all_effects(), {true, true, true});
+  const auto attached = [&](const char* label) {
+    return *std::find_if(candidates.begin(), candidates.end(),
+                         [&](const AttachedEffect& one) { return one.label() == label; });
+  };
+  OpenResiduals open;
+  open.residuals = Eigen::VectorXd::Constant(4, 1);
+  const Eigen::VectorXd two = Eigen::VectorXd::Constant(1, 2);
+  const AttachedEffect force = attached("constant_force at omega");
+  CHECK(as_large_as_residuals(force, two, Eigen::MatrixXd::Constant(4, 1, 10), open)[0] == doctest::Approx(0.2));
+  CHECK(as_large_as_residuals(force, two, Eigen::MatrixXd::Constant(4, 1, 1.9), open)[0] == 2);  // near enough
+  CHECK(as_large_as_residuals(force, two, Eigen::MatrixXd::Constant(4, 1, 0.1), open)[0] == 2);  // no larger
+  const AttachedEffect late = attached("input_delay at duty");  // which has no strength
+  CHECK(as_large_as_residuals(late, two, Eigen::MatrixXd::Constant(4, 1, 10), open)[0] == 2);
+}
+
+TEST_CASE("what is left is small, and so are the effects it is screened with") {
+  const Bench b = bench({{"constant_force", "omega", {}, {}, {0.004}}});
+  const auto candidates = attachments(b.bound, all_effects(), distinct_inputs(b.bound, b.base, {0, 1}, b.runs));
+  const OpenResiduals open = open_residuals(b.bound, b.base, b.problem, serially());
+  int screened = 0;
+  for (const Proposal& one : propose(b.bound, b.base, b.problem, candidates, 0, serially())) {
+    if (strengths_of(*one.effect.effect).empty() || one.effect.effect->is_impulsive) continue;
+    const Eigen::MatrixXd changes =
+        signatures(b.bound, b.base, b.problem, open.residuals, one.effect, one.tried, one.before);
+    INFO(one.effect.label());
+    CHECK(changes.colwise().norm().maxCoeff() < 4 * open.residuals.norm());
+    ++screened;
+  }
+  CHECK(screened > 10);
+}
+
 }  // namespace
 }  // namespace surefoot::diagnosis

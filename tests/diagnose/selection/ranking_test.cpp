@@ -85,6 +85,16 @@ TEST_CASE("a gain is the share of the error that goes, and its standard error th
   CHECK(gain_of(before, after, 5).p_value == 1);  // there was nothing to gain
 }
 
+TEST_CASE("a gain in one output counts as that in another, whatever their units") {
+  ErrorSquares before{Eigen::MatrixXd(1, 2), Eigen::MatrixXd::Constant(1, 2, 100), Eigen::VectorXd::Ones(2)};
+  before.mean_squares << 1e4, 1;
+  ErrorSquares after = before;
+  after.mean_squares(0, 1) = 0;
+  CHECK(gain_of(before, after, 0).gain == doctest::Approx(1 - std::sqrt(0.5)));
+  after.mean_squares(0, 0) = 0;
+  CHECK(gain_of(before, after, 0).gain == 1);
+}
+
 TEST_CASE("of structures that cannot be told apart the closest comes first, if it has no more parameters") {
   TankBench bench({});
   const Search search = bench.search();

@@ -31,6 +31,9 @@ double outlier_by_chance(const std::vector<ClockEstimate>& estimates, std::size_
 /// thing that is wrong with it, or physics that it alone shows.
 bool is_like_others(const std::vector<ClockEstimate>& estimates, std::size_t r, const LogDoctorCriteria& criteria);
 
+/// Whether a clock of this rate is off by less than a row at the end of its recording: it passes for no other clock.
+bool stays_within_a_row(const Recording& one, double rate);
+
 std::optional<ClockFault> find_clock_fault(const LogDoctorInputs& inputs, const LogFit& fit);
 
 /// Whether a recording's rate still explains it better if both begin anywhere within the noise of the reading that they

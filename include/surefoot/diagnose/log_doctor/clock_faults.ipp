@@ -133,7 +133,6 @@ struct SingleClock {
   double amount = 0, error = std::numeric_limits<double>::infinity();
 };
 
-/// Whether a clock of this rate is off by less than a row at the end of its recording: it passes for no other clock.
 SUREFOOT_ONCE bool stays_within_a_row(const Recording& one, double rate) {
   return std::abs(rate) * (one.time[one.rows() - 1] - one.time[0]) < median_interval(one);
 }
