@@ -128,7 +128,7 @@ SUREFOOT_ONCE std::vector<Remark> screen(const SimulatorInfo& info, const std::v
   for (std::size_t i = 0; i < info.outputs.size(); ++i) {
     for (const Recording& recording : recordings) {
       double low = std::numeric_limits<double>::infinity(), high = -low;
-      Eigen::Index count = 0, at_edge = 0;
+      Eigen::Index count = 0;
       const Eigen::VectorXd y = detail::row_of(recording.outputs, static_cast<Eigen::Index>(i));
       for (const double value : y) {
         if (!std::isfinite(value)) continue;
@@ -136,13 +136,8 @@ SUREFOOT_ONCE std::vector<Remark> screen(const SimulatorInfo& info, const std::v
         high = std::max(high, value);
         ++count;
       }
-      for (const double value : y) at_edge += value == high || value == low ? 1 : 0;
       if (count > 2 && !(high > low)) {
         remarks.push_back({recording.name, "output " + info.outputs[i].name + " never changes"});
-      } else if (count > 50 && at_edge > count / 10) {
-        remarks.push_back({recording.name, "output " + info.outputs[i].name +
-                                               " stays at its largest or smallest value for more than a tenth of the "
-                                               "samples: it may be clipped"});
       }
     }
   }

@@ -22,6 +22,21 @@ TEST_SUITE("log_doctor") {
     CHECK(found->repairs[0].channel.index == 1);
   }
 
+  TEST_CASE("what a model misses by less than in most recordings is not odd, whatever mends it") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    const LogFit fit = fit_log(inputs, toys::servo_log(toys::dry_friction()));
+    const Repairs flipped{{.kind = LogFaultKind::sign, .channel = {false, 1}}};
+    int odd = 0;
+    for (std::size_t r = 0; r < 6; ++r) odd += is_odd(fit, r, flipped) ? 1 : 0;
+    CHECK(odd == 3);
+    LogFit small = fit;
+    small.residuals[0] *= 1e-3;
+    CHECK_FALSE(is_odd(small, 0, flipped));
+    small.residuals[0] *= 1e6;
+    CHECK(is_odd(small, 0, flipped));
+  }
+
   TEST_CASE("a log that fits is not searched for faults of all recordings") {
     const Parallel parallel = serially();
     const LogDoctorInputs inputs = toys::servo_doctor(parallel);

@@ -106,8 +106,7 @@ TEST_CASE("recordings that are further off than noise explains are named, three 
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::unexplained;
   diagnosis.per_recording = {{"a", 1, 1}, {"b", 9, 9, 9, 100, true}};
-  CHECK(verdict_sentence(diagnosis, {})
-            .ends_with(" 1 of 2 recordings are further off than noise explains: b."));
+  CHECK(verdict_sentence(diagnosis, {}).ends_with(" 1 of 2 recordings is further off than noise explains: b."));
   diagnosis.effects.resize(1);
   CHECK(verdict_sentence(diagnosis, {"lag"}).find("explains: b. These recordings cannot tell") != std::string::npos);
   for (const char* name : {"c", "d", "e"}) diagnosis.per_recording.push_back({name, 9, 9, 9, 100, true});

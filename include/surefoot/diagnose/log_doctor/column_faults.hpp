@@ -36,6 +36,10 @@ struct RepairEffect {
 /// Compares residuals as logged with those after repairs.
 RepairEffect effect_of(const LogFit& fit, std::size_t r, const Repairs& repairs, const ResidualRows& after);
 
+/// Whether the model misses what some repairs would change in a recording by as much as in the median one, or more:
+/// what is small, as the sideways motion of a straight drive, is mended by anything.
+bool is_odd(const LogFit& fit, std::size_t r, const Repairs& repairs);
+
 /// All that may be undone in columns: each repair alone, and all angles at once.
 std::vector<Repairs> repairs_to_try(const SimulatorInfo& info);
 

@@ -172,6 +172,17 @@ SUREFOOT_ONCE std::vector<Repairs> as_good(const std::vector<Repairs>& tried,
   return also;
 }
 
+SUREFOOT_ONCE bool is_odd(const LogFit& fit, std::size_t r, const Repairs& repairs) {
+  const auto missed = [&](std::size_t recording) {
+    return mean_square(touched(fit.residuals[recording], repairs), fit.size);
+  };
+  std::vector<double> others;
+  for (std::size_t o = 0; o < fit.residuals.size(); ++o) {
+    if (o != r) others.push_back(missed(o));
+  }
+  return !(missed(r) < median_of(others));
+}
+
 SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogFit& fit, const LogDoctorCriteria& criteria,
                                                           const Parallel& parallel) {
   const std::size_t count = fit.bound.recordings.size();
@@ -201,6 +212,7 @@ SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogFit& fit, con
       const RepairEffect& effect = effects[r][t];
       if (!(effect.log_odds > least_odds && effect.log_ratio > std::log(criteria.decisive))) continue;
       if (effect.after > criteria.decisive * others_worst) continue;  // still unlike the others
+      if (!is_odd(fit, r, tried[r][t])) continue;
       std::vector<double> of_others;
       for (std::size_t o = 0; o < count; ++o) {
         if (o != r && t < columns.size()) of_others.push_back(effects[o][t].log_ratio);

@@ -174,7 +174,8 @@ SUREFOOT_ONCE std::string beyond_noise_sentence(const Diagnosis& diagnosis) {
   const std::size_t count = names.size();
   if (count > most) names.resize(most);
   return " " + std::to_string(count) + " of " + std::to_string(diagnosis.per_recording.size()) +
-         " recordings are further off than noise explains: " + in_list(names) + (count > most ? " and others." : ".");
+         (count == 1 ? " recordings is" : " recordings are") + " further off than noise explains: " + in_list(names) +
+         (count > most ? " and others." : ".");
 }
 
 /// By how much the error on held-out recordings falls, in how many of them, and what is left of it.
