@@ -10,16 +10,24 @@
 namespace diagnose_program {
 namespace {
 
-// Values in the order of the library, if the file names exactly the same parameters.
-std::optional<std::vector<double>> values_for(const ModelEffect& effect, const surefoot::Effect& known) {
+// What the file says of a parameter; a bare number has no bounds.
+surefoot::EffectBounds bounds_of(const surefoot::ParameterInfo& parameter) {
+  if (parameter.fixed) return {parameter.value, parameter.value};
+  return parameter.low < parameter.high ? surefoot::EffectBounds{parameter.low, parameter.high}
+                                        : surefoot::EffectBounds{};
+}
+
+// The effect with values and bounds in the order of the library, if the file names exactly the same parameters.
+std::optional<surefoot::NamedEffect> in_order(const ModelEffect& effect, const surefoot::Effect& known) {
   if (effect.parameters.size() != known.parameters.size()) return std::nullopt;
-  std::vector<double> values;
+  surefoot::NamedEffect result{effect.name, effect.attached_to, effect.form, effect.with};
   for (const surefoot::EffectParameter& wanted : known.parameters) {
     const auto given = std::ranges::find(effect.parameters, wanted.name, &surefoot::ParameterInfo::name);
     if (given == effect.parameters.end()) return std::nullopt;
-    values.push_back(given->value);
+    result.values.push_back(given->value);
+    result.bounds.push_back(bounds_of(*given));
   }
-  return values;
+  return result;
 }
 
 surefoot::NamedEffect known_effect(const ModelEffect& effect, const std::vector<surefoot::Effect>& library) {
@@ -29,9 +37,7 @@ surefoot::NamedEffect known_effect(const ModelEffect& effect, const std::vector<
     if (known.name != effect.name) continue;
     forms.push_back(known.form.empty() ? "no form" : known.form);
     if (known.form != effect.form) continue;
-    if (const auto values = values_for(effect, known)) {
-      return {effect.name, effect.attached_to, effect.form, effect.with, *values};
-    }
+    if (const auto named = in_order(effect, known)) return *named;
     parameters.clear();
     for (const surefoot::EffectParameter& wanted : known.parameters) parameters.push_back(wanted.name);
   }

@@ -26,7 +26,8 @@ std::string percent(double share) {
 
 std::string with_interval(const surefoot::FittedValue& fit) {
   const std::string unit = fit.unit.empty() || fit.unit == "1" ? "" : " " + fit.unit;
-  return rounded(fit.value) + unit + " (" + rounded(fit.low) + " to " + rounded(fit.high) + ")";
+  return rounded(fit.value) + unit + " (" + rounded(fit.low) + " to " + rounded(fit.high) +
+         (fit.at_bound ? ", at its bound)" : ")");
 }
 
 std::string p_text(double p) {

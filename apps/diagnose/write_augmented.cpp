@@ -74,11 +74,13 @@ void write_parameter(std::ostream& out, const surefoot::ParameterInfo& parameter
       << (parameter.fixed ? ", fixed = true }" : " }");
 }
 
-// Bounds: thrice the interval to either side, wide enough to be fitted again.
+// Bounds: thrice the interval to either side, wide enough to be fitted again, but of the same sign.
 surefoot::ParameterInfo effect_parameter(const surefoot::FittedValue& fit) {
   const double interval = std::max(fit.value - fit.low, fit.high - fit.value);
   const double reach = std::max({std::isfinite(interval) ? 3 * interval : 0.0, 0.1 * std::abs(fit.value), 1e-12});
-  return {fit.name, fit.unit.empty() ? "1" : fit.unit, fit.value, fit.value - reach, fit.value + reach, false};
+  const double low = fit.value >= 0 ? std::max(0.0, fit.value - reach) : fit.value - reach;
+  const double high = fit.value <= 0 ? std::min(0.0, fit.value + reach) : fit.value + reach;
+  return {fit.name, fit.unit.empty() ? "1" : fit.unit, fit.value, low, fit.value == 0 ? reach : high, false};
 }
 
 void write_effects(std::ostream& out, const ModelFile& model) {

@@ -57,8 +57,11 @@ Json mismatch_json(const Diagnosis& diagnosis) {
 Json fitted_json(const std::vector<surefoot::FittedValue>& values) {
   Json list = Json::array();
   for (const auto& fit : values) {
-    list.push_back(
-        {{"name", fit.name}, {"value", finite_or_null(fit.value)}, {"ci95", interval(fit)}, {"unit", fit.unit}});
+    list.push_back({{"name", fit.name},
+                    {"value", finite_or_null(fit.value)},
+                    {"ci95", interval(fit)},
+                    {"unit", fit.unit},
+                    {"at_bound", fit.at_bound}});
   }
   return list;
 }

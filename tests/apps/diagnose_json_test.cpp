@@ -72,7 +72,8 @@ TEST_CASE("the JSON holds every key of the schema with the values of the diagnos
   CHECK(result.at("noise").at(0) ==
         json({{"name", "correlated_noise"},
               {"output", "theta_rad"},
-              {"parameters", {{{"name", "time"}, {"value", 0.03}, {"ci95", {0.025, 0.036}}, {"unit", "s"}}}},
+              {"parameters",
+               {{{"name", "time"}, {"value", 0.03}, {"ci95", {0.025, 0.036}}, {"unit", "s"}, {"at_bound", false}}}},
               {"evidence", {{"likelihood_gain", 0.12}, {"p_value", 1e-6}}},
               {"sentence", "noise of theta_rad is correlated over 0.03 s"}}));
   CHECK(result.at("forest_residual") == json({{"kept", true},

@@ -1,6 +1,7 @@
 // Model files: what is read, and that each mistake is named with its place and its cure.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <string>
 
 #include "apps/diagnose/equation_plan.hpp"
@@ -106,6 +107,14 @@ TEST_CASE("effects of a model file are found in the library") {
   REQUIRE(found.size() == 1);
   CHECK(found[0].name == "coulomb_friction");
   CHECK(found[0].values == std::vector<double>{0.1});
+  REQUIRE(found[0].bounds.size() == 1);
+  CHECK(std::isnan(found[0].bounds[0].low));  // those of the library
+  const auto bounded = known(servo_model + with(friction, "0.1", "{ value = 0.1, min = 0.05, max = 9 }"));
+  CHECK(bounded[0].bounds[0].low == 0.05);
+  CHECK(bounded[0].bounds[0].high == 9);
+  const auto fixed = known(servo_model + with(friction, "0.1", "{ value = 0.1, fixed = true }"));
+  CHECK(fixed[0].bounds[0].low == 0.1);
+  CHECK(fixed[0].bounds[0].high == 0.1);
   CHECK_THROWS_WITH_AS(
       known(servo_model + with(friction, "coulomb", "colomb")),
       "servo.toml, line 32, [[effects]]: there is no effect 'colomb_friction'; did you mean 'coulomb_friction'?",

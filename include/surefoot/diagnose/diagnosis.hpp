@@ -25,6 +25,7 @@ enum class Verdict : std::uint8_t {
 struct FittedValue {
   std::string name, unit;
   double value = 0, low = 0, high = 0;
+  bool at_bound = false;  // of the search, other than 0: it may be larger still
 };
 
 struct CalibratedParameter {

@@ -65,5 +65,14 @@ TEST_CASE("a wrong number of values, or a second state that does not exist, is r
   CHECK(attach(servo, {"coulomb_friction", "omega", {}, "theta", {0.1}}, all_effects()).other == 0);
 }
 
+TEST_CASE("bounds go with the values, one for each") {
+  const AttachedEffect bounded =
+      attach(servo, {"coulomb_friction", "omega", {}, {}, {0.1}, {{0.05, 0.2}}}, all_effects());
+  REQUIRE(bounded.bounds.size() == 1);
+  CHECK(bounded.bounds[0].high == 0.2);
+  CHECK(refusal_of_named({"coulomb_friction", "omega", {}, {}, {0.1}, {{0, 1}, {0, 1}}}) ==
+        "effect 'coulomb_friction' has 1 values, but bounds for 2");
+}
+
 }  // namespace
 }  // namespace surefoot

@@ -3,6 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <utility>
+#include <vector>
+
 #include "surefoot/diagnose/effects/catalogue.hpp"
 #include "surefoot/diagnose/effects/named_effect.hpp"
 #include "tests/diagnose/small_simulators.hpp"
@@ -45,6 +48,26 @@ TEST_CASE("units of an effect's parameters are those of what it is attached to")
   sized.sizes.effort[1] = 6;
   sized.sizes.state[1] = 2;
   CHECK(measure_size(sized, friction, {.effort = 1, .value = -1}) == doctest::Approx(3));
+}
+
+TEST_CASE("bounds that are given with an effect stand in place of those of the library") {
+  const BoundSimulator bound = bind_simulator(LeakyTank{}, {toys::tank_recording(0, 50)});
+  const auto range_with = [&](const EffectBounds& bounds) {
+    Hypothesis hypothesis = nominal_hypothesis(bound);
+    const NamedEffect named{"constant_rate", "level", {}, {}, {0.1}, {bounds}};
+    hypothesis.effects.push_back(attach(bound.info, named, all_effects()));
+    hypothesis.values.push_back(Vec<1>(0.1));
+    std::vector<std::pair<double, double>> ranges;
+    for (const Variable& one : variables_of(bound, hypothesis, {0})) {
+      if (one.kind == Variable::Kind::effect) ranges.emplace_back(one.low, one.high);
+    }
+    return ranges;
+  };
+  const auto library = range_with({});
+  REQUIRE(library.size() == 1);
+  CHECK(library[0].first < 0);
+  CHECK(range_with({0.05, 1e3}) == std::vector<std::pair<double, double>>{{0.05, 1e3}});
+  CHECK(range_with({0.1, 0.1}).empty());  // it is not fitted
 }
 
 }  // namespace

@@ -71,7 +71,8 @@ TEST_CASE("every verdict has its sentence") {
   diagnosis.held_out_after = 0.5;
   diagnosis.noise_ratio = 1.2;
   diagnosis.per_recording = {{"a", 3, 0.1}, {"b", 0.6, 0.7}};
-  diagnosis.channels = {ChannelMismatch{.output = "level_m", .noise_stated = true}, ChannelMismatch{}};
+  diagnosis.channels.resize(2);
+  diagnosis.channels[0].noise_stated = true;
   CHECK(verdict_sentence(diagnosis, {}).ends_with("to 1.2 times the noise as estimated."));
   diagnosis.channels[1].noise_stated = true;
   CHECK(verdict_sentence(diagnosis, {}).ends_with("to 1.2 times the noise."));

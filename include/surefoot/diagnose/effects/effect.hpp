@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -137,6 +138,11 @@ struct Effect {
 /// calls, one that it never calls, parameters without bounds or starting values, hidden states that nothing changes.
 void check(const Effect& effect);
 
+/// Limits of a parameter of an effect, in the unit of the model; NaN: those of the library. Equal: it is not fitted.
+struct EffectBounds {
+  double low = std::numeric_limits<double>::quiet_NaN(), high = low;
+};
+
 /// An effect at its place in one simulator.
 struct AttachedEffect {
   std::shared_ptr<const Effect> effect;
@@ -144,6 +150,7 @@ struct AttachedEffect {
   int other = -1;     // another state, for effects that overflow into it
   std::string place;  // the name of what it is attached to
   int rank = 0;       // of the effect in the catalogue, which begins with the simplest
+  std::vector<EffectBounds> bounds = {};  // of its parameters, as given with it; empty: those of the effect
 
   std::string label() const { return effect->name + " at " + place; }
 };

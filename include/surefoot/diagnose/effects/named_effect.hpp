@@ -14,6 +14,7 @@ struct NamedEffect {
   std::string name, attached_to;
   std::string form = {}, other = {};
   std::vector<double> values = {};
+  std::vector<EffectBounds> bounds = {};  // of the values; empty: those of the library
 };
 
 /// Finds an effect and its place in a simulator. Throws a DiagnoseError that lists what there is.

@@ -75,7 +75,11 @@ SUREFOOT_ONCE AttachedEffect attach(const SimulatorInfo& info, const NamedEffect
     if (!named.other.empty() && other < 0) {
       throw DiagnoseError("effect '" + named.name + "': there is no state '" + named.other + "'");
     }
-    return {std::make_shared<const Effect>(effect), at, other, named.attached_to, 0};
+    if (!named.bounds.empty() && named.bounds.size() != named.values.size()) {
+      throw DiagnoseError("effect '" + named.name + "' has " + std::to_string(named.values.size()) +
+                          " values, but bounds for " + std::to_string(named.bounds.size()));
+    }
+    return {std::make_shared<const Effect>(effect), at, other, named.attached_to, 0, named.bounds};
   }
   if (known) throw DiagnoseError("effect '" + named.name + "' cannot attach to '" + named.attached_to + "'");
   detail::refuse_unknown(named, effects);

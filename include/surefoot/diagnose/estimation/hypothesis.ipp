@@ -162,7 +162,13 @@ SUREFOOT_INLINE std::vector<Variable> variables_of(const BoundSimulator& bound, 
         const double unit = measure_size(bound, hypothesis.effects[e], parameters[k].measure);
         const double value = hypothesis.values[e][static_cast<Eigen::Index>(k)], now = std::abs(value);
         // a value that was given is within its bounds, whatever these recordings show
-        const double low = std::min(parameters[k].low * unit, value), high = std::max(parameters[k].high * unit, value);
+        double low = std::min(parameters[k].low * unit, value), high = std::max(parameters[k].high * unit, value);
+        const auto& given = hypothesis.effects[e].bounds;
+        if (!given.empty() && !std::isnan(given[k].low)) {
+          low = given[k].low;
+          high = given[k].high;
+        }
+        if (!(high > low)) continue;
         const bool logarithmic = low > 0 && high / low >= logarithmic_range;
         variables.push_back(
             {Variable::Kind::effect, e, k, low, high, std::max(now, least_scale * (high - low)), logarithmic});

@@ -81,6 +81,9 @@ SUREFOOT_ONCE FoundEffect describe(const BoundSimulator& bound, const Hypothesis
       const Variable& variable = errors->variables[v];
       if (variable.kind != Variable::Kind::effect || variable.index != effect || variable.item != k) continue;
       set_interval(one, variable, errors->deviation[static_cast<Eigen::Index>(v)]);
+      const double from = to_search(variable, variable.low), to = to_search(variable, variable.high);
+      const double share = (to_search(variable, value) - from) / (to - from), near = DescriptionCriteria{}.bound_share;
+      one.at_bound = (share < near && variable.low != 0) || share > 1 - near;
     }
     found.parameters.push_back(std::move(one));
   }
