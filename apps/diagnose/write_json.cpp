@@ -37,6 +37,7 @@ Json mismatch_json(const Diagnosis& diagnosis) {
                         {"rmse_calibrated", finite_or_null(channel.rmse_calibrated)},
                         {"rmse_after", finite_or_null(channel.rmse_after)},
                         {"noise", finite_or_null(channel.noise)},
+                        {"noise_stated", channel.noise_stated},
                         {"p_value", finite_or_null(channel.p_value)}});
   }
   for (const auto& region : diagnosis.regions) {

@@ -39,8 +39,8 @@ struct ChannelMismatch {
   std::string output, unit;
   double rmse_nominal = 0, rmse_calibrated = 0, rmse_after = 0;
   double noise = 0;    // standard deviation of what no model can predict, as stated or as far as can be seen
-  bool noise_stated = false;
   double p_value = 1;  // that the calibrated model is off by chance only
+  bool noise_stated = false;
 };
 
 /// Where the mismatch is: a rule over features of the motion.

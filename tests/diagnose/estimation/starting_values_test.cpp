@@ -88,7 +88,7 @@ TEST_CASE("steps of a sensor are tried only where its readings show them") {
     const AttachedEffect steps = attached(bound, effects::quantization());
     CHECK(starting_values(bound, steps, {}).empty());
     return starting_values(bound, steps,
-                           {Observed{std::vector<double>(recording.outputs.begin(), recording.outputs.end()),
+                           {Observed{std::vector<double>(recording.outputs.data(), recording.outputs.data() + 400),
                                      std::vector<double>(400, 0.0)}});
   };
   CHECK(starts(0).empty());
