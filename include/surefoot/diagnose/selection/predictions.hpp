@@ -15,10 +15,10 @@ namespace surefoot::diagnosis {
 /// estimated; at least two folds. Cost: a fit for each fold.
 ErrorSquares errors_of_predictions(const Search& search, const EvaluatedHypothesis& one);
 
-/// The structures of a pool that may be chosen, the best first, and the model without effects: those not `hopeless`
-/// behind the best one, at most SearchEffort::predicted of them. Each has its root mean square error of predictions
-/// and, where the best one leaves more than noise, is measured by these. The pool as it is where there are no two folds
-/// or no time is left.
+/// A pool with the root mean square errors of predictions. Where the best structure leaves more than noise: of those
+/// that are not `hopeless` behind it (SearchEffort::predicted of them at most) and the model without effects, all
+/// measured by their predictions, and no others. Else all, as they are, with the errors of predictions of what cannot
+/// be told from the best. The pool as it is where there are no two folds or no time is left.
 std::vector<EvaluatedHypothesis> with_predictions(const Search& search, const std::vector<EvaluatedHypothesis>& pool);
 
 /// All structures of a selection with the errors of their fits, those of the pool that it was made from.

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -37,9 +38,9 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> with_predictions(const Search& se
                                                                 const std::vector<EvaluatedHypothesis>& pool) {
   const SearchProblem& problem = search.problem;
   if (problem.folds.size() < 2 || problem.stopped()) return pool;
-  std::vector<EvaluatedHypothesis> best =
-      best_structures(pool, problem.effort.predicted, problem.effort.hopeless, problem.criteria);
-  const bool by_predictions = problem.structured(best.front().hypothesis, problem.fit);
+  const bool by_predictions = problem.structured(pool[best_of(pool, problem.criteria)].hypothesis, problem.fit);
+  const double behind = by_predictions ? problem.effort.hopeless : std::log(problem.criteria.tie_odds);
+  std::vector<EvaluatedHypothesis> best = best_structures(pool, problem.effort.predicted, behind, problem.criteria);
   const auto is_bare = [&](const EvaluatedHypothesis& one) { return search.effects(one) == 0; };
   const auto bare = std::find_if(pool.begin(), pool.end(), is_bare);
   if (std::none_of(best.begin(), best.end(), is_bare) && bare != pool.end()) best.push_back(*bare);
@@ -48,7 +49,14 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> with_predictions(const Search& se
     best[i].predicted = errors.rms();
     if (by_predictions) best[i].errors = errors;
   });
-  return best;
+  if (by_predictions) return best;
+  std::vector<EvaluatedHypothesis> result = pool;
+  for (EvaluatedHypothesis& one : result) {
+    for (const EvaluatedHypothesis& other : best) {
+      if (same_structure(other.hypothesis, one.hypothesis)) one.predicted = other.predicted;
+    }
+  }
+  return result;
 }
 
 SUREFOOT_ONCE void restore_errors_of_fits(Selection& selection, const std::vector<EvaluatedHypothesis>& pool) {
