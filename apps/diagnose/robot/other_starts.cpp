@@ -16,7 +16,7 @@ bool is_of_joint(const Term& term, int joint) { return term.joints.size() == 1 &
 
 // Without what this joint has for itself.
 Point without_joint(const Evidence& evidence, const Point& point, int joint) {
-  Point bare{point.theta, point.set, {}};
+  Point bare{point.theta, point.set, point.starts, {}};
   for (std::size_t t = 0; t < evidence.terms.size(); ++t) {
     if (!is_of_joint(evidence.terms[t], joint)) continue;
     bare.set[t] = 0;
@@ -61,7 +61,7 @@ std::vector<Start> starts_at(const Evidence& evidence, const LinearModel& model,
     }
   }
   const auto errors = surefoot::map(
-      evidence.threads, starts.size(), [&](std::size_t i) { return errors_at(evidence, starts[i].point.theta); },
+      evidence.threads, starts.size(), [&](std::size_t i) { return errors_at(evidence, starts[i].point.theta, bare.starts); },
       evidence.stop);
   for (std::size_t i = 0; i < starts.size(); ++i) {
     starts[i].point.errors = errors[i];
@@ -76,7 +76,7 @@ std::vector<Start> starts_at(const Evidence& evidence, const LinearModel& model,
 void fit(const Evidence& evidence, int moves, Point& point) {
   Evidence own = evidence;
   own.terms.clear();
-  Point part{Eigen::VectorXd(std::ranges::count(point.set, 1)), {}, point.errors};
+  Point part{Eigen::VectorXd(std::ranges::count(point.set, 1)), {}, point.starts, point.errors};
   for (std::size_t t = 0; t < point.set.size(); ++t) {
     if (point.set[t] == 0) continue;
     part.theta[static_cast<Eigen::Index>(own.terms.size())] = point.theta[static_cast<Eigen::Index>(t)];
@@ -86,13 +86,14 @@ void fit(const Evidence& evidence, int moves, Point& point) {
   part.set.assign(own.terms.size(), 1);
   RigidCache cache;
   for (int k = 0; k < moves; ++k) {
-    const LinearModel here = linearize(own, part.theta, part.errors, cache);
+    const LinearModel here = linearize(own, part.theta, part.starts, part.errors, cache);
     if (!move(own, here, part.set, {}, part)) break;
   }
   Eigen::Index at = 0;
   for (std::size_t t = 0; t < point.set.size(); ++t) {
     if (point.set[t] != 0) point.theta[static_cast<Eigen::Index>(t)] = part.theta[at++];
   }
+  point.starts = part.starts;
   point.errors = part.errors;
 }
 

@@ -4,10 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "starts.hpp"
+
 namespace diagnose_robot {
 
-Eigen::MatrixXd errors_at(const Evidence& evidence, const Eigen::VectorXd& theta) {
-  return errors_of(evidence, physics_of(evidence.terms, theta, evidence.robot.nominal));
+Eigen::MatrixXd errors_at(const Evidence& evidence, const Eigen::VectorXd& theta,
+                          const std::vector<StartState>& starts) {
+  return errors_of(evidence, physics_of(evidence.terms, theta, evidence.base), starts);
 }
 
 double misfit(const Evidence& evidence, const LinearModel& model, const Point& point) {
@@ -22,6 +25,7 @@ double misfit(const Evidence& evidence, const LinearModel& model, const Point& p
   for (Eigen::Index p = 0; p < rms.size(); ++p) {
     if (count[p] > 0) sum += count[p] * std::log(std::max(1e-24, square[p] / count[p]));
   }
+  if (evidence.robot.setup.drive != DriveKind::torque) sum += start_cost(evidence, point.starts);
   for (Eigen::Index t = 0; t < point.theta.size(); ++t) {
     sum += prior_cost(model, t, point.theta[t]);
   }
@@ -42,11 +46,11 @@ bool move(const Evidence& evidence, const LinearModel& model, const TermSet& set
   const double limit = misfit(evidence, model, point) + (set == point.set ? -criteria.settled : saved);
   double share = 1;
   for (int halving = 0; halving <= criteria.most_halvings; ++halving, share /= 2) {
-    Point next{point.theta, set, {}};
+    Point next{point.theta, set, moved_starts(model, point.starts, change, share), {}};
     for (Eigen::Index t = 0; t < change.size(); ++t) {
       next.theta[t] = set[static_cast<std::size_t>(t)] != 0 ? point.theta[t] + share * change[t] : 0;
     }
-    next.errors = errors_at(evidence, next.theta);
+    next.errors = errors_at(evidence, next.theta, next.starts);
     if (misfit(evidence, model, next) < limit) {
       point = std::move(next);
       return true;

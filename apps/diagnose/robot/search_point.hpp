@@ -9,6 +9,7 @@ namespace diagnose_robot {
 struct Point {
   Eigen::VectorXd theta;
   TermSet set;
+  std::vector<StartState> starts;  // of recordings
   Eigen::MatrixXd errors;
 };
 
@@ -17,7 +18,8 @@ struct MoveCriteria {
   double settled = 0.5;   // decrease of -2 log probability below which parameters no longer move: odds of 1.3
 };
 
-Eigen::MatrixXd errors_at(const Evidence& evidence, const Eigen::VectorXd& theta);
+Eigen::MatrixXd errors_at(const Evidence& evidence, const Eigen::VectorXd& theta,
+                          const std::vector<StartState>& starts);
 
 /// What steps must lower: as the criterion of the linear model, without the cost of having terms.
 double misfit(const Evidence& evidence, const LinearModel& model, const Point& point);

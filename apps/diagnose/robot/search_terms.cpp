@@ -38,8 +38,8 @@ bool move_to_better(const Evidence& evidence, const LinearModel& model, TermSet 
 // The file as it stands.
 Point start(const Evidence& evidence) {
   const auto terms = static_cast<Eigen::Index>(evidence.terms.size());
-  Point point{Eigen::VectorXd::Zero(terms), TermSet(evidence.terms.size(), 0), {}};
-  point.errors = errors_at(evidence, point.theta);
+  Point point{Eigen::VectorXd::Zero(terms), TermSet(evidence.terms.size(), 0), evidence.starts, {}};
+  point.errors = errors_at(evidence, point.theta, point.starts);
   return point;
 }
 
@@ -74,7 +74,7 @@ void leave_out_small(const Evidence& evidence, RigidCache& cache, Point& point, 
   Eigen::VectorXd noise = noise_by_joint(evidence, evidence.robot.nominal, 1);
   if (evidence.numerical.size() > 0) noise = (noise.cwiseAbs2() + evidence.numerical.cwiseAbs2()).cwiseSqrt();
   while (!evidence.stop.stop_requested()) {
-    const LinearModel model = linearize(evidence, point.theta, point.errors, cache);
+    const LinearModel model = linearize(evidence, point.theta, point.starts, point.errors, cache);
     const Eigen::VectorXd error = standard_errors(model, point.set);
     const Worth worth = [&](Eigen::Index t) {
       return std::min(worth_beside_unexplained(model, point.set, t, noise),
@@ -83,8 +83,8 @@ void leave_out_small(const Evidence& evidence, RigidCache& cache, Point& point, 
     if (!drop_one(evidence, worth, model, "which is small beside what nothing explains, or its interval contains 0",
                   point, dropped))
       return;
-    point.errors = errors_at(evidence, point.theta);
-    const LinearModel without = linearize(evidence, point.theta, point.errors, cache);
+    point.errors = errors_at(evidence, point.theta, point.starts);
+    const LinearModel without = linearize(evidence, point.theta, point.starts, point.errors, cache);
     move(evidence, without, point.set, {}, point);
   }
 }
@@ -94,18 +94,20 @@ void leave_out_small(const Evidence& evidence, RigidCache& cache, Point& point, 
 SearchResult search_terms(const Evidence& given, const Progress& progress, const SearchCriteria& criteria) {
   Evidence evidence = given;
   Point point = start(evidence);
-  evidence.numerical *= numerical_share(evidence, point.errors);
+  double share = numerical_share(evidence, point.errors);  // of numerical errors
+  evidence.numerical *= share;
   TermSet allowed(evidence.terms.size(), 1);
   SearchResult result;
   RigidCache cache;
   OtherStarts starts;
+  TermSet simulated = point.set;  // of which numerical errors are known
   for (int round = 0; round < criteria.most_rounds; ++round) {
     if (evidence.stop.stop_requested()) {
       result.complete = false;
       break;
     }
     progress("search", static_cast<double>(round) / criteria.most_rounds);
-    const LinearModel model = linearize(evidence, point.theta, point.errors, cache);
+    const LinearModel model = linearize(evidence, point.theta, point.starts, point.errors, cache);
     if (move_to_better(evidence, model, allowed, point)) continue;
     const TermSet before = point.set;
     const Worth worth = [&](Eigen::Index t) { return worth_of(model, point.set, t); };
@@ -113,7 +115,14 @@ SearchResult search_terms(const Evidence& given, const Progress& progress, const
                   "or less than simulations of one model differ by, or only few blocks speak for it", point,
                   result.dropped)) {
       if (starts.try_next(evidence, model, point)) continue;
+      if (simulated != point.set) {
+        simulated = point.set;
+        const RobotPhysics physics = physics_of(evidence.terms, point.theta, evidence.base);
+        if (raise_numerical_error(evidence, physics, point.starts, share)) continue;
+      }
+      const double before = evidence.numerical.norm();
       if (!lower_numerical_error(evidence, point.errors)) break;
+      share *= evidence.numerical.norm() / before;
       allowed.assign(allowed.size(), 1);
       result.dropped.clear();
       continue;
@@ -121,15 +130,16 @@ SearchResult search_terms(const Evidence& given, const Progress& progress, const
     for (std::size_t t = 0; t < before.size(); ++t) {
       if (before[t] != point.set[t]) allowed[t] = 0;
     }
-    point.errors = errors_at(evidence, point.theta);
+    point.errors = errors_at(evidence, point.theta, point.starts);
   }
   leave_out_small(evidence, cache, point, result.dropped);
   progress("proof", 1);
   result.numerical = evidence.numerical;
   result.theta = point.theta;
   result.set = point.set;
+  result.starts = point.starts;
   result.errors = point.errors;
-  result.linear = linearize(evidence, point.theta, point.errors, cache);
+  result.linear = linearize(evidence, point.theta, point.starts, point.errors, cache);
   return result;
 }
 
