@@ -178,8 +178,8 @@ TermSet with_two_for_one(const LinearModel& model, const TermSet& set, const Ter
   return best;
 }
 
-// The most probable term outside in the place of one inside, if it is more probable and worth it itself: of two that
-// explain different errors, that of the smaller ones is no alternative.
+// The most probable term outside in the place of one inside, if it is more probable and worth it itself, or as much as
+// the other one: of two that explain different errors, that of the smaller ones is no alternative.
 TermSet with_better_alternative(const LinearModel& model, const TermSet& set, const TermSet& allowed,
                                 const ChoiceCriteria& criteria) {
   std::vector<TermAlternative> others = alternatives_of(model, set, allowed);
@@ -187,7 +187,8 @@ TermSet with_better_alternative(const LinearModel& model, const TermSet& set, co
   for (const TermAlternative& one : others) {
     if (one.criterion > -criteria.better) break;
     const TermSet exchanged = changed(changed(set, one.instead, false), one.other, true);
-    if (worth_of(model, exchanged, one.other, criteria) > 1) return exchanged;
+    const double needed = std::min(1.0, worth_of(model, set, one.instead, criteria));
+    if (worth_of(model, exchanged, one.other, criteria) >= needed) return exchanged;
   }
   return set;
 }

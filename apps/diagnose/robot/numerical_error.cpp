@@ -52,20 +52,15 @@ Eigen::VectorXd numerical_error(const Evidence& evidence, const RobotPhysics& ph
   if (robot.setup.drive == DriveKind::torque) return Eigen::VectorXd::Zero(joints);
   const mjOption& stated = robot.model.model->opt;
   const AugmentedModel same = augmented_model(robot, physics, stated.timestep, evidence.folder, stated.integrator);
-  const auto differences = surefoot::map(
-      evidence.threads, evidence.recordings.size(),
-      [&](std::size_t r) {
-        const RobotRecording& recording = evidence.recordings[r];
-        const Eigen::MatrixXd difference =
-            simulate_robot(robot, recording, starts[r], physics) - replay(robot, same, physics, recording, starts[r]);
-        return Eigen::VectorXd(difference.colwise().squaredNorm() / static_cast<double>(difference.rows()));
-      },
-      evidence.stop);
   Eigen::VectorXd square = Eigen::VectorXd::Zero(joints);
-  for (const Eigen::VectorXd& one : differences) {
-    if (one.size() == 0 || !one.allFinite()) return Eigen::VectorXd::Zero(joints);
-    square += one / static_cast<double>(differences.size());
+  for (std::size_t r = 0; r < evidence.recordings.size() && !evidence.stop.stop_requested(); ++r) {
+    const RobotRecording& recording = evidence.recordings[r];
+    const Eigen::MatrixXd difference =
+        simulate_robot(robot, recording, starts[r], physics) - replay(robot, same, physics, recording, starts[r]);
+    const auto rows = static_cast<double>(difference.rows() * static_cast<Eigen::Index>(evidence.recordings.size()));
+    square += difference.colwise().squaredNorm().transpose() / rows;
   }
+  if (!square.allFinite()) return Eigen::VectorXd::Zero(joints);
   return square.cwiseSqrt();
 }
 

@@ -59,4 +59,28 @@ bool move(const Evidence& evidence, const LinearModel& model, const TermSet& set
   return false;
 }
 
+void settle(const Evidence& evidence, int most_moves, Point& point) {
+  Evidence own = evidence;
+  own.terms.clear();
+  Point part{Eigen::VectorXd(std::ranges::count(point.set, 1)), {}, point.starts, point.errors};
+  for (std::size_t t = 0; t < point.set.size(); ++t) {
+    if (point.set[t] == 0) continue;
+    part.theta[static_cast<Eigen::Index>(own.terms.size())] = point.theta[static_cast<Eigen::Index>(t)];
+    own.terms.push_back(evidence.terms[t]);
+  }
+  own.entries = entries_of(own.terms);
+  part.set.assign(own.terms.size(), 1);
+  RigidCache cache;
+  for (int k = 0; k < most_moves; ++k) {
+    const LinearModel here = linearize(own, part.theta, part.starts, part.errors, cache);
+    if (!move(own, here, part.set, {}, part)) break;
+  }
+  Eigen::Index at = 0;
+  for (std::size_t t = 0; t < point.set.size(); ++t) {
+    if (point.set[t] != 0) point.theta[static_cast<Eigen::Index>(t)] = part.theta[at++];
+  }
+  point.starts = part.starts;
+  point.errors = part.errors;
+}
+
 }  // namespace diagnose_robot

@@ -31,4 +31,8 @@ double cost_of(const LinearModel& model, const TermSet& set);
 bool move(const Evidence& evidence, const LinearModel& model, const TermSet& set, const MoveCriteria& criteria,
           Point& point);
 
+/// Moves the point along its own terms until errors no longer fall. Cost: linearizations by these alone; derivatives by
+/// others cost the most and are not needed.
+void settle(const Evidence& evidence, int most_moves, Point& point);
+
 }  // namespace diagnose_robot

@@ -17,13 +17,17 @@ namespace {
 // off; where none holds, without the terms that would have been added: they are not to be in the way of others.
 bool move_to_better(const Evidence& evidence, const LinearModel& model, TermSet allowed, Point& point) {
   constexpr int most_barred = 6;  // times that new terms are left out
+  constexpr int most_moves = 5;   // to where sizes no longer change: what is left on the way there is no evidence
   TermSet before;
   for (int barred = 0; barred <= most_barred; ++barred) {
     TermSet added(point.set.size(), 0);
     for (ChoiceCriteria choice; choice.most_new >= 0; --choice.most_new) {
       const TermSet set = choose_terms(model, point.set, allowed, choice);
       if (set == before) continue;
-      if (move(evidence, model, set, {}, point)) return true;
+      if (move(evidence, model, set, {}, point)) {
+        settle(evidence, most_moves, point);
+        return true;
+      }
       before = set;
       for (std::size_t t = 0; t < set.size() && choice.most_new > 0; ++t) added[t] = set[t] > point.set[t] ? 1 : 0;
     }
