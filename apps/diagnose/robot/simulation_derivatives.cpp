@@ -122,7 +122,7 @@ struct Tangent {
     const double gain = 1 + p[Property::torque_gain], kp = gain * stated.kp * (1 + p[Property::kp_error]);
     const double kd = gain * stated.kd * (1 + p[Property::kd_error]);
     const double error = drive.goal - now.seen[i] - p[Property::sensor_bias];
-    const double share = p[Property::lag] > 0 ? 1 - std::exp(-h / p[Property::lag]) : 1;
+    const double share = lag_share(h, p[Property::lag]);
     const double follows = drive.saturated ? 0 : share;
     for (const auto& [c, property] : tree.own[static_cast<std::size_t>(r)]) {
       if (property == Property::backlash && touches) tree.seen(r, c) += side;
@@ -145,7 +145,7 @@ struct Tangent {
   double by_lag(Eigen::Index i, const DriveTorque& drive) const {
     const double lag = now.joint(i)[Property::lag];
     if (!std::isfinite(then.told[i])) return 0;
-    if (lag > 0) return -h / (lag * lag) * std::exp(-h / lag) * (drive.told - then.lagging[i]);
+    if (lag > 0) return -h / ((h + lag) * (h + lag)) * (drive.told - then.lagging[i]);
     return -(drive.told - then.told[i]) / h;
   }
 
@@ -217,8 +217,10 @@ struct Tangent {
     tree.speed = tree.mass.llt().solve(tree.right);
     for (Eigen::Index r = 0; r < size; ++r) {
       const Eigen::Index i = tree.joints[static_cast<std::size_t>(r)];
-      tree.lagging.row(r) = tree.constant.row(r) - now.drives[static_cast<std::size_t>(i)].damping * tree.speed.row(r) -
-                            now.v[i] * tree.damping.row(r);
+      const double share = now.implicit[i], damping = now.drives[static_cast<std::size_t>(i)].damping;
+      tree.lagging.row(r) = tree.constant.row(r) - share * damping * tree.speed.row(r) -
+                            (1 - share) * damping * tree.before.row(r) -
+                            (share * now.v[i] + (1 - share) * then.speed[i]) * tree.damping.row(r);
     }
     tree.angle += h / 2 * tree.speed;
   }
