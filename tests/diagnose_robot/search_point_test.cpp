@@ -33,7 +33,13 @@ TEST_CASE("a size that is far off settles where errors end, and other terms stay
   const TermSet set = point.set;
   REQUIRE(std::ranges::count(set, 1) == 1);
   point.errors = errors_at(evidence, point.theta, point.starts);
-  settle(evidence, 5, point);
+  RigidCache cache;
+  const LinearModel model = linearize(evidence, point.theta, point.starts, point.errors, cache);
+  settle(evidence, model, 5, point);
   CHECK(point.set == set);
   CHECK(point.theta.sum() == doctest::Approx(hidden).epsilon(0.01));
+  const Eigen::VectorXd settled = point.theta;
+  const LinearModel there = linearize(evidence, point.theta, point.starts, point.errors, cache);
+  CHECK_FALSE(move(evidence, there, set, {}, point));  // weights are those of all terms
+  CHECK(point.theta == settled);
 }

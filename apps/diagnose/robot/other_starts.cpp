@@ -104,7 +104,7 @@ bool OtherStarts::try_next(const Evidence& evidence, const LinearModel& model, P
       if (static_cast<int>(seen.size()) == criteria_.finalists || evidence.stop.stop_requested()) break;
       if (std::ranges::find(seen, start.term) != seen.end()) continue;
       seen.push_back(start.term);
-      settle(evidence, criteria_.fits, start.point);
+      settle(evidence, model, criteria_.fits, start.point);
       if (misfit(evidence, model, start.point) + cost_of(model, start.point.set) > now - ChoiceCriteria().needed)
         continue;
       point = start.point;

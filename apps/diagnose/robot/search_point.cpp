@@ -59,7 +59,7 @@ bool move(const Evidence& evidence, const LinearModel& model, const TermSet& set
   return false;
 }
 
-void settle(const Evidence& evidence, int most_moves, Point& point) {
+void settle(const Evidence& evidence, const LinearModel& model, int most_moves, Point& point) {
   Evidence own = evidence;
   own.terms.clear();
   Point part{Eigen::VectorXd(std::ranges::count(point.set, 1)), {}, point.starts, point.errors};
@@ -72,7 +72,8 @@ void settle(const Evidence& evidence, int most_moves, Point& point) {
   part.set.assign(own.terms.size(), 1);
   RigidCache cache;
   for (int k = 0; k < most_moves; ++k) {
-    const LinearModel here = linearize(own, part.theta, part.starts, part.errors, cache);
+    LinearModel here = linearize(own, part.theta, part.starts, part.errors, cache);
+    here.independent = model.independent;
     if (!move(own, here, part.set, {}, part)) break;
   }
   Eigen::Index at = 0;

@@ -33,6 +33,7 @@ bool move(const Evidence& evidence, const LinearModel& model, const TermSet& set
 
 /// Moves the point along its own terms until errors no longer fall. Cost: linearizations by these alone; derivatives by
 /// others cost the most and are not needed.
-void settle(const Evidence& evidence, int most_moves, Point& point);
+/// Errors weigh as in `model`, that of all terms: with weights of its own the point would leave what others moved it to.
+void settle(const Evidence& evidence, const LinearModel& model, int most_moves, Point& point);
 
 }  // namespace diagnose_robot

@@ -13,6 +13,15 @@
 namespace diagnose_robot {
 namespace {
 
+// Whether terms would fit better with other sizes; starts alone, which follow them, are not worth another round.
+bool sizes_change(const LinearModel& model, const TermSet& set) {
+  Eigen::VectorXd square(static_cast<Eigen::Index>(model.whole.size()));
+  for (Eigen::Index j = 0; j < square.size(); ++j) square[j] = model.whole[static_cast<std::size_t>(j)].square;
+  const Eigen::VectorXd now = pooled_squares(model, square),
+                        fitted = pooled_squares(model, fit_linear(model, set).square);
+  return model.independent.dot((now.array() / fitted.array()).log().matrix()) > MoveCriteria().settled;
+}
+
 // To the set of terms that the linear model chooses, or to one with fewer changes where that one does not hold so far
 // off; where none holds, without the terms that would have been added: they are not to be in the way of others.
 bool move_to_better(const Evidence& evidence, const LinearModel& model, TermSet allowed, Point& point) {
@@ -25,7 +34,7 @@ bool move_to_better(const Evidence& evidence, const LinearModel& model, TermSet 
       const TermSet set = choose_terms(model, point.set, allowed, choice);
       if (set == before) continue;
       if (move(evidence, model, set, {}, point)) {
-        settle(evidence, most_moves, point);
+        settle(evidence, model, most_moves, point);
         return true;
       }
       before = set;
@@ -36,7 +45,7 @@ bool move_to_better(const Evidence& evidence, const LinearModel& model, TermSet 
       if (added[t] != 0) allowed[t] = 0;
     }
   }
-  return before != point.set && move(evidence, model, point.set, {}, point);
+  return before != point.set && sizes_change(model, point.set) && move(evidence, model, point.set, {}, point);
 }
 
 // The file as it stands.
