@@ -42,8 +42,12 @@ TEST_CASE("simulations of a drive that is at its limit differ by more than those
   const double as_it_stands = evidence.numerical[0];
   RobotPhysics weak = robot.nominal;
   weak[0][Property::torque_limit] = 0.975;
-  CHECK(raise_numerical_error(evidence, weak, evidence.starts, 1));
+  const Eigen::MatrixXd left = Eigen::MatrixXd::Constant(evidence.recordings[0].time.size(), 2, 0.01),
+                        nothing = Eigen::MatrixXd::Constant(left.rows(), 2, 0.0);
+  CHECK_FALSE(raise_numerical_error(evidence, weak, evidence.starts, nothing, 1));  // which leaves no room for it
+  CHECK(evidence.numerical[0] == as_it_stands);
+  CHECK(raise_numerical_error(evidence, weak, evidence.starts, left, 1));
   CHECK(evidence.numerical[0] > 1.25 * as_it_stands);
-  CHECK_FALSE(raise_numerical_error(evidence, weak, evidence.starts, 1));
-  CHECK_FALSE(raise_numerical_error(evidence, robot.nominal, evidence.starts, 1));
+  CHECK_FALSE(raise_numerical_error(evidence, weak, evidence.starts, left, 1));
+  CHECK_FALSE(raise_numerical_error(evidence, robot.nominal, evidence.starts, left, 1));
 }

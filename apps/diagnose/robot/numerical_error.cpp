@@ -79,12 +79,16 @@ double numerical_share(const Evidence& evidence, const Eigen::MatrixXd& errors) 
 }
 
 bool raise_numerical_error(Evidence& evidence, const RobotPhysics& physics, const std::vector<StartState>& starts,
-                           double share) {
+                           const Eigen::MatrixXd& errors, double share) {
   if (evidence.numerical.isZero(0)) return false;
-  const Eigen::VectorXd here = share * numerical_error(evidence, physics, starts);
-  if ((hardly * here.array() <= evidence.numerical.array()).all()) return false;
-  evidence.numerical = evidence.numerical.cwiseMax(here);
-  return true;
+  const Eigen::VectorXd before = evidence.numerical;
+  const Eigen::VectorXd rms = rms_by_joint(evidence, errors),
+                        noise = noise_by_joint(evidence, evidence.robot.nominal, 1),
+                        left = (rms.cwiseAbs2() - noise.cwiseAbs2()).cwiseMax(0).cwiseSqrt();
+  evidence.numerical = (share * numerical_error(evidence, physics, starts)).cwiseMin(left);
+  const bool larger = (hardly * evidence.numerical.array() > before.array()).any();
+  evidence.numerical = larger ? Eigen::VectorXd(evidence.numerical.cwiseMax(before)) : before;
+  return larger;
 }
 
 bool lower_numerical_error(Evidence& evidence, const Eigen::MatrixXd& errors) {

@@ -20,10 +20,11 @@ Eigen::VectorXd smoothing_error(const Evidence& evidence, const RobotPhysics& ph
 /// worse one).
 double numerical_share(const Evidence& evidence, const Eigen::MatrixXd& errors);
 
-/// Raises `evidence.numerical` to `share` of that with physics that were found: a joint whose drive is at its limit
-/// does not correct what simulations differ by. False if it hardly changes.
+/// Raises `evidence.numerical` to `share` of that with physics that were found, as far as the errors that these leave
+/// at each joint have room for it: a joint whose drive is at its limit does not correct what simulations differ by.
+/// False if it hardly changes.
 bool raise_numerical_error(Evidence& evidence, const RobotPhysics& physics, const std::vector<StartState>& starts,
-                           double share);
+                           const Eigen::MatrixXd& errors, double share);
 
 /// Lowers `evidence.numerical` to that, and to a half where errors are beyond it and noise all the same: it is no
 /// excuse then for leaving them unexplained. False if it hardly changes.

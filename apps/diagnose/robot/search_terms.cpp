@@ -131,7 +131,7 @@ SearchResult search_terms(const Evidence& given, const Progress& progress, const
       if (simulated != point.set) {
         simulated = point.set;
         const RobotPhysics physics = physics_of(evidence.terms, point.theta, evidence.base);
-        if (raise_numerical_error(evidence, physics, point.starts, share)) continue;
+        if (raise_numerical_error(evidence, physics, point.starts, point.errors, share)) continue;
       }
       const double before = evidence.numerical.norm();
       if (!lower_numerical_error(evidence, point.errors)) break;
