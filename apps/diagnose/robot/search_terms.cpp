@@ -122,6 +122,14 @@ SearchResult search_terms(const Evidence& given, const Progress& progress, const
     progress("search", static_cast<double>(round) / criteria.most_rounds);
     const LinearModel model = linearize(evidence, point.theta, point.starts, point.errors, cache);
     if (move_to_better(evidence, model, allowed, point)) continue;
+    // Before a term is dropped for them: numerical errors are no more than what is left.
+    constexpr double hardly = 0.8;
+    const double left = numerical_share(evidence, point.errors);
+    if (left < hardly) {
+      evidence.numerical *= left;
+      share *= left;
+      continue;
+    }
     const TermSet before = point.set;
     const Worth worth = [&](Eigen::Index t) { return worth_of(model, point.set, t); };
     if (!drop_one(evidence, worth, model,
