@@ -178,3 +178,22 @@ TEST_CASE("friction by load under strong damping is simulated as shorter steps s
   const Eigen::MatrixXd fine = simulate_robot(robot, evidence.recordings[0], start, physics);
   CHECK((usual - fine).norm() < 0.0006);
 }
+
+TEST_CASE("torques lag by as much as they should at any step, and lags below a step count") {
+  const ScratchFolder folder;
+  robot_test::write_files(folder, robot_test::small_arm(), 2, 1);
+  Robot robot = robot_test::load(folder);
+  Evidence evidence(robot);
+  robot_test::add_recording(evidence, folder.file("rec_1.csv"));
+  const StartState start = start_of(evidence.motions[0]);
+  const auto at = [&](double lag, double step) {
+    RobotPhysics physics = robot.nominal;
+    for (JointPhysics& joint : physics) joint[Property::lag] = lag;
+    robot.setup.step = step;
+    return simulate_robot(robot, evidence.recordings[0], start, physics);
+  };
+  for (const double lag : {0.0005, 0.004}) {
+    const Eigen::MatrixXd usual = at(lag, 0) - at(0, 0), fine = at(lag, 0.0001) - at(0, 0.0001);
+    CHECK((usual - fine).norm() < 0.1 * fine.norm());
+  }
+}

@@ -76,7 +76,7 @@ class Extras {
       double given = torque;
       if (joint.lag > 0) {
         if (!begun_) lagging_[j] = torque;
-        lagging_[j] += (1 - std::exp(-h / joint.lag)) * (torque - lagging_[j]);
+        lagging_[j] += h / (h + joint.lag) * (torque - lagging_[j]);
         given = lagging_[j];
       }
       const double slow = v / stribeck_speed;

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "augmented_header.hpp"
+#include "inertial_xml.hpp"
 #include "surefoot/core/binary.hpp"
 #include "surefoot/core/error.hpp"
 #include "xml_text.hpp"
@@ -162,7 +163,9 @@ AugmentedModel augmented_model(const Robot& robot, const RobotPhysics& physics, 
   m->opt.integrator = integrator;
   for (std::size_t j = 0; j < robot.joints.size(); ++j) set_joint(m, robot.joints[j], physics[j]);
   AugmentedModel augmented;
-  augmented.xml = with_actuators(saved(m), robot, physics);
+  std::string xml = saved(m);
+  if (std::ranges::any_of(physics, changes_bodies)) xml = with_inertials(xml, m);
+  augmented.xml = with_actuators(std::move(xml), robot, physics);
   augmented.header = augmented_header(robot, physics);
   augmented.table = table_of(robot, physics);
   return augmented;

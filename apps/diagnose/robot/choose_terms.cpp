@@ -25,6 +25,18 @@ struct Best {
   double criterion = std::numeric_limits<double>::infinity();
 };
 
+HeldOutGain gain_of(double before, double after, double rows) {
+  return {1 - std::sqrt(std::max(0.0, after) / std::max(before, 1e-300)),
+          std::sqrt(std::max(0.0, before - after) / std::max(1.0, rows))};
+}
+
+// By its share of the errors, and what it takes against the difference of two simulations of one model.
+double worth_of(const HeldOutGain& gain, const LinearModel& model, Eigen::Index term, const ChoiceCriteria& criteria) {
+  const double worth = gain.share / criteria.smallest_gain;
+  if (model.least_taken.size() == 0 || !(model.least_taken[term] > 0)) return worth;
+  return std::min(worth, gain.taken / model.least_taken[term]);
+}
+
 Eigen::Index negligible_term(const LinearModel& model, const LinearFit& fit, const TermSet& set) {
   for (std::size_t t = 0; t < set.size(); ++t) {
     if (set[t] != 0 && is_negligible(model, fit, static_cast<Eigen::Index>(t))) return static_cast<Eigen::Index>(t);
@@ -57,11 +69,27 @@ std::vector<Best> changes(const LinearModel& model, const TermSet& set, const Te
   return result;
 }
 
+// Whether a term takes as much as it must off the errors that it is fitted to. Held-out blocks see less of it, so that
+// one which does not is worth too little, however probable many small errors make it.
+bool may_be_worth(const LinearModel& model, const Eigen::VectorXd& without, const Eigen::VectorXd& with,
+                  Eigen::Index term, const ChoiceCriteria& criteria) {
+  double before = 0, after = 0, rows = 0;
+  for (const int j : model.acts_on[static_cast<std::size_t>(term)]) {
+    before += without[j];
+    after += with[j];
+    rows += model.whole[static_cast<std::size_t>(j)].rows;
+  }
+  return worth_of(gain_of(before, after, rows), model, term, criteria) > 1;
+}
+
 // The most probable term to add that is worth it.
 Best best_addition(const LinearModel& model, const TermSet& set, const TermSet& allowed,
                    const ChoiceCriteria& criteria) {
   int tried = 0;
+  const Eigen::VectorXd without = fit_linear(model, set).square;
   for (const Best& one : changes(model, set, allowed, true)) {
+    const Eigen::VectorXd with = fit_linear(model, changed(set, one.term, true)).square;
+    if (!may_be_worth(model, without, with, one.term, criteria)) continue;
     if (tried++ == criteria.tried) break;
     if (worth_of(model, changed(set, one.term, true), one.term, criteria) > 1) return one;
   }
@@ -150,6 +178,21 @@ TermSet with_two_for_one(const LinearModel& model, const TermSet& set, const Ter
   return best;
 }
 
+// The most probable term outside in the place of one inside, if it is more probable and worth it itself, or as much as
+// the other one: of two that explain different errors, that of the smaller ones is no alternative.
+TermSet with_better_alternative(const LinearModel& model, const TermSet& set, const TermSet& allowed,
+                                const ChoiceCriteria& criteria) {
+  std::vector<TermAlternative> others = alternatives_of(model, set, allowed);
+  std::ranges::stable_sort(others, {}, &TermAlternative::criterion);
+  for (const TermAlternative& one : others) {
+    if (one.criterion > -criteria.better) break;
+    const TermSet exchanged = changed(changed(set, one.instead, false), one.other, true);
+    const double needed = std::min(1.0, worth_of(model, set, one.instead, criteria));
+    if (worth_of(model, exchanged, one.other, criteria) >= needed) return exchanged;
+  }
+  return set;
+}
+
 // Sums of squares that terms take away, by block (row) and joint, in units of `size`, each independent error once.
 Eigen::MatrixXd taken_by_block(const LinearModel& model, const LinearFit& with, const LinearFit& without,
                                const Eigen::VectorXd& independent, const Eigen::VectorXd& size) {
@@ -207,10 +250,9 @@ TermSet choose_terms(const LinearModel& model, TermSet set, const TermSet& allow
   if (set == begin && criteria.most_new > 0) set = with_one_for_two(model, set, allowed);
   if (set == begin && criteria.most_new > 0) set = with_two_for_one(model, set, allowed, criteria);
   for (int swap = 0; swap < criteria.most_new; ++swap) {
-    const std::vector<TermAlternative> others = alternatives_of(model, set, allowed);
-    const auto best = std::ranges::min_element(others, {}, &TermAlternative::criterion);
-    if (best == others.end() || best->criterion > -criteria.better) break;
-    set = changed(changed(set, best->instead, false), best->other, true);
+    const TermSet before = set;
+    set = with_better_alternative(model, set, allowed, criteria);
+    if (set == before) break;
   }
   for (;;) {
     const std::vector<Best> less = changes(model, set, allowed, false);
@@ -246,15 +288,11 @@ HeldOutGain held_out_gain(const LinearModel& model, const TermSet& set, Eigen::I
       rows += sums.rows;
     }
   }
-  return {1 - std::sqrt(std::max(0.0, after) / std::max(before, 1e-300)),
-          std::sqrt(std::max(0.0, before - after) / std::max(1.0, rows))};
+  return gain_of(before, after, rows);
 }
 
 double worth_of(const LinearModel& model, const TermSet& set, Eigen::Index term, const ChoiceCriteria& criteria) {
-  const HeldOutGain gain = held_out_gain(model, set, term);
-  double worth = gain.share / criteria.smallest_gain;
-  if (model.least_taken.size() > 0 && model.least_taken[term] > 0)
-    worth = std::min(worth, gain.taken / model.least_taken[term]);
+  const double worth = worth_of(held_out_gain(model, set, term), model, term, criteria);
   if (worth < 1) return worth;
   return std::min(worth, evidence_between(model, set, changed(set, term, false)) / criteria.needed);
 }

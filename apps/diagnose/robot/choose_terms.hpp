@@ -10,7 +10,7 @@ struct ChoiceCriteria {
   double needed = 5.99;
   /// The same before a term takes the place of another: odds of 3, so that twins do not take turns.
   double better = 2.2;
-  int tried = 6;                // terms, the most probable first, that may turn out to be worth too little
+  int tried = 6;                // terms, the most probable first, that held-out blocks may show to be worth too little
   int paired = 20;              // terms, the most probable first, that are tried together with another one
   double smallest_gain = 0.02;  // of the error of its joints on held-out blocks that a term must take away, as for one
                                 // joint

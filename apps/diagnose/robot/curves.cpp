@@ -79,7 +79,7 @@ void draw_worst(const Evidence& evidence, RobotDiagnosis& d) {
                       : simulate_robot(evidence.robot, recording, start_of(motion), evidence.robot.nominal);
   const Eigen::MatrixXd after = d.torque_driven
                                     ? torque_residual(evidence.robot, motion, d.physics)
-                                    : simulate_robot(evidence.robot, recording, start_of(motion), d.physics);
+                                    : simulate_robot(evidence.robot, recording, d.starts.front(), d.physics);
   for (const std::size_t j : by_error) {
     const auto c = static_cast<Eigen::Index>(j);
     d.curves.push_back({d.joints[j].joint, recording.time,

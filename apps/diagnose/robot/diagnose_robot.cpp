@@ -5,6 +5,7 @@
 
 #include "findings.hpp"
 #include "numerical_error.hpp"
+#include "starts.hpp"
 
 namespace diagnose_robot {
 namespace {
@@ -25,8 +26,9 @@ HeldOut held_out_errors(const Evidence& evidence, const SearchResult& found, con
       evidence.threads, blocks,
       [&](std::size_t b) {
         const LinearFit fit = fit_linear(found.linear, found.set, static_cast<int>(b));
-        return rms_by_joint(evidence, errors_of(evidence, physics_at(evidence, found.theta + fit.change)),
-                            static_cast<int>(b));
+        const Eigen::MatrixXd errors = errors_of(evidence, physics_at(evidence, found.theta + fit.change),
+                                                 moved_starts(found.linear, found.starts, fit.change));
+        return rms_by_joint(evidence, errors, static_cast<int>(b));
       },
       evidence.stop);
   HeldOut result;
@@ -55,6 +57,7 @@ RobotDiagnosis refuse_log(const Evidence& evidence, const std::vector<surefoot::
   d.torque_driven = is_torque_driven(evidence);
   d.error_unit = d.torque_driven ? "1" : "rad";
   d.physics = evidence.robot.nominal;
+  d.starts = evidence.starts;
   const Eigen::VectorXd nominal = rms_by_joint(evidence, errors_of(evidence, evidence.robot.nominal));
   d.textbook = d.nominal = d.after = d.held_out = overall(evidence, nominal);
   d.noise = d.replayed = std::nan("");
@@ -68,7 +71,8 @@ RobotDiagnosis refuse_log(const Evidence& evidence, const std::vector<surefoot::
 }
 
 void hold_out(const Evidence& test, RobotDiagnosis& d) {
-  const Eigen::MatrixXd nominal = errors_of(test, test.robot.nominal), after = errors_of(test, d.physics);
+  const Eigen::MatrixXd nominal = errors_of(test, test.robot.nominal),
+                        after = errors_of(test, d.physics, fitted_starts(test, d.physics));
   const Eigen::VectorXd by_joint = rms_by_joint(test, after);
   d.held_out = overall(test, by_joint);
   d.common.held_out.clear();
@@ -95,6 +99,7 @@ RobotDiagnosis diagnose_robot(const Evidence& evidence, const Progress& progress
   d.error_unit = d.torque_driven ? "1" : "rad";
   d.common.complete = found.complete;
   d.physics = physics_at(evidence, found.theta);
+  d.starts = found.starts;
   const Eigen::MatrixXd textbook = errors_of(evidence, RobotPhysics(joints)),
                         nominal = errors_of(evidence, evidence.robot.nominal);
   const Eigen::VectorXd by_textbook = rms_by_joint(evidence, textbook), by_nominal = rms_by_joint(evidence, nominal),

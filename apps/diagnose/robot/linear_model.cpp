@@ -48,20 +48,10 @@ Sums part(const LinearModel& model, std::size_t joint, const std::vector<Eigen::
   return sums;
 }
 
-// Mean square errors of pools, by joint: those of their joints by the count of independent errors.
 Eigen::VectorXd pooled(const LinearModel& model, const std::vector<Sums>& joints, const Eigen::VectorXd& square) {
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(square.size()), count = sum, result = sum;
-  for (Eigen::Index j = 0; j < square.size(); ++j) {
-    const int p = model.pool[static_cast<std::size_t>(j)];
-    const double rows = std::max(1.0, joints[static_cast<std::size_t>(j)].rows);
-    sum[p] += model.independent[j] * square[j] / rows;
-    count[p] += model.independent[j];
-  }
-  for (Eigen::Index j = 0; j < square.size(); ++j) {
-    const int p = model.pool[static_cast<std::size_t>(j)];
-    result[j] = std::max(smallest_square, sum[p] / count[p]);
-  }
-  return result;
+  Eigen::VectorXd rows(square.size());
+  for (Eigen::Index j = 0; j < rows.size(); ++j) rows[j] = joints[static_cast<std::size_t>(j)].rows;
+  return mean_squares(model, square, rows);
 }
 
 // Errors of joints, weighted by their independent count over their size, and the prior: the quadratic that lies above
@@ -121,6 +111,21 @@ Eigen::VectorXd independent_after(const LinearModel& model, const TermSet& set) 
       const auto rows = static_cast<double>(model.errors[j].array().isFinite().count());
       result[static_cast<Eigen::Index>(j)] = std::max(fewest_independent, rows / time);
     }
+  }
+  return result;
+}
+
+// Those of joints of a pool, by the count of independent errors.
+Eigen::VectorXd mean_squares(const LinearModel& model, const Eigen::VectorXd& square, const Eigen::VectorXd& rows) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(square.size()), count = sum, result = sum;
+  for (Eigen::Index j = 0; j < square.size(); ++j) {
+    const int p = model.pool[static_cast<std::size_t>(j)];
+    sum[p] += model.independent[j] * square[j] / std::max(1.0, rows[j]);
+    count[p] += model.independent[j];
+  }
+  for (Eigen::Index j = 0; j < square.size(); ++j) {
+    const int p = model.pool[static_cast<std::size_t>(j)];
+    result[j] = std::max(smallest_square, sum[p] / count[p]);
   }
   return result;
 }

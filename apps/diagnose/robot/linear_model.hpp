@@ -17,6 +17,15 @@ struct Sums {
 
 using TermSet = std::vector<char>;  // by term: is it there
 
+/// How the start of a recording, fitted again, follows the terms; joints that move each other.
+struct StartFit {
+  std::size_t recording = 0;
+  std::vector<int> joints;
+  std::vector<Eigen::Index> terms;
+  Eigen::VectorXd change;   // with terms as they are: angles of the joints, then speeds
+  Eigen::MatrixXd by_term;  // the same x place in `terms`
+};
+
 struct LinearModel {
   std::vector<std::vector<Sums>> sums;  // joint, block
   std::vector<Sums> whole;              // by joint, over all blocks; see add_up()
@@ -33,6 +42,7 @@ struct LinearModel {
   std::vector<Eigen::MatrixXd> columns;            // by joint: row x place in `terms`; empty: rows are not known
   std::vector<Eigen::VectorXd> errors;             // by joint; NaN: unknown
   std::vector<std::vector<Eigen::Index>> terms;    // by joint: those that move it
+  std::vector<StartFit> starts;                    // errors and columns are those with starts that follow
   TermSet of_groups;                               // by term: tied over a group
   std::vector<std::vector<Eigen::Index>> refines;  // by term: those of which one must be there too; empty: none
 };
@@ -56,7 +66,10 @@ double prior_cost(const LinearModel& model, Eigen::Index term, double size);
 /// physics of whole groups takes away is no noise, however slowly it changes. Joints of a pool share the correlation.
 Eigen::VectorXd independent_after(const LinearModel& model, const TermSet& set);
 
-/// Mean squares of errors by joint, each that of its pool.
+/// Mean squares of errors by joint, each that of its pool, from sums of squares over rows.
+Eigen::VectorXd mean_squares(const LinearModel& model, const Eigen::VectorXd& square, const Eigen::VectorXd& rows);
+
+/// The same of the rows of the model.
 Eigen::VectorXd pooled_squares(const LinearModel& model, const Eigen::VectorXd& square);
 
 /// Sum of squares of a joint in a block after a change.

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <map>
 
+#include "inverse_dynamics.hpp"
 #include "low_pass.hpp"
 #include "simulate_robot.hpp"
+#include "starts.hpp"
 #include "surefoot/core/error.hpp"
 #include "term_priors.hpp"
 #include "torque_residual.hpp"
@@ -48,6 +50,8 @@ void prepare(Evidence& evidence) {
       evidence.block.push_back(single ? static_cast<int>(k * block_count / rows) : static_cast<int>(r));
     }
   }
+  evidence.starts.clear();
+  for (const Motion& motion : evidence.motions) evidence.starts.push_back(start_of(motion));
   const std::size_t joints = evidence.robot.joints.size();
   find_silent(evidence);
   evidence.scales.resize(joints);
@@ -96,6 +100,11 @@ void leave_out_start(const Robot& robot, const RobotRecording& recording, Eigen:
 }
 
 Eigen::MatrixXd errors_of(const Evidence& evidence, const RobotPhysics& physics) {
+  return errors_of(evidence, physics, evidence.starts);
+}
+
+Eigen::MatrixXd errors_of(const Evidence& evidence, const RobotPhysics& physics,
+                          const std::vector<StartState>& starts) {
   Eigen::MatrixXd errors(static_cast<Eigen::Index>(evidence.block.size()),
                          static_cast<Eigen::Index>(evidence.robot.joints.size()));
   Eigen::Index at = 0;
@@ -106,7 +115,7 @@ Eigen::MatrixXd errors_of(const Evidence& evidence, const RobotPhysics& physics)
         evidence.robot.setup.drive == DriveKind::torque
             ? low_passed(evidence.motions[r], torque_residual(evidence.robot, evidence.motions[r], physics))
             : Eigen::MatrixXd(recording.angle -
-                              simulate_robot(evidence.robot, recording, start_of(evidence.motions[r]), physics));
+                              simulate_robot(evidence.robot, recording, starts[r], physics));
     leave_out_start(evidence.robot, recording, errors.middleRows(at, rows));
     at += rows;
   }
@@ -146,7 +155,7 @@ std::vector<JointDerivatives> filtered_derivatives(const Evidence& evidence, std
 
 // By recording, then joint.
 std::vector<std::vector<JointDerivatives>> derivatives_at(const Evidence& evidence, const RobotPhysics& physics,
-                                                          RigidCache& cache) {
+                                                          const std::vector<StartState>& starts, RigidCache& cache) {
   const bool torque = evidence.robot.setup.drive == DriveKind::torque;
   const std::size_t count = evidence.recordings.size();
   if (torque && !same_rigid_bodies(cache.physics, physics)) {
@@ -162,9 +171,12 @@ std::vector<std::vector<JointDerivatives>> derivatives_at(const Evidence& eviden
       evidence.threads, count,
       [&](std::size_t r) {
         if (torque) return filtered_derivatives(evidence, r, physics, cache.by_recording[r]);
-        std::vector<JointDerivatives> result = simulation_derivatives(
-            evidence.robot, evidence.recordings[r], start_of(evidence.motions[r]), physics, evidence.entries);
-        for (JointDerivatives& one : result) one.by = -one.by;  // errors: measured less simulated
+        std::vector<JointDerivatives> result =
+            simulation_derivatives(evidence.robot, evidence.recordings[r], starts[r], physics, evidence.entries);
+        for (JointDerivatives& one : result) {  // errors: measured less simulated
+          one.by = -one.by;
+          one.by_start = -one.by_start;
+        }
         return result;
       },
       evidence.stop);
@@ -201,12 +213,10 @@ Eigen::MatrixXd columns_of(const Evidence& evidence, const std::vector<std::vect
   return x;
 }
 
-// Sums of one joint by block; rows that are not known count nothing, nor do those where a derivative grew beyond
-// reason.
-void add_blocks(const Evidence& evidence, const std::vector<Eigen::Index>& terms, Eigen::MatrixXd& x,
-                Eigen::VectorXd& r, std::vector<Sums>& sums) {
+// Rows that are not known count nothing, nor do those where a derivative grew beyond reason.
+void leave_out_rows(const Evidence& evidence, const std::vector<Eigen::Index>& terms, Eigen::MatrixXd& x,
+                    Eigen::VectorXd& r) {
   constexpr double beyond_reason = 1e3;  // [rad] or [N m], of a typical size
-  const auto count = static_cast<Eigen::Index>(evidence.terms.size());
   Eigen::RowVectorXd typical(x.cols());
   for (Eigen::Index t = 0; t < x.cols(); ++t)
     typical[t] = evidence.terms[static_cast<std::size_t>(terms[static_cast<std::size_t>(t)])].typical;
@@ -216,6 +226,12 @@ void add_blocks(const Evidence& evidence, const std::vector<Eigen::Index>& terms
     r[k] = 0;
     x.row(k).setZero();
   }
+}
+
+// Sums of one joint by block.
+void add_blocks(const Evidence& evidence, const std::vector<Eigen::Index>& terms, const Eigen::MatrixXd& x,
+                const Eigen::VectorXd& r, std::vector<Sums>& sums) {
+  const auto count = static_cast<Eigen::Index>(evidence.terms.size());
   for (Eigen::Index begin = 0; begin < r.size();) {
     const int block = evidence.block[static_cast<std::size_t>(begin)];
     Eigen::Index end = begin;
@@ -237,10 +253,60 @@ void add_blocks(const Evidence& evidence, const std::vector<Eigen::Index>& terms
 
 }  // namespace
 
-LinearModel linearize(const Evidence& evidence, const Eigen::VectorXd& theta, const Eigen::MatrixXd& errors,
-                      RigidCache& cache) {
+namespace {
+
+// What a joint's squared errors weigh, as in the linear model.
+Eigen::VectorXd weights_of(const LinearModel& model) {
+  Eigen::VectorXd square(model.independent.size()), rows = square;
+  for (Eigen::Index j = 0; j < square.size(); ++j) {
+    const auto joint = static_cast<std::size_t>(j);
+    square[j] = model.errors[joint].squaredNorm();
+    rows[j] = static_cast<double>(std::max<Eigen::Index>(1, (model.errors[joint].array() != 0).count()));
+  }
+  return model.independent.cwiseQuotient(rows.cwiseProduct(mean_squares(model, square, rows)));
+}
+
+// Derivatives of a joint's errors by the start of one recording, where its rows count.
+Eigen::MatrixXd start_columns(const JointDerivatives& derivatives, const Eigen::Ref<const Eigen::VectorXd>& errors) {
+  Eigen::MatrixXd by = derivatives.by_start;
+  for (Eigen::Index k = 0; k < by.rows(); ++k) {
+    if (errors[k] == 0 || !by.row(k).allFinite()) by.row(k).setZero();
+  }
+  return by;
+}
+
+// Columns and errors with starts that follow: by recording and tree.
+void let_starts_follow(const Evidence& evidence, const std::vector<std::vector<JointDerivatives>>& derivatives,
+                       const std::vector<StartState>& starts, LinearModel& model) {
+  const Eigen::VectorXd weight = weights_of(model);
+  Eigen::Index first = 0;
+  for (std::size_t r = 0; r < derivatives.size() && !derivatives[r].empty(); ++r) {
+    const StartState read = start_of(evidence.motions[r]), deviation = start_deviation(evidence, r);
+    const Eigen::Index rows = evidence.recordings[r].time.size();
+    for (const std::vector<int>& joints : joints_by_tree(evidence.robot)) {
+      std::vector<Eigen::MatrixXd> by_start;
+      for (const int j : joints) {
+        const auto joint = static_cast<std::size_t>(j);
+        by_start.push_back(start_columns(derivatives[r][joint], model.errors[joint].segment(first, rows)));
+      }
+      Eigen::VectorXd size(2 * static_cast<Eigen::Index>(joints.size())), from_read = size;
+      size << deviation.angle(joints), deviation.speed(joints);
+      from_read << (starts[r].angle - read.angle)(joints), (starts[r].speed - read.speed)(joints);
+      StartFit fit = eliminate_start(joints, by_start, size, from_read, weight, first, model.columns, model.errors);
+      fit.recording = r;
+      fit.terms = model.terms[static_cast<std::size_t>(joints.front())];
+      model.starts.push_back(std::move(fit));
+    }
+    first += rows;
+  }
+}
+
+}  // namespace
+
+LinearModel linearize(const Evidence& evidence, const Eigen::VectorXd& theta, const std::vector<StartState>& starts,
+                      const Eigen::MatrixXd& errors, RigidCache& cache) {
   const std::size_t joints = evidence.robot.joints.size();
-  const auto derivatives = derivatives_at(evidence, physics_of(evidence.terms, theta, evidence.robot.nominal), cache);
+  const auto derivatives = derivatives_at(evidence, physics_of(evidence.terms, theta, evidence.base), starts, cache);
   LinearModel model;
   model.theta = theta;
   for (const RobotJoint& joint : evidence.robot.joints) model.pool.push_back(joint.group);
@@ -248,17 +314,21 @@ LinearModel linearize(const Evidence& evidence, const Eigen::VectorXd& theta, co
   model.sums.assign(joints, std::vector<Sums>(static_cast<std::size_t>(evidence.blocks)));
   for (std::size_t j = 0; j < joints; ++j) {
     const auto c = static_cast<Eigen::Index>(j);
-    const std::vector<Eigen::Index> terms = terms_of_joint(evidence, j);
-    Eigen::MatrixXd x = columns_of(evidence, derivatives, j, terms);
-    Eigen::VectorXd r = errors.col(c);
-    add_blocks(evidence, terms, x, r, model.sums[j]);
+    model.terms.push_back(terms_of_joint(evidence, j));
+    model.columns.push_back(columns_of(evidence, derivatives, j, model.terms[j]));
+    model.errors.emplace_back(errors.col(c));
+    model.independent[c] = independent_errors(errors.col(c));
+    leave_out_rows(evidence, model.terms[j], model.columns[j], model.errors[j]);
+  }
+  if (evidence.robot.setup.drive != DriveKind::torque) let_starts_follow(evidence, derivatives, starts, model);
+  for (std::size_t j = 0; j < joints; ++j) {
+    const auto c = static_cast<Eigen::Index>(j);
+    Eigen::VectorXd& r = model.errors[j];
+    add_blocks(evidence, model.terms[j], model.columns[j], r, model.sums[j]);
     for (Eigen::Index k = 0; k < r.size(); ++k) {
       if (!std::isfinite(errors(k, c))) r[k] = std::nan("");
     }
     model.independent[c] = independent_errors(r);
-    model.columns.push_back(std::move(x));
-    model.errors.push_back(std::move(r));
-    model.terms.push_back(terms);
   }
   add_up(model);
   set_priors(evidence, model);

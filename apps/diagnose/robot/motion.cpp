@@ -52,6 +52,7 @@ void smooth_row(const RobotRecording& r, Eigen::Index k, double reach, Eigen::In
   const auto block = r.angle.middleRows(first, count);
   motion.q.row(k) = filter.row(0) * block;
   motion.v.row(k) = filter.row(1) * block / scale;
+  if (k == 0) motion.start_gain = filter.row(1).norm() / scale;
   motion.a.row(k) = 2 * filter.row(2) * block / (scale * scale);
   if (r.goal.size() > 0) motion.goal.row(k) = filter.row(0) * r.goal.middleRows(first, count);
   if (r.torque.size() == 0) return;

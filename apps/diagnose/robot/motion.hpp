@@ -11,6 +11,7 @@ struct Motion {
   Eigen::MatrixXd goal, torque;   // through the same filter; empty where there are none
   double torque_late = 0;         // [s], of the recording
   double half_window = 0;         // [s] of the filter
+  double start_gain = 0;          // [1/s] of noise of the sensor in the speed of the first row
   Eigen::VectorXd speed_noise;    // by joint, root mean square of what noise of the sensor makes of speeds
   Eigen::VectorXd low_pass;       // [s] by joint, to either side, of the filter of torques; see low_pass.hpp
   double reach = 0;               // [s] of the window to either side, which has some rows at least

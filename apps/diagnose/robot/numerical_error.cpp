@@ -13,6 +13,8 @@
 namespace diagnose_robot {
 namespace {
 
+constexpr double hardly = 0.8;  // times what it was: estimates of numerical errors are off by as much
+
 // Root mean square by joint of what is known.
 Eigen::VectorXd rms_of_known(const Eigen::MatrixXd& x) {
   Eigen::VectorXd rms(x.cols());
@@ -43,18 +45,23 @@ Eigen::VectorXd smoothing_error(const Evidence& evidence, const RobotPhysics& ph
   return of_fourth_order * square.cwiseSqrt();
 }
 
-Eigen::VectorXd numerical_error(const Evidence& evidence, const std::filesystem::path& folder) {
+Eigen::VectorXd numerical_error(const Evidence& evidence, const RobotPhysics& physics,
+                                const std::vector<StartState>& starts) {
   const Robot& robot = evidence.robot;
   const auto joints = static_cast<Eigen::Index>(robot.joints.size());
   if (robot.setup.drive == DriveKind::torque) return Eigen::VectorXd::Zero(joints);
-  const RobotRecording& recording = evidence.recordings.front();
-  const StartState start = start_of(evidence.motions.front());
   const mjOption& stated = robot.model.model->opt;
-  const AugmentedModel same = augmented_model(robot, robot.nominal, stated.timestep, folder, stated.integrator);
-  const Eigen::MatrixXd difference =
-      simulate_robot(robot, recording, start, robot.nominal) - replay(robot, same, robot.nominal, recording, start);
-  const Eigen::VectorXd rms = (difference.colwise().squaredNorm() / static_cast<double>(difference.rows())).cwiseSqrt();
-  return rms.allFinite() ? rms : Eigen::VectorXd::Zero(joints);
+  const AugmentedModel same = augmented_model(robot, physics, stated.timestep, evidence.folder, stated.integrator);
+  Eigen::VectorXd square = Eigen::VectorXd::Zero(joints);
+  for (std::size_t r = 0; r < evidence.recordings.size() && !evidence.stop.stop_requested(); ++r) {
+    const RobotRecording& recording = evidence.recordings[r];
+    const Eigen::MatrixXd difference =
+        simulate_robot(robot, recording, starts[r], physics) - replay(robot, same, physics, recording, starts[r]);
+    const auto rows = static_cast<double>(difference.rows() * static_cast<Eigen::Index>(evidence.recordings.size()));
+    square += difference.colwise().squaredNorm().transpose() / rows;
+  }
+  if (!square.allFinite()) return Eigen::VectorXd::Zero(joints);
+  return square.cwiseSqrt();
 }
 
 double numerical_share(const Evidence& evidence, const Eigen::MatrixXd& errors) {
@@ -71,8 +78,20 @@ double numerical_share(const Evidence& evidence, const Eigen::MatrixXd& errors) 
   return std::min(1.0, *middle);
 }
 
+bool raise_numerical_error(Evidence& evidence, const RobotPhysics& physics, const std::vector<StartState>& starts,
+                           const Eigen::MatrixXd& errors, double share) {
+  if (evidence.numerical.isZero(0)) return false;
+  const Eigen::VectorXd before = evidence.numerical;
+  const Eigen::VectorXd rms = rms_by_joint(evidence, errors),
+                        noise = noise_by_joint(evidence, evidence.robot.nominal, 1),
+                        left = (rms.cwiseAbs2() - noise.cwiseAbs2()).cwiseMax(0).cwiseSqrt();
+  evidence.numerical = (share * numerical_error(evidence, physics, starts)).cwiseMin(left);
+  const bool larger = (hardly * evidence.numerical.array() > before.array()).any();
+  evidence.numerical = larger ? Eigen::VectorXd(evidence.numerical.cwiseMax(before)) : before;
+  return larger;
+}
+
 bool lower_numerical_error(Evidence& evidence, const Eigen::MatrixXd& errors) {
-  constexpr double hardly = 0.8;  // times what it was: estimates of it are off by as much
   constexpr double half = 0.5;
   if (evidence.numerical.isZero(0)) return false;
   double share = numerical_share(evidence, errors);

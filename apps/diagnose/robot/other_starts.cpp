@@ -16,7 +16,7 @@ bool is_of_joint(const Term& term, int joint) { return term.joints.size() == 1 &
 
 // Without what this joint has for itself.
 Point without_joint(const Evidence& evidence, const Point& point, int joint) {
-  Point bare{point.theta, point.set, {}};
+  Point bare{point.theta, point.set, point.starts, {}};
   for (std::size_t t = 0; t < evidence.terms.size(); ++t) {
     if (!is_of_joint(evidence.terms[t], joint)) continue;
     bare.set[t] = 0;
@@ -61,7 +61,7 @@ std::vector<Start> starts_at(const Evidence& evidence, const LinearModel& model,
     }
   }
   const auto errors = surefoot::map(
-      evidence.threads, starts.size(), [&](std::size_t i) { return errors_at(evidence, starts[i].point.theta); },
+      evidence.threads, starts.size(), [&](std::size_t i) { return errors_at(evidence, starts[i].point.theta, bare.starts); },
       evidence.stop);
   for (std::size_t i = 0; i < starts.size(); ++i) {
     starts[i].point.errors = errors[i];
@@ -69,31 +69,6 @@ std::vector<Start> starts_at(const Evidence& evidence, const LinearModel& model,
   }
   std::ranges::stable_sort(starts, {}, &Start::misfit);
   return starts;
-}
-
-// Moves the point along its own terms until errors no longer fall; derivatives by others would cost the most and are
-// not needed.
-void fit(const Evidence& evidence, int moves, Point& point) {
-  Evidence own = evidence;
-  own.terms.clear();
-  Point part{Eigen::VectorXd(std::ranges::count(point.set, 1)), {}, point.errors};
-  for (std::size_t t = 0; t < point.set.size(); ++t) {
-    if (point.set[t] == 0) continue;
-    part.theta[static_cast<Eigen::Index>(own.terms.size())] = point.theta[static_cast<Eigen::Index>(t)];
-    own.terms.push_back(evidence.terms[t]);
-  }
-  own.entries = entries_of(own.terms);
-  part.set.assign(own.terms.size(), 1);
-  RigidCache cache;
-  for (int k = 0; k < moves; ++k) {
-    const LinearModel here = linearize(own, part.theta, part.errors, cache);
-    if (!move(own, here, part.set, {}, part)) break;
-  }
-  Eigen::Index at = 0;
-  for (std::size_t t = 0; t < point.set.size(); ++t) {
-    if (point.set[t] != 0) point.theta[static_cast<Eigen::Index>(t)] = part.theta[at++];
-  }
-  point.errors = part.errors;
 }
 
 }  // namespace
@@ -129,7 +104,7 @@ bool OtherStarts::try_next(const Evidence& evidence, const LinearModel& model, P
       if (static_cast<int>(seen.size()) == criteria_.finalists || evidence.stop.stop_requested()) break;
       if (std::ranges::find(seen, start.term) != seen.end()) continue;
       seen.push_back(start.term);
-      fit(evidence, criteria_.fits, start.point);
+      settle(evidence, model, criteria_.fits, start.point);
       if (misfit(evidence, model, start.point) + cost_of(model, start.point.set) > now - ChoiceCriteria().needed)
         continue;
       point = start.point;

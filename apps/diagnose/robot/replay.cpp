@@ -44,7 +44,7 @@ struct Replay {
       double given = torque;
       if (p[Property::lag] > 0) {
         if (!begun) lagging[j] = torque;
-        lagging[j] += (1 - std::exp(-m->opt.timestep / p[Property::lag])) * (torque - lagging[j]);
+        lagging[j] += lag_share(m->opt.timestep, p[Property::lag]) * (torque - lagging[j]);
         given = lagging[j];
       }
       const double slow = v / stribeck_speed;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "simulate_robot.hpp"
 #include "surefoot/diagnose/diagnosis.hpp"
 #include "terms.hpp"
 
@@ -50,6 +51,7 @@ struct AngleCurve {
 struct RobotDiagnosis {
   surefoot::Diagnosis common;
   RobotPhysics physics;
+  std::vector<StartState> starts;  // of recordings: where simulations with these physics begin
   bool torque_driven = false;
   std::string error_unit;  // rad, or the share of the drives' torque
   double textbook = 0, nominal = 0, after = 0, held_out = 0, noise = 0;

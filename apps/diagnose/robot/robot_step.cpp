@@ -32,6 +32,8 @@ double mean_goal(const RobotRecording& r, Eigen::Index joint, Eigen::Index row, 
   return sum / length;
 }
 
+double lag_share(double step, double lag) { return step / (step + lag); }
+
 double stribeck_share(double speed) {
   const double slow = speed / stribeck_speed;
   return std::exp(-slow * slow);
@@ -101,7 +103,7 @@ DriveTorque RobotStep::drive(Eigen::Index i, Eigen::Index row, double t, double 
     torque.damping = 0;
   }
   if (p[Property::lag] > 0) {
-    const double share = 1 - std::exp(-h / p[Property::lag]);
+    const double share = lag_share(h, p[Property::lag]);
     if (!std::isfinite(lagging[i])) lagging[i] = torque.told;
     torque.constant = (1 - share) * lagging[i] + share * torque.constant;
     torque.damping *= share;
@@ -227,7 +229,8 @@ void RobotStep::advance(Eigen::Index row, double t, double h) {
   if (by_load) solve_friction();
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     const DriveTorque& torque = drives[static_cast<std::size_t>(i)];
-    if (joint(i)[Property::lag] > 0) lagging[i] = torque.constant - torque.damping * next_[i];
+    const double damped = implicit[i] * next_[i] + (1 - implicit[i]) * v[i];  // the speed that damping acted on
+    if (joint(i)[Property::lag] > 0) lagging[i] = torque.constant - torque.damping * damped;
   }
   v.swap(next_);
   q += h / 2 * v;

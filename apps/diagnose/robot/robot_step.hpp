@@ -77,6 +77,10 @@ struct RobotStep {
 /// Mean of the goal, held between rows, from `from` to `from + length`; smooth in `from`, so that delays can be fitted.
 double mean_goal(const RobotRecording& recording, Eigen::Index joint, Eigen::Index row, double from, double length);
 
+/// What a torque that lags takes over of what is told, in one step: then it follows a ramp later by `lag` [s], for any
+/// step. (1 - exp(-step / lag) would be half a step too early, and drop lags below a step.)
+double lag_share(double step, double lag);
+
 /// The speed below which friction falls from breakaway: exp(-(v / stribeck_speed)^2).
 double stribeck_share(double speed);
 

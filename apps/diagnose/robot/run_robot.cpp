@@ -26,14 +26,14 @@ namespace {
 constexpr int exit_done = 0, exit_interrupted = 130;
 
 // Errors of augmented.xml in MuJoCo itself, over all recordings.
-double replay_error(const Evidence& evidence, const AugmentedModel& augmented, const RobotPhysics& physics) {
+double replay_error(const Evidence& evidence, const AugmentedModel& augmented, const RobotDiagnosis& d) {
   Eigen::MatrixXd errors(static_cast<Eigen::Index>(evidence.block.size()),
                          static_cast<Eigen::Index>(evidence.robot.joints.size()));
   Eigen::Index at = 0;
   for (std::size_t r = 0; r < evidence.recordings.size(); ++r) {
     const RobotRecording& recording = evidence.recordings[r];
     errors.middleRows(at, recording.time.size()) =
-        recording.angle - replay(evidence.robot, augmented, physics, recording, start_of(evidence.motions[r]));
+        recording.angle - replay(evidence.robot, augmented, d.physics, recording, d.starts[r]);
     leave_out_start(evidence.robot, recording, errors.middleRows(at, recording.time.size()));
     at += recording.time.size();
   }
@@ -54,7 +54,8 @@ void load_recordings(const diagnose_program::CommandLine& line, Evidence& eviden
     if (!stuck.empty()) throw surefoot::DiagnoseError(stuck);
   }
   prepare(evidence);
-  evidence.numerical = numerical_error(evidence, line.model.parent_path());
+  evidence.folder = line.model.parent_path();
+  evidence.numerical = numerical_error(evidence, evidence.robot.nominal, evidence.starts);
 }
 
 // Recordings of --test, which took no part in anything, take the place of held-out blocks.
@@ -135,7 +136,7 @@ int run_robot(const diagnose_program::CommandLine& line) {
   d.step = simulation_step(robot, evidence.recordings.front());
   const AugmentedModel augmented = augmented_model(robot, d.physics, d.step / steps_of_ours, line.model.parent_path());
   d.augmented = augmented.table;
-  d.replayed = d.torque_driven ? std::nan("") : replay_error(evidence, augmented, d.physics);
+  d.replayed = d.torque_driven ? std::nan("") : replay_error(evidence, augmented, d);
   progress.close();
   for (const std::string& remark : remarks) d.common.remarks.insert(d.common.remarks.begin(), {"", remark});
   d.common.seed = line.seed;

@@ -9,6 +9,7 @@ namespace diagnose_robot {
 struct Point {
   Eigen::VectorXd theta;
   TermSet set;
+  std::vector<StartState> starts;  // of recordings
   Eigen::MatrixXd errors;
 };
 
@@ -17,7 +18,8 @@ struct MoveCriteria {
   double settled = 0.5;   // decrease of -2 log probability below which parameters no longer move: odds of 1.3
 };
 
-Eigen::MatrixXd errors_at(const Evidence& evidence, const Eigen::VectorXd& theta);
+Eigen::MatrixXd errors_at(const Evidence& evidence, const Eigen::VectorXd& theta,
+                          const std::vector<StartState>& starts);
 
 /// What steps must lower: as the criterion of the linear model, without the cost of having terms.
 double misfit(const Evidence& evidence, const LinearModel& model, const Point& point);
@@ -28,5 +30,10 @@ double cost_of(const LinearModel& model, const TermSet& set);
 /// Along the linear model's change to this set, as far as errors fall. False if they do not.
 bool move(const Evidence& evidence, const LinearModel& model, const TermSet& set, const MoveCriteria& criteria,
           Point& point);
+
+/// Moves the point along its own terms until errors no longer fall. Cost: linearizations by these alone; derivatives by
+/// others cost the most and are not needed.
+/// Errors weigh as in `model`, that of all terms: with weights of its own the point would leave what others moved it to.
+void settle(const Evidence& evidence, const LinearModel& model, int most_moves, Point& point);
 
 }  // namespace diagnose_robot

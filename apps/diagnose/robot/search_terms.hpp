@@ -16,7 +16,8 @@ struct SearchCriteria {
 struct SearchResult {
   Eigen::VectorXd theta;
   TermSet set;
-  Eigen::MatrixXd errors;  // at theta
+  std::vector<StartState> starts;  // of recordings
+  Eigen::MatrixXd errors;          // at theta and starts
   LinearModel linear;      // at theta, of all terms
   bool complete = true;
   Eigen::VectorXd numerical;         // by joint, as of Evidence, lowered to what the recordings leave room for

@@ -14,7 +14,8 @@ namespace {
 constexpr double shortest = 1e-12;         // [s]: rounding
 constexpr double delay_difference = 1e-3;  // [s] of the goal's mean, which is piecewise linear in the delay
 
-// Joints that move each other, and how their motion changes with each entry: place in the tree x place in `entries`.
+// Joints that move each other, and how their motion changes with each entry and with the start: place in the tree x
+// place in `entries`, then angle and speed of each place.
 struct Tree {
   std::vector<int> joints;
   std::vector<std::size_t> entries;
@@ -53,7 +54,7 @@ struct Tangent {
         if (std::ranges::find(tree.joints, entries[e].joint) != tree.joints.end()) tree.entries.push_back(e);
       }
       const auto rows = static_cast<Eigen::Index>(tree.joints.size()),
-                 cols = static_cast<Eigen::Index>(tree.entries.size());
+                 from = static_cast<Eigen::Index>(tree.entries.size()), cols = from + 2 * rows;
       for (Eigen::MatrixXd* matrix :
            {&tree.angle, &tree.speed, &tree.before, &tree.seen, &tree.lagging, &tree.by_entry})
         matrix->setZero(rows, cols);
@@ -65,6 +66,10 @@ struct Tangent {
         const auto column = static_cast<Eigen::Index>(c);
         tree.own[static_cast<std::size_t>(place)].emplace_back(column, entry.property);
         if (entry.property == Property::sensor_bias) tree.angle(place, column) = tree.seen(place, column) = -1;
+      }
+      for (Eigen::Index r = 0; r < rows; ++r) {
+        tree.angle(r, from + r) = tree.seen(r, from + r) = 1;
+        tree.speed(r, from + rows + r) = tree.before(r, from + rows + r) = 1;
       }
     }
     then.told.setConstant(now.q.size(), std::numeric_limits<double>::quiet_NaN());
@@ -117,7 +122,7 @@ struct Tangent {
     const double gain = 1 + p[Property::torque_gain], kp = gain * stated.kp * (1 + p[Property::kp_error]);
     const double kd = gain * stated.kd * (1 + p[Property::kd_error]);
     const double error = drive.goal - now.seen[i] - p[Property::sensor_bias];
-    const double share = p[Property::lag] > 0 ? 1 - std::exp(-h / p[Property::lag]) : 1;
+    const double share = lag_share(h, p[Property::lag]);
     const double follows = drive.saturated ? 0 : share;
     for (const auto& [c, property] : tree.own[static_cast<std::size_t>(r)]) {
       if (property == Property::backlash && touches) tree.seen(r, c) += side;
@@ -140,7 +145,7 @@ struct Tangent {
   double by_lag(Eigen::Index i, const DriveTorque& drive) const {
     const double lag = now.joint(i)[Property::lag];
     if (!std::isfinite(then.told[i])) return 0;
-    if (lag > 0) return -h / (lag * lag) * std::exp(-h / lag) * (drive.told - then.lagging[i]);
+    if (lag > 0) return -h / ((h + lag) * (h + lag)) * (drive.told - then.lagging[i]);
     return -(drive.told - then.told[i]) / h;
   }
 
@@ -195,7 +200,7 @@ struct Tangent {
     tree.right.noalias() = tree.mass * tree.speed;
     tree.right.noalias() -= h * (tree.by_angle * tree.angle);
     tree.right.noalias() -= h * (tree.by_speed * tree.middle);
-    tree.right -= h * tree.by_entry;
+    tree.right.leftCols(tree.by_entry.cols()) -= h * tree.by_entry;
     for (Eigen::Index r = 0; r < size; ++r) {
       const Eigen::Index i = tree.joints[static_cast<std::size_t>(r)];
       tree.right.row(r) -= h * now.implicit[i] * now.dissipation[i] * tree.speed.row(r);  // not a part of the momentum
@@ -212,8 +217,10 @@ struct Tangent {
     tree.speed = tree.mass.llt().solve(tree.right);
     for (Eigen::Index r = 0; r < size; ++r) {
       const Eigen::Index i = tree.joints[static_cast<std::size_t>(r)];
-      tree.lagging.row(r) = tree.constant.row(r) - now.drives[static_cast<std::size_t>(i)].damping * tree.speed.row(r) -
-                            now.v[i] * tree.damping.row(r);
+      const double share = now.implicit[i], damping = now.drives[static_cast<std::size_t>(i)].damping;
+      tree.lagging.row(r) = tree.constant.row(r) - share * damping * tree.speed.row(r) -
+                            (1 - share) * damping * tree.before.row(r) -
+                            (share * now.v[i] + (1 - share) * then.speed[i]) * tree.damping.row(r);
     }
     tree.angle += h / 2 * tree.speed;
   }
@@ -221,8 +228,11 @@ struct Tangent {
   void read(std::vector<JointDerivatives>& result, Eigen::Index to) const {
     for (const Tree& tree : trees) {
       for (std::size_t r = 0; r < tree.joints.size(); ++r) {
-        Eigen::MatrixXd& by = result[static_cast<std::size_t>(tree.joints[r])].by;
-        by.row(to) = tree.angle.row(static_cast<Eigen::Index>(r));
+        JointDerivatives& one = result[static_cast<std::size_t>(tree.joints[r])];
+        Eigen::MatrixXd& by = one.by;
+        const auto angle = tree.angle.row(static_cast<Eigen::Index>(r));
+        by.row(to) = angle.head(by.cols());
+        one.by_start.row(to) = angle.tail(one.by_start.cols());
         for (const auto& [c, property] : tree.own[r]) {
           if (property == Property::sensor_bias) by(to, c) += 1;
         }
@@ -244,8 +254,11 @@ std::vector<JointDerivatives> simulation_derivatives(const Robot& robot, const R
   for (const Tree& tree : tangent.trees) {
     for (const int j : tree.joints) {
       result[static_cast<std::size_t>(j)].entries = tree.entries;
-      result[static_cast<std::size_t>(j)].by.setConstant(rows, static_cast<Eigen::Index>(tree.entries.size()),
-                                                         std::numeric_limits<double>::quiet_NaN());
+      JointDerivatives& one = result[static_cast<std::size_t>(j)];
+      one.by.setConstant(rows, static_cast<Eigen::Index>(tree.entries.size()),
+                         std::numeric_limits<double>::quiet_NaN());
+      one.by_start.setConstant(rows, 2 * static_cast<Eigen::Index>(tree.joints.size()),
+                               std::numeric_limits<double>::quiet_NaN());
     }
   }
   const double wanted = simulation_step(robot, recording);

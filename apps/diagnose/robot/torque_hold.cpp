@@ -23,7 +23,7 @@ double evidence_for_held_torques(const Evidence& evidence) {
   if (evidence.robot.setup.drive != DriveKind::torque) return 0;
   const Eigen::VectorXd theta = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(evidence.terms.size()));
   RigidCache cache;
-  const LinearModel model = linearize(evidence, theta, errors_of(evidence, evidence.robot.nominal), cache);
+  const LinearModel model = linearize(evidence, theta, evidence.starts, errors_of(evidence, evidence.robot.nominal), cache);
   const double late = half_row(evidence.recordings.front());
   return criterion_with_delay(evidence, model, 0) - criterion_with_delay(evidence, model, late);
 }

@@ -77,7 +77,7 @@ UncertainBodies allow_for_bodies(const Evidence& evidence, const SearchResult& f
   TermSet set(wide.terms.size(), 1);
   std::copy(found.set.begin(), found.set.end(), set.begin());
   RigidCache cache;
-  const LinearModel model = linearize(wide, theta, found.errors, cache);
+  const LinearModel model = linearize(wide, theta, found.starts, found.errors, cache);
   return {standard_errors(model, set).head(count), terms_like_links(wide, model, set)};
 }
 
