@@ -97,6 +97,7 @@ struct Effect {
   bool at_start = false;  // a sensor's fault that an initial state read off that sensor has, too
   bool needs_conserved_state =
       false;  // needs a state of which there is more or less (Place::state): no angle, and rates depend on it
+  bool needs_suggestion = false;     // is not tried unless readings suggest where (suggest)
   bool has_overflow_target = false;  // also tried with each other state as `other` (limit)
 
   /// Force on a velocity, in effort units; for Place::state the addition to the rate.
@@ -117,8 +118,7 @@ struct Effect {
   /// Delay of an input or a signal [s, or steps]. Beside `sensor`: how old its readings are, so that an initial state
   /// is read off a later one.
   std::function<double(Values p)> delay = {};
-  /// Starting values of the first parameter, in place of `starts`, that readings suggest (without `starts`, an effect is
-  /// not tried unless they do): those of the sensor attached
+  /// Starting values of the first parameter, in place of `starts`, that readings suggest: those of the sensor attached
   /// to, or of one that reads the state attached to (for a velocity: what it is the speed of).
   /// Beside each reading stands what was simulated without the effect.
   std::function<std::vector<double>(Values readings, Values simulated)> suggest = {};

@@ -83,8 +83,7 @@ SUREFOOT_ONCE void check_parameter(const Effect& effect, const EffectParameter& 
   if (!std::isfinite(parameter.low) || !std::isfinite(parameter.high) || !(parameter.low < parameter.high)) {
     refuse(effect, name + ": low must be below high, and both finite");
   }
-  const bool suggested = effect.suggest && &parameter == &effect.parameters.front();
-  if (parameter.starts.empty() && !suggested) refuse(effect, name + " has no starting value (starts)");
+  if (parameter.starts.empty()) refuse(effect, name + " has no starting value (starts)");
   for (const double start : parameter.starts) {
     // A share of the largest value is not in the unit of the bounds.
     const bool inside = parameter.of_peak || (start >= parameter.low && start <= parameter.high);

@@ -28,9 +28,10 @@ inline Effect quantization() {
                                         .measure = {.value = 1},
                                         .low = 0.001,
                                         .high = 2,
-                                        .starts = {}}}),  // as readings suggest, or not at all
+                                        .starts = {0.01, 0.03, 0.1, 0.2, 0.4, 0.8}}}),
           .confusable_with = names_of({"backlash"}),
           .experiment = "the slowest motion possible through many steps of the sensor",
+          .needs_suggestion = true,
           .suggest = +[](Values readings, Values simulated) { return sensor_steps(readings, simulated, 0.5); },
           .sensor =
               +[](const Series& series, Values p) {

@@ -70,8 +70,6 @@ SUREFOOT_ONCE std::vector<Eigen::VectorXd> starting_values(const BoundSimulator&
     const double unit =
         parameters[k].of_peak ? peak_at(bound, attached) : measure_size(bound, attached, parameters[k].measure);
     std::vector<Eigen::VectorXd> longer;
-    const bool only_suggested = k == 0 && attached.effect->suggest && parameters[k].starts.empty();
-    if (only_suggested) continue;
     for (const Eigen::VectorXd& one : result) {
       for (const double start : parameters[k].starts) {
         longer.push_back(one);
@@ -81,12 +79,12 @@ SUREFOOT_ONCE std::vector<Eigen::VectorXd> starting_values(const BoundSimulator&
     result = std::move(longer);
   }
   const int output = output_watching(bound, attached);
-  const bool only_suggested = attached.effect->suggest && parameters.front().starts.empty();
-  if (only_suggested && (output < 0 || observed.empty())) return {};
-  if (!attached.effect->suggest || output < 0 || observed.empty()) return result;
-  const Observed& seen = observed[static_cast<std::size_t>(output)];
-  const std::vector<double> suggested = attached.effect->suggest(seen.readings, seen.simulated);
-  if (suggested.empty()) return only_suggested ? std::vector<Eigen::VectorXd>{} : result;
+  std::vector<double> suggested;
+  if (attached.effect->suggest && output >= 0 && !observed.empty()) {
+    const Observed& seen = observed[static_cast<std::size_t>(output)];
+    suggested = attached.effect->suggest(seen.readings, seen.simulated);
+  }
+  if (suggested.empty()) return attached.effect->needs_suggestion ? std::vector<Eigen::VectorXd>{} : result;
   std::vector<Eigen::VectorXd> better;
   for (const Eigen::VectorXd& one : result) {
     if (one[0] != result.front()[0]) continue;  // each combination of the other parameters once
