@@ -50,8 +50,9 @@ TEST_CASE("the JSON holds every key of the schema with the values of the diagnos
   CHECK(result.at("probability") == 0.77);
   const json& structures = result.at("structures");  // the choice, then all others
   REQUIRE(structures.size() == 3);
-  CHECK(structures.at(0) ==
-        json({{"effects", {{{"name", "coulomb_friction"}, {"attached_to", "omega"}}}}, {"probability", 0.77}}));
+  CHECK(structures.at(0) == json({{"effects", {{{"name", "coulomb_friction"}, {"attached_to", "omega"}}}},
+                                  {"probability", 0.77},
+                                  {"heldout_rmse", 0.0041}}));
   CHECK(structures.at(2).at("effects").size() == 2);
   CHECK(structures.at(2).at("probability") == 0.01);
   CHECK(result.at("next_experiment") == "a slow ramp");

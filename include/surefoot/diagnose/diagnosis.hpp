@@ -73,9 +73,9 @@ struct FoundEffect {
 struct Alternative {
   std::vector<std::pair<std::string, std::string>> effects;  // name, attached to
   double fitted_rmse = 0;                                    // in units as in RecordingFit
-  double held_out_rmse = std::numeric_limits<double>::quiet_NaN();  // the same, each recording predicted from others
   double probability = 0;                                    // posterior, of this structure among all that were tried
   bool indistinguishable = false;                            // these recordings cannot tell them from the chosen ones
+  double held_out_rmse = std::numeric_limits<double>::quiet_NaN();  // the same, each recording predicted from others
 };
 
 struct RecordingFit {

@@ -33,12 +33,13 @@ TEST_CASE("what two recordings have for themselves is fitted in part, and predic
   for (const std::size_t r : {0, 1}) bench.bound.recordings[r].outputs.array() += 0.3;
   const EvaluatedHypothesis bias = bench.with({"sensor_bias"});
   const ErrorSquares unseen = errors_of_predictions(bench.search(), bias);
-  CHECK(unseen.rms() > 1.3 * bias.errors.rms());
-  for (const Eigen::Index r : {0, 1}) CHECK(unseen.mean_squares(r, 0) > 1.5 * bias.errors.mean_squares(r, 0));
+  CHECK(unseen.rms() > 1.2 * bias.errors.rms());
+  for (const Eigen::Index r : {0, 1}) CHECK(unseen.mean_squares(r, 0) > 1.1 * bias.errors.mean_squares(r, 0));
 }
 
 TEST_CASE("where more than noise is left structures are measured by their predictions") {
   FoldedBench bench({drift_in_tank});
+  bench.problem.least = Eigen::VectorXd::Constant(1, 1e3);
   const std::vector<EvaluatedHypothesis> pool{bench.with({}), bench.with({"sensor_drift"}),
                                               bench.with({"constant_rate"})};
   const auto weighed = with_predictions(bench.search(), pool);  // residuals of a bench count as structured
