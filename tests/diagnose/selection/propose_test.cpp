@@ -119,9 +119,8 @@ TEST_CASE("a reading that was rounded before it drifted is rounded in front of t
   CHECK(proposals[0].before == 0);
   CHECK(proposals[0].start[0] == doctest::Approx(step).epsilon(0.01));
   CHECK(proposals[0].gain > 0.9);
-  const auto behind = propose(b.bound, b.base, b.problem, candidates, 1, serially());  // the drift is the model's own
-  CHECK(behind[0].before == 1);
-  CHECK(behind[0].gain < 0.5);
+  // where the drift is the model's own no readings behind it stand in steps
+  CHECK(propose(b.bound, b.base, b.problem, candidates, 1, serially()).empty());
 
   const Hypothesis both = with_effect(b.base, proposals[0].effect, proposals[0].start, proposals[0].before);
   CHECK(both.effects[0].effect->name == "quantization");
