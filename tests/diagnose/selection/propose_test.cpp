@@ -204,8 +204,8 @@ TEST_CASE("a strength that causes more than what is left is made as small as tha
   CHECK(as_large_as_residuals(force, two, Eigen::MatrixXd::Constant(4, 1, 10), open)[0] == doctest::Approx(0.2));
   CHECK(as_large_as_residuals(force, two, Eigen::MatrixXd::Constant(4, 1, 1.9), open)[0] == 2);  // near enough
   CHECK(as_large_as_residuals(force, two, Eigen::MatrixXd::Constant(4, 1, 0.1), open)[0] == 2);  // no larger
-  const AttachedEffect late = attached("input_delay at duty");  // which has no strength
-  CHECK(as_large_as_residuals(late, two, Eigen::MatrixXd::Constant(4, 1, 10), open)[0] == 2);
+  const AttachedEffect limited = attached("rate_limit at duty");  // which has no strength
+  CHECK(as_large_as_residuals(limited, two, Eigen::MatrixXd::Constant(4, 1, 10), open)[0] == 2);
 }
 
 TEST_CASE("what is left is small, and so are the effects it is screened with") {
