@@ -116,6 +116,20 @@ TEST_CASE("recordings that are further off than noise explains are named, three 
   CHECK(many.find("explains: b, c and d and others") != std::string::npos);
 }
 
+TEST_CASE("outputs that leave far less than their stated noise are named") {
+  std::vector<ChannelMismatch> outputs(2);
+  outputs[0].output = "level_m";
+  outputs[0].unit = "m";
+  outputs[0].noise = 0.02;
+  outputs[0].rmse_after = 0.004;
+  outputs[1].noise = outputs[1].rmse_after = 1;
+  CHECK(overstated_noise_sentence(outputs).empty());  // estimated
+  outputs[0].noise_stated = outputs[1].noise_stated = true;
+  CHECK(overstated_noise_sentence(outputs).find("of level_m (0.004 m of 0.02 m):") != std::string::npos);
+  outputs[0].rmse_after = 0.018;
+  CHECK(overstated_noise_sentence(outputs).empty());
+}
+
 TEST_CASE("of all that cannot be told from the choice three are named in the sentence") {
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::missing_physics;

@@ -33,6 +33,9 @@ std::string noise_sentence(NoiseKind noise);
 /// For effects that held-out recordings rejected.
 std::string rejection_sentence();
 
+/// For outputs whose stated noise is more than twice what is left of them, each by its name; empty where there are none.
+std::string overstated_noise_sentence(const std::vector<ChannelMismatch>& outputs);
+
 /// For held-out recordings that nothing was fitted without.
 std::string not_held_out_sentence();
 

@@ -108,6 +108,20 @@ SUREFOOT_ONCE std::string rejection_sentence() {
          "dropped";
 }
 
+SUREFOOT_ONCE std::string overstated_noise_sentence(const std::vector<ChannelMismatch>& outputs) {
+  constexpr double more = 2;  // times what is left: estimates of a standard deviation are hardly so far off
+  std::vector<std::string> names;
+  for (const ChannelMismatch& one : outputs) {
+    if (one.noise_stated && one.noise > more * one.rmse_after) {
+      names.push_back(one.output + " (" + with_unit(one.rmse_after, one.unit) + " of " + with_unit(one.noise, one.unit) +
+                      ")");
+    }
+  }
+  if (names.empty()) return "";
+  return "less is left than the stated noise of " + in_list(names) +
+         ": state what the sensor really has, or nothing; what was named may be smaller than that noise";
+}
+
 SUREFOOT_ONCE std::string freed_state_sentence(const StateInfo& state, double low, double high) {
   return "recordings do not begin with " + state.name + " as the model says, but between " +
          with_unit(low, state.unit) + " and " + with_unit(high, state.unit) +

@@ -179,6 +179,8 @@ SUREFOOT_ONCE void evaluate_selection(const EstimationSetup& setup, const Calibr
   const Comparison calibration_gain = gain_of(nominal, selection.nominal.errors, 0);
   evaluate_errors(setup, models, diagnosis, run.seed);
   mark_beyond_noise(diagnosis, verdict);
+  const std::string overstated = overstated_noise_sentence(diagnosis.channels);
+  if (!overstated.empty()) diagnosis.remarks.push_back({"", overstated});
   diagnosis.verdict =
       decide(gather_evidence(setup, models, diagnosis, calibration_gain, verdict, run.parallel, run.seed), verdict);
 
