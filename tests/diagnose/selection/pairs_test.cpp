@@ -144,5 +144,26 @@ TEST_CASE("a pair is proposed in its best form only, whichever of the two comes 
   CHECK(pairs.size() == 3);  // and each of them with the third
 }
 
+TEST_CASE("tied pairs are of one effect in one form at two places, though a mixed pair may gain more") {
+  const auto at = [](Proposal one, int place, const std::string& form) {
+    Effect effect = *one.effect.effect;
+    effect.form = form;
+    one.effect.effect = std::make_shared<const Effect>(effect);
+    one.effect.at = place;
+    return one;
+  };
+  const Proposal better = proposal("limit", column(5, -0.5, 0), rest),
+                 other = proposal("limit", column(5, 0.5, 0), rest), worse = proposal("limit", column(5, 0.5, 1), rest);
+  const std::vector<Proposal> proposals{at(better, 0, "hard"), at(worse, 1, "hard"), at(other, 1, "soft"),
+                                        at(proposal("lag", column(0, 1, 0), rest), 0, "hard")};
+  CHECK(propose_pairs({proposals[0], proposals[1], proposals[2]}, 9).front().second.effect.effect->form == "soft");
+  const auto tied = propose_tied_pairs(proposals, 9);
+  REQUIRE(tied.size() == 1);
+  CHECK(tied[0].first.effect.effect->form == "hard");
+  CHECK(tied[0].second.effect.effect->form == "hard");
+  CHECK(tied[0].first.effect.at != tied[0].second.effect.at);
+  CHECK(propose_tied_pairs(proposals, 0).empty());
+}
+
 }  // namespace
 }  // namespace surefoot::diagnosis

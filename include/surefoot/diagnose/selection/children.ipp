@@ -192,13 +192,8 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> next_pairs(const Search& search, 
 
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> next_tied_pairs(const Search& search, const EvaluatedHypothesis& parent,
                                                                const std::vector<Proposal>& proposals) {
-  std::vector<ProposedPair> tied = propose_pairs(proposals, proposals.size() * proposals.size());
-  std::erase_if(tied, [](const ProposedPair& pair) {
-    const Effect &a = *pair.first.effect.effect, &b = *pair.second.effect.effect;
-    return a.name != b.name || a.form != b.form;
-  });
   // few are left out by their gains, which say little: what has no strength promises nothing before all else is settled
-  if (tied.size() > search.problem.effort.max_shortlist) tied.resize(search.problem.effort.max_shortlist);
+  std::vector<ProposedPair> tied = propose_tied_pairs(proposals, search.problem.effort.max_shortlist);
   return evaluate_pairs(search, parent, std::move(tied));
 }
 

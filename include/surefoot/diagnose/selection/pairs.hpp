@@ -15,8 +15,12 @@ struct ProposedPair {
   double gain = 0;
 };
 
-/// The pairs with the largest gains, best first, each in one form only: more of them would crowd others out. Cost: the square of the number of signatures, times their length.
+/// The pairs with the largest gains, best first, each in its best form only: more of them would crowd others out. Cost:
+/// the square of the number of signatures, times their length.
 std::vector<ProposedPair> propose_pairs(const std::vector<Proposal>& proposals, std::size_t count);
+
+/// The same of pairs of one effect in one form at two places.
+std::vector<ProposedPair> propose_tied_pairs(const std::vector<Proposal>& proposals, std::size_t count);
 
 }  // namespace surefoot::diagnosis
 

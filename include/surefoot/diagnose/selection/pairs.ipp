@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -150,6 +152,19 @@ SUREFOOT_INLINE std::vector<ProposedPair> propose_pairs(const std::vector<Propos
     pairs.push_back({started(a, shares.value, 0), started(b, shares.value, a.beyond.cols()), shares.gain});
   }
   return pairs;
+}
+
+SUREFOOT_INLINE std::vector<ProposedPair> propose_tied_pairs(const std::vector<Proposal>& proposals,
+                                                             std::size_t count) {
+  std::map<std::pair<std::string, std::string>, std::vector<Proposal>> by_effect;  // name and form
+  for (const Proposal& one : proposals) by_effect[{one.effect.effect->name, one.effect.effect->form}].push_back(one);
+  std::vector<ProposedPair> tied;
+  for (const auto& [effect, places] : by_effect) {
+    for (ProposedPair& pair : propose_pairs(places, places.size() * places.size())) tied.push_back(std::move(pair));
+  }
+  sort_items(tied, [](const ProposedPair& a, const ProposedPair& b) { return a.gain > b.gain; });
+  if (tied.size() > count) tied.resize(count);
+  return tied;
 }
 
 }  // namespace surefoot::diagnosis
