@@ -175,7 +175,7 @@ class Catalogue {
              "the typical size that a parameter of this kind has in the recordings. The machines are an arm (torque "
              "in, angle out), "
              "two tanks (inflow in, level of the upper one out), and a robot that walks.\n\n"
-             "Forms with a memory that a recording may find at any value are also there as `..., not settled` ("
+             "Forms whose hidden states a recording may find at any value are also there as `..., not settled` ("
           << unsettled
           << " more): each recording then tells where it begins.\n\n"
              "This page is written by `examples/guides/effect_catalogue.cpp` from the compiled library.\n";

@@ -19,7 +19,7 @@ struct WeakArm {
   Robot robot;
   Evidence evidence;
 
-  WeakArm() : robot(made(folder)), evidence(robot) {
+  WeakArm() : robot(robot_test::arm_with_limit(folder, stated)), evidence(robot) {
     RobotPhysics physics = robot.nominal;
     physics[0][Property::torque_limit] = 1 - hidden / stated;
     for (const char* file : {"rec_1.csv", "rec_2.csv"}) {
@@ -29,13 +29,6 @@ struct WeakArm {
       evidence.motions.back() = smooth(recording);
     }
     prepare(evidence);
-  }
-
-  static Robot made(const ScratchFolder& folder) {
-    auto arm = robot_test::small_arm();
-    arm.joints[0].limit = stated;
-    robot_test::write_files(folder, arm, 32);
-    return robot_test::load(folder);
   }
 };
 

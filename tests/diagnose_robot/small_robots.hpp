@@ -49,6 +49,14 @@ inline diagnose_robot::Robot load(const ScratchFolder& folder) {
                                     diagnose_robot::read_setup(folder.file("robot.toml")));
 }
 
+/// The small arm with files in the folder, whose upper drive is said to give this torque at most [N m].
+inline diagnose_robot::Robot arm_with_limit(const ScratchFolder& folder, double limit) {
+  auto arm = small_arm();
+  arm.joints[0].limit = limit;
+  write_files(folder, arm, 32);
+  return load(folder);
+}
+
 inline void add_recording(diagnose_robot::Evidence& evidence, const std::string& file) {
   evidence.recordings.push_back(
       diagnose_robot::read_recording(diagnose_program::read_csv(file), evidence.robot.setup, 100000));

@@ -25,7 +25,7 @@ struct MisreadArm {
   Evidence evidence;
   RobotPhysics physics;
 
-  MisreadArm() : robot(made(folder)), evidence(robot), physics(robot.nominal) {
+  MisreadArm() : robot(robot_test::arm_with_limit(folder, stated)), evidence(robot), physics(robot.nominal) {
     physics[0][Property::torque_limit] = 1 - hidden / stated;
     plants::Random random(7);
     for (const char* file : {"rec_1.csv", "rec_2.csv"}) {
@@ -39,13 +39,6 @@ struct MisreadArm {
       evidence.motions.back().v(0, 0) = upper_speed + misread;
     }
     prepare(evidence);
-  }
-
-  static Robot made(const ScratchFolder& folder) {
-    auto arm = robot_test::small_arm();
-    arm.joints[0].limit = stated;
-    robot_test::write_files(folder, arm, 32);
-    return robot_test::load(folder);
   }
 };
 

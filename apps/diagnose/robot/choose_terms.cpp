@@ -23,6 +23,7 @@ bool is_negligible(const LinearModel& model, const LinearFit& fit, Eigen::Index 
 struct Best {
   Eigen::Index term = -1;
   double criterion = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd square = {};  // errors that are left, by joint
 };
 
 HeldOutGain gain_of(double before, double after, double rows) {
@@ -63,7 +64,7 @@ std::vector<Best> changes(const LinearModel& model, const TermSet& set, const Te
     const bool may = add ? set[t] == 0 && allowed[t] != 0 : set[t] != 0;
     if (!may || !is_nested(model, changed(set, term, add))) continue;
     const LinearFit fit = fit_linear(model, changed(set, term, add));
-    if (!add || !is_negligible(model, fit, term)) result.push_back({term, fit.criterion});
+    if (!add || !is_negligible(model, fit, term)) result.push_back({term, fit.criterion, fit.square});
   }
   std::ranges::stable_sort(result, {}, &Best::criterion);
   return result;
@@ -88,8 +89,7 @@ Best best_addition(const LinearModel& model, const TermSet& set, const TermSet& 
   int tried = 0;
   const Eigen::VectorXd without = fit_linear(model, set).square;
   for (const Best& one : changes(model, set, allowed, true)) {
-    const Eigen::VectorXd with = fit_linear(model, changed(set, one.term, true)).square;
-    if (!may_be_worth(model, without, with, one.term, criteria)) continue;
+    if (!may_be_worth(model, without, one.square, one.term, criteria)) continue;
     if (tried++ == criteria.tried) break;
     if (worth_of(model, changed(set, one.term, true), one.term, criteria) > 1) return one;
   }

@@ -16,9 +16,10 @@ struct JointDerivatives {
   Eigen::MatrixXd by_start;  // of readings: row x (angles, then speeds at the start of joints that move each other)
 };
 
-/// Of the readings of simulate_robot(), by joint, with those by the start: exact derivatives of its steps (sticking joints stay, the rest slips
-/// as it does), with inverse dynamics derived by differences once a row. NaN where the simulation ran away. Cost: some
-/// 2 * joints of the largest tree + 5 for bodies simulations, for any number of entries.
+/// Of the readings of simulate_robot(), by joint, with those by the start: exact derivatives of its steps (sticking
+/// joints stay, the rest slips as it does), with inverse dynamics derived by differences once a row. NaN where the
+/// simulation ran away. Cost: some 2 * joints of the largest tree + 5 for bodies simulations, for any number of
+/// entries.
 std::vector<JointDerivatives> simulation_derivatives(const Robot& robot, const RobotRecording& recording,
                                                      const StartState& start, const RobotPhysics& physics,
                                                      const std::vector<PhysicsEntry>& entries);

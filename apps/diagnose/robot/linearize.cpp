@@ -251,10 +251,6 @@ void add_blocks(const Evidence& evidence, const std::vector<Eigen::Index>& terms
   }
 }
 
-}  // namespace
-
-namespace {
-
 // What a joint's squared errors weigh, as in the linear model.
 Eigen::VectorXd weights_of(const LinearModel& model) {
   Eigen::VectorXd square(model.independent.size()), rows = square;

@@ -78,6 +78,13 @@ double numerical_share(const Evidence& evidence, const Eigen::MatrixXd& errors) 
   return std::min(1.0, *middle);
 }
 
+double cap_numerical_error(Evidence& evidence, const Eigen::MatrixXd& errors) {
+  const double share = numerical_share(evidence, errors);
+  if (!(share < hardly)) return 1;
+  evidence.numerical *= share;
+  return share;
+}
+
 bool raise_numerical_error(Evidence& evidence, const RobotPhysics& physics, const std::vector<StartState>& starts,
                            const Eigen::MatrixXd& errors, double share) {
   if (evidence.numerical.isZero(0)) return false;

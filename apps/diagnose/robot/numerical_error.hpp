@@ -7,7 +7,7 @@
 namespace diagnose_robot {
 
 /// Root mean square by joint, over all recordings, with these physics and starts; 0 where torques drive. What is
-/// smaller is no physics. Cost: two simulations.
+/// smaller is no physics. Cost: two simulations of each.
 Eigen::VectorXd numerical_error(const Evidence& evidence, const RobotPhysics& physics,
                                 const std::vector<StartState>& starts);
 
@@ -19,6 +19,10 @@ Eigen::VectorXd smoothing_error(const Evidence& evidence, const RobotPhysics& ph
 /// `evidence.numerical`, at most 1, that is left beyond the noise of sensors in the median of joints (of two: in the
 /// worse one).
 double numerical_share(const Evidence& evidence, const Eigen::MatrixXd& errors);
+
+/// Lowers `evidence.numerical` to the share that recordings leave room for, if that is less by more than estimates of
+/// it are off; returns that share, 1 where nothing changes.
+double cap_numerical_error(Evidence& evidence, const Eigen::MatrixXd& errors);
 
 /// Raises `evidence.numerical` to `share` of that with physics that were found, as far as the errors that these leave
 /// at each joint have room for it: a joint whose drive is at its limit does not correct what simulations differ by.

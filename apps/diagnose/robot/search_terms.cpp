@@ -123,13 +123,9 @@ SearchResult search_terms(const Evidence& given, const Progress& progress, const
     const LinearModel model = linearize(evidence, point.theta, point.starts, point.errors, cache);
     if (move_to_better(evidence, model, allowed, point)) continue;
     // Before a term is dropped for them: numerical errors are no more than what is left.
-    constexpr double hardly = 0.8;
-    const double left = numerical_share(evidence, point.errors);
-    if (left < hardly) {
-      evidence.numerical *= left;
-      share *= left;
-      continue;
-    }
+    const double room = cap_numerical_error(evidence, point.errors);
+    share *= room;
+    if (room < 1) continue;
     const TermSet before = point.set;
     const Worth worth = [&](Eigen::Index t) { return worth_of(model, point.set, t); };
     if (!drop_one(evidence, worth, model,
@@ -141,9 +137,9 @@ SearchResult search_terms(const Evidence& given, const Progress& progress, const
         const RobotPhysics physics = physics_of(evidence.terms, point.theta, evidence.base);
         if (raise_numerical_error(evidence, physics, point.starts, point.errors, share)) continue;
       }
-      const double before = evidence.numerical.norm();
+      const double larger = evidence.numerical.norm();
       if (!lower_numerical_error(evidence, point.errors)) break;
-      share *= evidence.numerical.norm() / before;
+      share *= evidence.numerical.norm() / larger;
       allowed.assign(allowed.size(), 1);
       result.dropped.clear();
       continue;

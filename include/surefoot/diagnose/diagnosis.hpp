@@ -75,7 +75,8 @@ struct Alternative {
   double fitted_rmse = 0;                                    // in units as in RecordingFit
   double probability = 0;                                    // posterior, of this structure among all that were tried
   bool indistinguishable = false;                            // these recordings cannot tell them from the chosen ones
-  double held_out_rmse = std::numeric_limits<double>::quiet_NaN();  // the same, each recording predicted from others
+  /// As fitted_rmse, each recording predicted from fits to the others; NaN: not computed.
+  double held_out_rmse = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct RecordingFit {

@@ -1,4 +1,4 @@
-// An effect with a memory that a recording may find in any state: under way, under load, somewhere within its gap.
+// An effect whose hidden states a recording may find anywhere: under way, under load, somewhere within its gap.
 // Without this it begins as if what it is attached to had always been as in the first row.
 #pragma once
 
