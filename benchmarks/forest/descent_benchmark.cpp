@@ -1,4 +1,5 @@
-// Single predictions against the way down that was the only one before: eight trees in a vector, nodes in small pages.
+// Single predictions, as a Forest makes them, against the way down that was the only one before: eight trees in a
+// vector, nodes in small pages.
 // Both take turns, so that a busy machine slows both; the ratio is the median over the turns.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
@@ -63,10 +64,19 @@ class SmallPages {
   std::unique_ptr<Node, void (*)(void*)> memory_;
 };
 
-/// One copy of the code for both. `nodes`: where only the first is said to be, the vector's way is taken.
-[[gnu::noinline]] void descend(std::span<const Node> nodes, std::span<const std::uint32_t> roots, const Keys& keys,
-                               Payloads& payloads) {
-  detail::find_leaves(nodes, roots, keys, payloads.data());
+/// Where only the first node is said to be there, the vector's way is taken.
+[[gnu::noinline]] void descend_before(const SmallPages& pages, const Trees& trees, const Keys& keys,
+                                      Payloads& payloads) {
+  detail::find_leaves(std::span(pages.nodes(), 1), trees.roots, keys, payloads.data());
+}
+
+[[gnu::noinline]] void descend_now(const Trees& trees, const detail::Blocks& blocks, const Keys& keys,
+                                   Payloads& payloads) {
+  if (blocks.roots.empty()) {
+    detail::find_leaves(trees.nodes, trees.roots, keys, payloads.data());
+  } else {
+    detail::find_leaves_in_blocks(blocks.blocks, blocks.roots, keys, payloads.data());
+  }
 }
 
 /// Writes to twice as many bytes as the last cache has, so that nothing else is in any cache, addresses included.
@@ -91,16 +101,17 @@ class Evictor {
 /// the second time in a row.
 void descent(benchmark::State& state, bool cold) {
   const Trees& trees = forest_of<ConstantLeaf, 1>(state.range(0)).raw();
-  const SmallPages before(trees.nodes);
+  const SmallPages pages(trees.nodes);
+  const detail::Blocks blocks = detail::blocks_pay(trees) ? detail::make_blocks(trees) : detail::Blocks{};
   const std::vector<Keys> points = random_keys(4096);
   const std::size_t group = cold ? 1 : points.size();
   Evictor evict;
   std::vector<double> times_before, times_now, ratios;
   Payloads payloads{}, expected{};
   std::size_t first = 0;
-  const auto time = [&](std::span<const Node> nodes, Payloads& out) {
+  const auto time = [&](const auto& descend) {
     const auto predict = [&] {
-      for (std::size_t i = first; i < first + group; ++i) descend(nodes, trees.roots, points[i], out);
+      for (std::size_t i = first; i < first + group; ++i) descend(points[i]);
     };
     if (cold) {
       evict();
@@ -111,12 +122,14 @@ void descent(benchmark::State& state, bool cold) {
     predict();
     return (nanoseconds(!cold) - start) / static_cast<double>(group);
   };
+  const auto before = [&](const Keys& keys) { descend_before(pages, trees, keys, expected); };
+  const auto now = [&](const Keys& keys) { descend_now(trees, blocks, keys, payloads); };
   bool now_first = false;
   for (auto _ : state) {
     now_first = !now_first;
-    if (now_first) times_now.push_back(time(trees.nodes, payloads));
-    times_before.push_back(time(std::span(before.nodes(), 1), expected));
-    if (!now_first) times_now.push_back(time(trees.nodes, payloads));
+    if (now_first) times_now.push_back(time(now));
+    times_before.push_back(time(before));
+    if (!now_first) times_now.push_back(time(now));
     if (payloads != expected) state.SkipWithError("the two ways end in different leaves");
     ratios.push_back(times_before.back() / times_now.back());
     first = (first + group) % points.size();

@@ -11,13 +11,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/error.hpp"
 #include "surefoot/core/vec.hpp"
+#include "surefoot/forest/evaluate/blocks.hpp"
 #include "surefoot/forest/evaluate/descend.hpp"
 #include "surefoot/forest/evaluate/descend_batch.hpp"
+#include "surefoot/forest/evaluate/descend_blocks.hpp"
 #include "surefoot/forest/leaf.hpp"
 #include "surefoot/forest/trees.hpp"
 
@@ -55,12 +58,16 @@ class Forest {
     trees_.leaf_parameters = Leaf::parameters(trees_.inputs, trees_.outputs);
   }
 
-  /// Takes trees over; throws ForestError if their shape is not that of this type.
+  /// Takes trees over; throws ForestError if their shape is not that of this type. Of a large forest a second layout
+  /// is made, for single predictions: O(nodes) time, and three quarters of the nodes' bytes.
   explicit Forest(Storage trees) : trees_(std::move(trees)) {
     if ((Inputs != Eigen::Dynamic && trees_.inputs != Inputs) ||
         (Outputs != Eigen::Dynamic && trees_.outputs != Outputs) ||
         trees_.leaf_parameters != Leaf::parameters(trees_.inputs, trees_.outputs)) {
       detail::fail_shape(trees_);
+    }
+    if constexpr (std::is_same_v<Storage, Trees>) {
+      if (detail::blocks_pay(trees_)) blocks_ = detail::make_blocks(trees_);
     }
   }
 
@@ -69,6 +76,7 @@ class Forest {
   int outputs() const { return Outputs != Eigen::Dynamic ? Outputs : trees_.outputs; }
   std::size_t trees() const { return trees_.roots.size(); }
   std::size_t leaves() const { return trees_.leaves; }
+  /// Of nodes, leaves and roots: what a file takes.
   std::size_t bytes() const {
     return trees_.nodes.size() * sizeof(Node) + trees_.parameters.size() * sizeof(float) +
            trees_.roots.size() * sizeof(std::uint32_t);
@@ -242,7 +250,12 @@ class Forest {
     std::array<std::uint32_t, tree_block> payloads;
     for (std::size_t first = 0; first < trees(); first += tree_block) {
       const auto roots = roots_from(first);
-      detail::find_leaves(std::span<const Node>(trees_.nodes), roots, used(keys), payloads.data());
+      if (blocks_.roots.empty()) {
+        detail::find_leaves(std::span<const Node>(trees_.nodes), roots, used(keys), payloads.data());
+      } else {
+        detail::find_leaves_in_blocks(blocks_.blocks, std::span(blocks_.roots).subspan(first, roots.size()), used(keys),
+                                      payloads.data());
+      }
       visit(std::span<const std::uint32_t>(payloads).first(roots.size()));
     }
   }
@@ -318,6 +331,7 @@ class Forest {
   }
 
   Storage trees_;
+  detail::Blocks blocks_;  // the same trees; empty where they would not be faster
 };
 
 /// A forest used where its bytes lie, without a copy: see `view`. Predicts what the Forest does.

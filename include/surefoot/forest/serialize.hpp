@@ -119,7 +119,8 @@ F load(const std::string& path) {
 
 /// A forest of type F that stays in `bytes`, which hold it and nothing else and must outlive it unchanged: they are
 /// checked once, here, as `load` does, but not copied. They must start at a multiple of 8 bytes in memory; at one of
-/// 64, as mapped files do, predictions are as fast as a Forest's. Little-endian machines only.
+/// 64, as mapped files do, predictions are as fast as a Forest's, but for single ones of large forests, which Forests
+/// keep a second layout for. Little-endian machines only.
 ///
 ///   auto* memory = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file, 0);
 ///   auto forest = view<Forest<6, 1>>({static_cast<const std::byte*>(memory), size});

@@ -10,6 +10,7 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/forest/evaluate/descend_batch.hpp"
+#include "surefoot/forest/evaluate/descend_blocks.hpp"
 #include "surefoot/forest/extra_trees.hpp"
 #include "tests/forest/samples.hpp"
 
@@ -83,6 +84,7 @@ TEST_CASE_TEMPLATE("all ways down a tree end in the same leaf", Function, toy::C
       for (std::size_t t = 0; t < 70; ++t) expected[i][t] = payload_by_hand(trees, t, queries[i]);
     }
 
+    const detail::Blocks blocks = detail::make_blocks(trees);
     int differences = 0;
     std::vector<std::uint64_t> rows;
     std::vector<std::int32_t> columns((inputs + 1) * detail::max_batch, detail::flipped(0));
@@ -112,6 +114,10 @@ TEST_CASE_TEMPLATE("all ways down a tree end in the same leaf", Function, toy::C
 #ifdef SUREFOOT_AVX2
         if (__builtin_cpu_supports("avx2")) {
           detail::find_leaves_avx2(trees.nodes.data(), roots, keys, found.data());
+          compare();
+        }
+        if (detail::can_descend_blocks() && count <= detail::most_in_flight) {
+          detail::find_leaves_in_blocks(blocks.blocks, std::span(blocks.roots).first(count), keys, found.data());
           compare();
         }
 #endif

@@ -47,8 +47,10 @@ unsigned long long hash(const std::filesystem::path& path) {
 int main(int argc, char** argv) try {
   if (argc < 2) throw ForestError("usage: same_bits FILE [make]");
   if (argc > 2) {
-    const auto samples = toy::sample(toy::ClippedLaws{}, 4000, 1, 0.1);
-    save(train_extra_trees<LinearLeaf>(samples, {.trees = 40, .min_leaf = 10}, Threads(), 1), argv[1]);
+    const auto samples = toy::sample(toy::ClippedLaws{}, 8000, 1, 0.1);
+    const auto forest = train_extra_trees<LinearLeaf>(samples, {.trees = 40, .min_leaf = 10}, Threads(), 1);
+    if (forest.raw().nodes.size() < detail::nodes_worth_blocks) throw ForestError("too small to have blocks");
+    save(forest, argv[1]);
   }
   std::printf("%016llx\n", hash(argv[1]));
 } catch (const std::exception& error) {

@@ -1,22 +1,19 @@
 // The descent of one input through many trees with AVX2: 8 trees per vector, 32 in flight, a node per gathered word,
-// and the input's keys in two registers. Chosen at run time; gives the same leaves as the portable loop.
-//
-// A program compiled with SUREFOOT_PORTABLE defined (in all of its files, or in none) does without: same predictions.
+// and the input's keys in two registers. Gives the same leaves as the portable loop.
 #pragma once
-
-#include "surefoot/core/compiled.hpp"
-#include "surefoot/forest/trees.hpp"
-
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(SUREFOOT_PORTABLE)
-#define SUREFOOT_AVX2
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/forest/evaluate/avx2.hpp"
+#include "surefoot/forest/trees.hpp"
+
+#ifdef SUREFOOT_AVX2
+
 namespace surefoot::detail {
 
-constexpr std::size_t avx2_slots = 16;  // keys that fit into two registers, the slot behind the last included
 constexpr std::size_t avx2_trees = 32;  // in flight together
 
 /// The payload of the leaf that one input, given by at most 16 wide keys, reaches in each tree.

@@ -1,22 +1,10 @@
 // Definitions of surefoot/forest/evaluate/descend_avx2.hpp.
 #pragma once
 
+#include "surefoot/forest/evaluate/avx2_keys.hpp"
 #include "surefoot/forest/evaluate/descend_avx2.hpp"
 
 #ifdef SUREFOOT_AVX2
-
-// GCC's <immintrin.h> costs 0.3 s and 100 MB, nearly all of it for AVX-512; these two parts of it cost a tenth. They
-// may only be included by it, so its guard is set meanwhile.
-#if defined(__clang__) || __GNUC__ > 15 || defined(_IMMINTRIN_H_INCLUDED)
-#include <immintrin.h>
-#else
-#include <smmintrin.h>
-#define _IMMINTRIN_H_INCLUDED
-#include <avxintrin.h>
-// the second needs the first
-#include <avx2intrin.h>
-#undef _IMMINTRIN_H_INCLUDED
-#endif
 
 #include <algorithm>
 #include <array>
@@ -31,12 +19,6 @@ struct Avx2Lanes {
   __m256i place;  // index of each lane's node
   __m256i key;    // its key, lanes in the order 0 1 4 5 2 3 6 7
   __m256i used;   // -1 where there is a tree
-};
-
-// Sort keys are unsigned, AVX2 compares signed: both sides get their top bit flipped.
-struct Avx2Keys {
-  __m256i first;   // slots 0 to 7, flipped
-  __m256i second;  // slots 8 to 15, flipped
 };
 
 /// One step of 8 lanes; not zero if any moved.
@@ -54,12 +36,7 @@ template <bool TwoRegisters>
       _mm256_mask_i32gather_epi64(zero, words, _mm256_extracti128_si256(lanes.place, 1), all, sizeof(Node)));
   const __m256i link = _mm256_castps_si256(_mm256_shuffle_ps(low, high, 0x88));
   lanes.key = _mm256_castps_si256(_mm256_shuffle_ps(low, high, 0xDD));
-  __m256i input = _mm256_permutevar8x32_epi32(keys.first, link);
-  if constexpr (TwoRegisters) {
-    const __m256i other = _mm256_permutevar8x32_epi32(keys.second, link);
-    input = _mm256_castps_si256(_mm256_blendv_ps(_mm256_castsi256_ps(input), _mm256_castsi256_ps(other),
-                                                 _mm256_castsi256_ps(_mm256_slli_epi32(link, 28))));
-  }
+  const __m256i input = select_keys<TwoRegisters>(keys, link);
   const __m256i flip = _mm256_set1_epi32(static_cast<int>(0x80000000U));
   const __m256i greater = _mm256_cmpgt_epi32(input, _mm256_xor_si256(lanes.key, flip));  // -1 where true
   const __m256i moved = _mm256_sub_epi32(_mm256_srli_epi32(link, 8), greater);
@@ -126,14 +103,6 @@ template <bool TwoRegisters>
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(reached + tree + 16), c.place);
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(reached + tree + 24), d.place);
   }
-}
-
-/// At most 16 wide keys in two registers.
-[[gnu::target("avx2"), gnu::always_inline]] inline Avx2Keys in_registers(std::span<const std::uint64_t> keys) {
-  alignas(32) std::array<std::uint32_t, avx2_slots> slots{};
-  for (std::size_t k = 0; k < keys.size(); ++k) slots[k] = static_cast<std::uint32_t>(keys[k] >> 32) ^ 0x80000000U;
-  return {_mm256_load_si256(reinterpret_cast<const __m256i*>(&slots[0])),
-          _mm256_load_si256(reinterpret_cast<const __m256i*>(&slots[8]))};
 }
 
 [[gnu::target("avx2")]] SUREFOOT_INLINE void find_leaves_avx2(const Node* nodes, std::span<const std::uint32_t> roots,
