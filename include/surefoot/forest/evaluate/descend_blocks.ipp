@@ -28,10 +28,11 @@ template <bool TwoRegisters>
   const Block& block = *block_at(blocks, part);
   const __m256i shifts = _mm256_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28);
   const __m256i inputs = _mm256_srlv_epi32(_mm256_set1_epi32(static_cast<int>(block.inputs)), shifts);
-  const __m256i thresholds = _mm256_load_si256(reinterpret_cast<const __m256i*>(&block));  // and two exits, not used:
+  // The six thresholds, and two exits, for which `passed` has no bits.
+  const __m256i thresholds = _mm256_load_si256(reinterpret_cast<const __m256i*>(&block));
   const __m256i greater = _mm256_cmpgt_epi32(select_keys<TwoRegisters>(keys, inputs), thresholds);
   const auto right = static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_castsi256_ps(greater)));
-  // `passed` has no bits for them. Its bytes are less than 128, so adding 127 sets the top bit of all but zeros.
+  // Each byte is less than 128, so adding 127 sets the top bit of all but zeros.
   const std::uint64_t passed =
       (right * in_each_byte & std::bit_cast<std::uint64_t>(block.passed)) + 0x7F * in_each_byte;
   const std::uint64_t open = ~passed & (0x80 * in_each_byte << (part % 64));  // of this part and those behind it
