@@ -75,6 +75,26 @@ TEST_SUITE("log_doctor") {
     CHECK(found(off) == 0);
   }
 
+  TEST_CASE("what stands at the end of its range and leaves it again has reached a limit, and is not stuck") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    LogFit fit = fit_log(inputs, toys::servo_log());
+    Eigen::Index top = 0;
+    const double largest = fit.bound.recordings[0].outputs.row(0).maxCoeff(&top);
+    const auto found_between = [&](Eigen::Index from, Eigen::Index to) {
+      LogFit some = fit;
+      for (Eigen::Index row = from; row < to; ++row) {  // the model moves below
+        some.bound.recordings[0].outputs(0, row) = largest;
+        some.runs[0].outputs(0, row) = largest - 0.05 * static_cast<double>(row - from + 1);
+      }
+      return find_reading_faults(some, inputs.criteria).size();
+    };
+    const Eigen::Index rows = fit.bound.recordings[0].rows();
+    REQUIRE((top > 6 && top + 12 < rows));
+    CHECK(found_between(top - 6, top + 6) == 0);
+    CHECK(found_between(rows - 12, rows) == 1);  // it never comes back
+  }
+
   TEST_CASE("readings are clipped only where the model goes beyond them by more than it is off") {
     const Parallel parallel = serially();
     const LogDoctorInputs inputs = toys::servo_doctor(parallel);

@@ -125,6 +125,12 @@ SUREFOOT_ONCE bool ends_in_jump(const LogFit& fit, std::size_t r, Eigen::Index o
   return std::abs(step) > jump * high_value(steps);
 }
 
+/// Whether a stretch at the end of the range, of the machine or its sensor, is left again: what sticks does so
+/// anywhere.
+SUREFOOT_ONCE bool leaves_a_limit(const Recording& recording, const ConstantStretch& stretch) {
+  return stretch.extreme && stretch.rows.second < recording.rows();
+}
+
 /// How far the model is off elsewhere in this recording: root mean square.
 SUREFOOT_ONCE double error_elsewhere(const LogFit& fit, std::size_t r, Eigen::Index output,
                                      const std::vector<ConstantStretch>& stretches) {
@@ -155,7 +161,7 @@ SUREFOOT_ONCE std::optional<FoundFault> constant_fault(const LogFit& fit, std::s
     if ((one.beyond || (one.extreme && steps)) && !jump) {
       clipped.rows.push_back(one.rows);
       clipped_rows += static_cast<double>(one.readings);
-    } else if (jump || one.missed > off) {
+    } else if (jump || (one.missed > off && !leaves_a_limit(fit.bound.recordings[r], one))) {
       stuck.rows.push_back(one.rows);
       stuck_rows += static_cast<double>(one.readings);
     }

@@ -26,7 +26,7 @@ struct SelectionCriteria {
 
   // Prior probability of a structure:
   double form_cost = 1;       // [nat] of each parameter and of a memory: longer formulas are rarer
-  double bound_cost = 50;     // [nat] of a parameter at its bound, of a size that makes no sense: never chosen
+  double bound_cost = 50;     // [nat] of a parameter at its bound, of a size that hardly makes sense
   double bound_share = 0.01;  // of its range, nearer to which a parameter counts as at its bound
 
   // Predictive density:

@@ -76,9 +76,10 @@ Proposal predict_gain(const BoundSimulator& bound, const OpenResiduals& open, co
                       const ProposalCriteria& criteria);
 
 /// Ranks candidates, best first. `base` is fitted; only `problem.recordings` are simulated, once per candidate, start
-/// and strength. An effect on an input or a sensor that others act on already is tried behind them and in front of
-/// them, since order matters (a reading that is rounded and then drifts, or drifts and is then rounded); but not in
-/// front of the first `known` effects, those of the model.
+/// and strength, and again where a strength was too large; the further starts of a candidate begin as large as the one
+/// before was found to be right. An effect on an input or a sensor that others act on already is tried behind them and
+/// in front of them, since order matters (a reading that is rounded and then drifts, or drifts and is then rounded);
+/// but not in front of the first `known` effects, those of the model.
 std::vector<Proposal> propose(const BoundSimulator& bound, const Hypothesis& base, const FitProblem& problem,
                               const std::vector<AttachedEffect>& candidates, std::size_t known,
                               const Parallel& parallel, const ProposalCriteria& criteria = {});

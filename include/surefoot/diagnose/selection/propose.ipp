@@ -260,6 +260,26 @@ SUREFOOT_ONCE std::vector<Trial> trials_of(const BoundSimulator& bound, const Hy
   return trials;
 }
 
+/// Where the trials of one candidate at one place in the order begin, and their end.
+SUREFOOT_ONCE std::vector<std::size_t> groups_of(const std::vector<Trial>& trials) {
+  std::vector<std::size_t> begin{0};
+  for (std::size_t j = 1; j < trials.size(); ++j) {
+    const bool same = trials[j].candidate == trials[j - 1].candidate && trials[j].before == trials[j - 1].before;
+    if (!same) begin.push_back(j);
+  }
+  if (!trials.empty()) begin.push_back(trials.size());
+  return begin;
+}
+
+/// Values as multiples of others; 1 for what is zero in both.
+SUREFOOT_ONCE Eigen::VectorXd ratios(const Eigen::VectorXd& values, const Eigen::VectorXd& of) {
+  Eigen::VectorXd result = Eigen::VectorXd::Ones(values.size());
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    if (of[k] != 0) result[k] = values[k] / of[k];
+  }
+  return result;
+}
+
 SUREFOOT_ONCE std::vector<Proposal> propose(const BoundSimulator& bound, const Hypothesis& base,
                                             const FitProblem& problem, const std::vector<AttachedEffect>& candidates,
                                             std::size_t known, const Parallel& parallel,
@@ -267,21 +287,27 @@ SUREFOOT_ONCE std::vector<Proposal> propose(const BoundSimulator& bound, const H
   const OpenResiduals open = open_residuals(bound, base, problem, parallel);
   const std::vector<Trial> trials = trials_of(bound, base, problem, candidates, known, parallel);
   std::vector<Proposal> tried(trials.size());
-  parallel(trials.size(), [&](std::size_t j) {
-    const auto& [c, before, start] = trials[j];
-    const auto signatures_of = [&, c = c, before = before](const Eigen::VectorXd& values) {
-      return signatures(bound, base, problem, open.residuals, candidates[c], values, before);
-    };
-    Eigen::VectorXd values = start;
-    Eigen::MatrixXd changes = signatures_of(values);
-    for (int round = 0; round < criteria.resizings && changes.cols() > 0; ++round) {
-      const Eigen::VectorXd smaller = as_large_as_residuals(candidates[c], values, changes, open, criteria);
-      if (std::equal(smaller.begin(), smaller.end(), values.begin())) break;
-      values = smaller;
-      changes = signatures_of(values);
+  const std::vector<std::size_t> begin = groups_of(trials);
+  parallel(begin.size() - 1, [&](std::size_t group) {
+    Eigen::VectorXd sizes;  // multiples of the strengths of a start, as the start before has found them
+    for (std::size_t j = begin[group]; j < begin[group + 1]; ++j) {
+      const auto& [c, before, start] = trials[j];
+      const auto signatures_of = [&, c = c, before = before](const Eigen::VectorXd& values) {
+        return signatures(bound, base, problem, open.residuals, candidates[c], values, before);
+      };
+      Eigen::VectorXd values = start;
+      for (Eigen::Index k = 0; k < sizes.size(); ++k) values[k] *= sizes[k];
+      Eigen::MatrixXd changes = signatures_of(values);
+      for (int round = 0; round < criteria.resizings && changes.cols() > 0; ++round) {
+        const Eigen::VectorXd smaller = as_large_as_residuals(candidates[c], values, changes, open, criteria);
+        if (std::equal(smaller.begin(), smaller.end(), values.begin())) break;
+        values = smaller;
+        changes = signatures_of(values);
+      }
+      tried[j] = predict_gain(bound, open, candidates[c], values, changes, criteria);
+      tried[j].before = before;
+      sizes = ratios(values, start);
     }
-    tried[j] = predict_gain(bound, open, candidates[c], values, changes, criteria);
-    tried[j].before = before;
   });
   return best_of_each_effect(std::move(tried), base.effects.size(), criteria);
 }
