@@ -100,6 +100,13 @@ TEST_SUITE("log_doctor") {
     CHECK(only_fault(log, "clock_skew", "rec_03.csv").size == doctest::Approx(0.02).epsilon(0.15));
   }
 
+  TEST_CASE("clocks that run fast in one recording and slow in another are no clocks") {
+    Log log = toys::servo_log();
+    log[2].time *= 1.05;
+    log[3].time *= 0.97;
+    CHECK(toys::examined(log).faults.empty());
+  }
+
   TEST_CASE("a stuck sensor is named with its recording") {
     Log log = toys::servo_log(toys::dry_friction());
     for (Eigen::Index row = 90; row < 150; ++row) log[5].outputs(0, row) = log[5].outputs(0, 89);

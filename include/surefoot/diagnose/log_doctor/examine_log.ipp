@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -107,10 +108,27 @@ SUREFOOT_ONCE void examine_readings(LogUnderExamination& log) {
   if (!log.faults.empty()) log.calibrate_again(std::move(recordings));
 }
 
+/// Whether one clock runs fast and the other slow.
+SUREFOOT_ONCE bool are_opposite(const ClockFault& one, const ClockFault& other) {
+  const auto rate = [](const ClockFault& fault) {
+    return std::accumulate(fault.amounts.begin(), fault.amounts.end(), 0.0);
+  };
+  return one.kind == other.kind && one.kind != LogFaultKind::offset && rate(one) * rate(other) < 0;
+}
+
 SUREFOOT_ONCE void examine_clocks(LogUnderExamination& log) {
+  const std::vector<Recording> as_logged = log.fit.bound.recordings;
+  const auto other_faults = static_cast<std::ptrdiff_t>(log.faults.size());
+  std::optional<ClockFault> earlier;
   for (std::size_t round = 0; 2 * round < log.fit.bound.recordings.size() && !log.inputs.stopped(); ++round) {
     const auto fault = find_clock_fault(log.inputs, log.fit);
     if (!fault || log.inputs.stopped()) break;
+    if (earlier && are_opposite(*earlier, *fault)) {  // the clocks of one robot do not run fast and slow
+      log.faults.erase(log.faults.begin() + other_faults, log.faults.end());
+      log.calibrate_again(as_logged);
+      return;
+    }
+    earlier = fault;
     log.add(describe_fault(log.fit.bound, *fault), true);
     std::vector<Recording> recordings = log.fit.bound.recordings;
     for (std::size_t r = 0; r < recordings.size(); ++r) {
