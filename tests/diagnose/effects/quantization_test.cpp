@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
@@ -51,4 +52,18 @@ TEST_CASE("steps that noise behind the converter hides are found in the errors")
     CHECK(found.front() == doctest::Approx(step).epsilon(0.001));
     CHECK(sawtooth_steps(noise, simulated, shift).empty());
   }
+}
+
+TEST_CASE("errors where a machine rests show no steps, however many readings there are") {
+  surefoot::Rng rng(4);
+  std::vector<double> simulated, readings;
+  const auto read = [&](double value, double error) {
+    simulated.push_back(value);
+    readings.push_back(value + error + 0.01 * rng.normal());
+  };
+  for (int i = 0; i < 600; ++i) read(-1 + i / 300.0, 0);
+  for (const auto& [place, error] : {std::pair{0.285, 0.03}, {0.335, -0.03}, {0.385, 0.02}}) {
+    for (int i = 0; i < 600; ++i) read(place, error);
+  }
+  CHECK(sawtooth_steps(readings, simulated, 0.5).empty());
 }

@@ -101,8 +101,8 @@ TEST_SUITE("log_doctor") {
   }
 
   TEST_CASE("clocks that run fast in one recording and slow in another are no clocks") {
-    Log log = toys::servo_log();
-    log[2].time *= 1.05;
+    Log log = toys::servo_log({}, 12);
+    log[2].time *= 1.01;
     log[3].time *= 0.97;
     CHECK(toys::examined(log).faults.empty());
   }

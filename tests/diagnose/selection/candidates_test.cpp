@@ -9,6 +9,7 @@
 
 #include "surefoot/diagnose/effects/constant_force.hpp"
 #include "surefoot/diagnose/effects/constant_rate.hpp"
+#include "surefoot/diagnose/effects/dead_zone.hpp"
 #include "surefoot/diagnose/effects/gravity_offset.hpp"
 #include "surefoot/diagnose/effects/input_asymmetry.hpp"
 #include "surefoot/diagnose/effects/leak.hpp"
@@ -115,12 +116,27 @@ TEST_CASE("an asymmetry is tried only on what is above zero at times and below i
   const BoundSimulator bound = bind_simulator(toys::LeakyTank{}, {one_way, back});
   const Hypothesis base = nominal_hypothesis(bound);
   const auto signs_in = [&](const std::vector<std::size_t>& recordings) {
-    return signs_change(bound, base, recordings, simulate_all(bound, base, recordings, {}, serially()));
+    return input_ranges(bound, base, recordings, simulate_all(bound, base, recordings, {}, serially())).both_signs;
   };
   CHECK(signs_in({0}) == std::vector<bool>{false, false});  // the valve, and the inflow that it makes
   CHECK(signs_in({1}) == std::vector<bool>{false, false});
   CHECK(signs_in({0, 1}) == std::vector<bool>{true, true});
   CHECK(effects::input_asymmetry().needs_both_signs);
+}
+
+TEST_CASE("a zone in which nothing happens is looked for only where some values are small") {
+  Recording one = toys::blank_recording(toys::LeakyTank{}.info(), 100, 0.1);
+  const auto small_with = [&](double value) -> bool {
+    one.inputs.setConstant(2);
+    one.inputs(0, 50) = value;
+    const BoundSimulator bound = bind_simulator(toys::LeakyTank{}, {one});
+    const Hypothesis base = nominal_hypothesis(bound);
+    return input_ranges(bound, base, {0}, simulate_all(bound, base, {0}, {}, serially())).small_values[0];
+  };
+  CHECK(small_with(-0.5));
+  CHECK_FALSE(small_with(1.5));
+  CHECK_FALSE(small_with(0));
+  CHECK(effects::dead_zone_step().needs_small_values);
 }
 
 // A cart that moves by its command and by that of the step before.

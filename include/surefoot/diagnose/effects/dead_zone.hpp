@@ -43,6 +43,7 @@ inline Effect dead_zone_step() {
           .confusable_with = names_of({"coulomb_friction", "backlash"}),
           .experiment = "small inputs that grow slowly from zero, both ways",
           .form = "step",
+          .needs_small_values = true,
           .signal = +[](const EffectContext& m, Values p, Values) {
             const double edge = std::clamp((std::abs(m.value) / p[0] - 0.9) / 0.2, 0.0, 1.0);
             return m.value * edge * edge * (3 - 2 * edge);

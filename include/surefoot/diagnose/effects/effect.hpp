@@ -91,6 +91,8 @@ struct Effect {
       false;              // its signature does not grow in proportion: starts are ranked as they are, and not scaled
   bool needs_angle = false;  // says nothing of a velocity that is not the speed of an angle
   bool needs_both_signs = false;  // of an input or signal that never changes its sign it says no more than others do
+  bool needs_small_values =
+      false;                    // of an input or signal that is large or 0 its soft edge would tell, and nothing else
   bool needs_coupling = false;  // of a signal: it holds bodies together, and depends on their states alone
   std::string needs_unit = {};  // of the velocity it is attached to
   bool from_rest = false;    // what it is attached to was 0 before the first row, and not as in it (Place::input)

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -67,25 +68,37 @@ SUREFOOT_ONCE std::vector<bool> distinct_inputs(const BoundSimulator& bound, con
   return distinct;
 }
 
-SUREFOOT_ONCE std::vector<bool> signs_change(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                             const std::vector<std::size_t>& recordings,
-                                             const std::vector<SimulatedRun>& trajectories) {
-  const std::size_t count = bound.info.inputs.size() + bound.info.signals.size();
-  std::vector<bool> above(count, false), below(count, false);
+/// Calls `visit(k, value)` with each value that an input or signal k takes.
+template <typename Visit>
+void visit_values(const BoundSimulator& bound, const Hypothesis& hypothesis, const std::vector<std::size_t>& recordings,
+                  const std::vector<SimulatedRun>& trajectories, const Visit& visit) {
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     if (!trajectories[i].finite) continue;
     const Eigen::MatrixXd all = inputs_and_signals(bound, hypothesis, recordings[i], trajectories[i]);
-    for (std::size_t k = 0; k < count; ++k) {
-      for (Eigen::Index column = 0; column < all.cols(); ++column) {
-        const double value = all(static_cast<Eigen::Index>(k), column);
-        above[k] = above[k] || value > 0;
-        below[k] = below[k] || value < 0;
-      }
+    for (Eigen::Index k = 0; k < all.rows(); ++k) {
+      for (Eigen::Index column = 0; column < all.cols(); ++column) visit(static_cast<std::size_t>(k), all(k, column));
     }
   }
-  std::vector<bool> both(count);
-  for (std::size_t k = 0; k < count; ++k) both[k] = above[k] && below[k];
-  return both;
+}
+
+SUREFOOT_ONCE InputRanges input_ranges(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                       const std::vector<std::size_t>& recordings,
+                                       const std::vector<SimulatedRun>& trajectories) {
+  constexpr double small = 0.5;  // of the largest
+  const std::size_t count = bound.info.inputs.size() + bound.info.signals.size();
+  std::vector<double> lowest(count, 0), highest(count, 0);
+  std::vector<double> least(count, std::numeric_limits<double>::infinity());
+  visit_values(bound, hypothesis, recordings, trajectories, [&](std::size_t k, double value) {
+    lowest[k] = std::min(lowest[k], value);
+    highest[k] = std::max(highest[k], value);
+    if (value != 0) least[k] = std::min(least[k], std::abs(value));
+  });
+  InputRanges result{std::vector<bool>(count), std::vector<bool>(count)};
+  for (std::size_t k = 0; k < count; ++k) {
+    result.both_signs[k] = lowest[k] < 0 && highest[k] > 0;
+    result.small_values[k] = least[k] < small * std::max(-lowest[k], highest[k]);
+  }
+  return result;
 }
 
 SUREFOOT_ONCE std::vector<bool> zero_at_first(const BoundSimulator& bound,

@@ -39,11 +39,13 @@ SUREFOOT_ONCE std::vector<AttachedEffect> candidate_effects(const EstimationSetu
       distinct_inputs(setup.bound, calibration.calibrated.hypothesis, setup.split.training, calibration.training_runs));
   const bool map = setup.bound.info.kind == SimulatorKind::map;  // whose first row is the first command
   const std::vector<bool> zero = zero_at_first(setup.bound, setup.split.training);
-  const std::vector<bool> both_signs =
-      signs_change(setup.bound, calibration.calibrated.hypothesis, setup.split.training, calibration.training_runs);
+  const InputRanges ranges =
+      input_ranges(setup.bound, calibration.calibrated.hypothesis, setup.split.training, calibration.training_runs);
   std::erase_if(candidates, [&](const AttachedEffect& one) {
     const auto at = static_cast<std::size_t>(one.at);
-    return (one.effect->from_rest && (map || zero[at])) || (one.effect->needs_both_signs && !both_signs[at]);
+    const Effect& effect = *one.effect;
+    return (effect.from_rest && (map || zero[at])) || (effect.needs_both_signs && !ranges.both_signs[at]) ||
+           (effect.needs_small_values && !ranges.small_values[at]);
   });
   return candidates;
 }

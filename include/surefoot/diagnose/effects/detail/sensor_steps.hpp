@@ -72,38 +72,57 @@ inline std::vector<double> lattice_steps(Values readings) {
   return {};
 }
 
+/// How much each value counts so that all parts of the range in which there are some count alike: the many readings of a
+/// machine at rest say little about steps. 0 for what is not finite.
+inline std::vector<double> weights_by_part(Values values, double low, double range) {
+  constexpr std::size_t parts = 300;
+  const auto part_of = [&](double value) {
+    return std::min(parts - 1, static_cast<std::size_t>((value - low) / range * parts));
+  };
+  std::vector<double> seen(parts), weights;
+  for (const double value : values) seen[part_of(value)] += 1;
+  for (const double value : values) weights.push_back(1 / seen[part_of(value)]);
+  return weights;
+}
+
 /// The step whose sawtooth, step * floor(y / step + shift) - y over the simulated values y, takes away most of the
-/// squared errors (readings minus simulated); means are left out. Empty: none takes away a twentieth. Steps from the
-/// size of the errors to a quarter of the range are tried. Cost: 3,000 samples times up to 10,000 steps.
+/// squared errors (readings minus simulated), all parts of the range counted alike; means are left out. Empty: none
+/// takes away a twentieth. Steps from the size of the errors to a quarter of the range are tried. Cost: 3,000 samples
+/// times up to 10,000 steps.
 inline std::vector<double> sawtooth_steps(Values readings, Values simulated, double shift) {
   const std::size_t every = std::max<std::size_t>(1, readings.size() / 3000);
   std::vector<double> values, errors;
-  double mean = 0;
+  double largest = 0;
   for (std::size_t i = 0; i < readings.size(); i += every) {
     if (!std::isfinite(simulated[i]) || !std::isfinite(readings[i])) continue;
     values.push_back(simulated[i]);
     errors.push_back(readings[i] - simulated[i]);
-    mean += errors.back();
+    largest = std::max(largest, std::abs(simulated[i]));
   }
   if (values.size() < 100) return {};
-  const auto count = static_cast<double>(values.size());
-  double squares = 0, largest = 0;
+  const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
+  const double low = *lowest, range = *highest - low;
+  if (!(range > 0)) return {};
+  const std::vector<double> weights = weights_by_part(values, low, range);
+  double count = 0, mean = 0, squares = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    count += weights[i];
+    mean += weights[i] * errors[i];
+  }
   for (std::size_t i = 0; i < values.size(); ++i) {
     errors[i] -= mean / count;
-    squares += errors[i] * errors[i];
-    largest = std::max(largest, std::abs(values[i]));
+    squares += weights[i] * errors[i] * errors[i];
   }
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  const double range = *high - *low, size = std::sqrt(squares / count);
-  if (!(range > 0) || !(size > 0)) return {};
+  const double size = std::sqrt(squares / count);
+  if (!(size > 0)) return {};
   const auto taken_away = [&](double frequency) {  // of the squares
     const double step = 1 / frequency;
     double product = 0, teeth = 0, sum = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double tooth = step * std::floor(values[i] * frequency + shift) - values[i];
-      product += tooth * errors[i];
-      teeth += tooth * tooth;
-      sum += tooth;
+      product += weights[i] * tooth * errors[i];
+      teeth += weights[i] * tooth * tooth;
+      sum += weights[i] * tooth;
     }
     return (2 * product - teeth + sum * sum / count) / squares;
   };
