@@ -3,11 +3,14 @@
 
 #include <doctest/doctest.h>
 
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "surefoot/diagnose/effects/catalogue.hpp"
 #include "surefoot/diagnose/effects/named_effect.hpp"
+#include "surefoot/diagnose/estimation/fit.hpp"
+#include "surefoot/diagnose/estimation/typical_sizes.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
 namespace surefoot::diagnosis {
@@ -36,6 +39,23 @@ TEST_CASE("variables are free parameters, effects and unknown initial states, as
           doctest::Approx(value_of(hypothesis, one)).epsilon(1e-12));
     CHECK(from_search(one, 1e9) == one.high);
   }
+}
+
+TEST_CASE("what follows an input begins within the range of that input") {
+  Recording recording = toys::tank_recording(0, 50);
+  recording.inputs.setConstant(0.3);
+  recording.inputs(0, 20) = 0.5;
+  BoundSimulator bound = bind_simulator(LeakyTank{}, {recording});
+  Hypothesis hypothesis = nominal_hypothesis(bound);
+  const std::string input = bound.info.inputs[0].name;
+  hypothesis.effects.push_back(attach(bound.info, {"rate_limit", input, "not settled", {}, {1}}, all_effects()));
+  hypothesis.values.push_back(Eigen::VectorXd::Ones(2));
+  bound.sizes = measure_sizes(bound, hypothesis, {0}, simulate_all(bound, hypothesis, {0}, {}, serially()));
+  const std::vector<Variable> variables = variables_of(bound, hypothesis, {0}, Free::initial_only);
+  REQUIRE(variables.size() == 1);
+  CHECK(variables[0].kind == Variable::Kind::start);
+  CHECK(variables[0].low == doctest::Approx(-0.3));  // from its first value down to nothing
+  CHECK(variables[0].high == doctest::Approx(0.2));
 }
 
 TEST_CASE("units of an effect's parameters are those of what it is attached to") {

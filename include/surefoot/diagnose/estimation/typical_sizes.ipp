@@ -54,6 +54,17 @@ SUREFOOT_ONCE void raise_peaks(std::vector<double>& peaks, const Eigen::MatrixXd
   }
 }
 
+/// Widens ranges to the values of each row.
+SUREFOOT_ONCE void widen(std::vector<double>& low, std::vector<double>& high, const Eigen::MatrixXd& values) {
+  for (std::size_t k = 0; k < low.size(); ++k) {
+    for (const double value : surefoot::detail::row_of(values, static_cast<Eigen::Index>(k))) {
+      if (!std::isfinite(value)) continue;
+      low[k] = std::min(low[k], value);
+      high[k] = std::max(high[k], value);
+    }
+  }
+}
+
 /// Weighted sums of squares by row; about the mean of the row, or about zero.
 SUREFOOT_ONCE void add_squares(std::vector<double>& sums, const Eigen::MatrixXd& values, double weight,
                                bool about_mean) {
@@ -106,6 +117,7 @@ SUREFOOT_ONCE Sizes measure_sizes(const BoundSimulator& bound, const Hypothesis&
   std::vector<double> state(n), position(n), rate(n), effort(n), input(m), signal(s);
   sizes.state_peak.assign(n, 0.0);
   sizes.input_peak.assign(m, 0.0);
+  sizes.input_low = sizes.input_high = sizes.input_peak;
   sizes.signal_peak.assign(s, 0.0);
   double rows = 0, intervals = 0, duration = 0;
   for (const std::size_t r : recordings) {
@@ -130,6 +142,7 @@ SUREFOOT_ONCE Sizes measure_sizes(const BoundSimulator& bound, const Hypothesis&
     add_squares(signal, signals, weight, false);
     raise_peaks(sizes.state_peak, states);
     raise_peaks(sizes.input_peak, recording.inputs);
+    widen(sizes.input_low, sizes.input_high, recording.inputs);
     raise_peaks(sizes.signal_peak, signals);
   }
   set_sizes(sizes.state, state, rows);
