@@ -79,6 +79,11 @@ void name_effects(const Evidence& evidence, const SearchResult& found, RobotDiag
     const auto at = static_cast<Eigen::Index>(t);
     const Term& term = evidence.terms[t];
     const PropertyInfo& info = info_of(term.property);
+    if (term.property == Property::reading_age) {
+      d.common.remarks.push_back({"", "the drives act on readings that are " + rounded(1000 * found.theta[at]) +
+                                          " ms old, as any does that computes: no missing physics"});
+      continue;
+    }
     const double value_now = found.theta[at] + (term.group == single_joint ? 0 : nominal_of(evidence.robot, term));
     FittedValue value{info.parameter, unit_of(evidence.robot, term), value_now, value_now - z95 * error[at],
                       value_now + z95 * error[at]};
@@ -113,6 +118,7 @@ void name_alternatives(const Evidence& evidence, const SearchResult& found, Robo
   for (const TermAlternative& one : alternatives_of(found.linear, found.set, all)) {
     const Term& term = evidence.terms[static_cast<std::size_t>(one.other)];
     const Term& instead = evidence.terms[static_cast<std::size_t>(one.instead)];
+    if (instead.property == Property::reading_age) continue;  // is not named itself
     surefoot::Alternative alternative;
     alternative.effects = {{info_of(term.property).effect, place_of(evidence.robot, term)}};
     alternative.indistinguishable = true;

@@ -22,6 +22,9 @@ const std::array<PropertyInfo, property_count>& property_table() {
       {torque_gain, "input_gain", "gain_error", "1", "torque other than the drive is told", -9, 20, true, false, false},
       {reading_scale, "sensor_scale", "scale_error", "1", "recorded torque on another scale, or of the other sign", -20,
        100, false, true, true},
+      // Half of a period of its loop, over which torque is held, and the time it takes to read and compute; never named.
+      {reading_age, "drive_sampling", "age", "s", "readings that are old when the drive acts on them", 0, 4, true, false,
+       false},
       {torque_limit, "saturation", "missing_share", "1", "torque limit below the stated one", 0, 9.9, true, false,
        false},
       {lag, "first_order_lag", "time_constant", "s", "torque that lags", 0, 30, true, false, false},
@@ -51,6 +54,7 @@ double typical_size(Property property, const JointScale& scale) {
   constexpr double share = 0.1;         // of the torque of the drive: what friction or inertia easily takes
   constexpr double relative = 0.1;      // error of a gain or a mass
   constexpr double time = 0.005;        // [s] of a bus or a filter
+  constexpr double loop = 0.0005;       // [s]: half a period of a drive's loop at 1 kHz
   constexpr double angle_share = 0.02;  // of the angle: backlash
   switch (property) {
     case Property::viscous:
@@ -73,6 +77,8 @@ double typical_size(Property property, const JointScale& scale) {
     case Property::lag:
     case Property::delay:
       return time;
+    case Property::reading_age:
+      return loop;
     case Property::stiffness:
       return share * scale.torque / scale.angle;
     case Property::backlash:

@@ -19,6 +19,7 @@ enum class Property : unsigned char {
   kd_error,         // relative, of a position drive [1]
   torque_gain,      // relative, of all torque that a position drive gives [1]
   reading_scale,    // relative, of the recorded torque of a torque drive: 0.25 reads a quarter more than there is [1]
+  reading_age,      // of the angles and speeds that a position drive acts on [s]
   torque_limit,     // share of the stated limit that is missing [1]
   lag,              // time constant of the torque [s]
   delay,            // of what the drive is told, goal or torque [s]

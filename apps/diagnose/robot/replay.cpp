@@ -36,9 +36,11 @@ struct Replay {
       const int a = static_cast<int>(j);
       if (!begun) seen[j] = q;
       seen[j] = std::clamp(seen[j], q - p[Property::backlash], q + p[Property::backlash]);
-      d->ctrl[a] = goal(a, t, p[Property::delay]) + q - seen[j];
       const mjtNum* bias = m->actuator_biasprm + a * mjNBIAS;
-      double torque = m->actuator_gainprm[a * mjNGAIN] * d->ctrl[a] + bias[0] + bias[1] * q + bias[2] * v;
+      const double gain = m->actuator_gainprm[a * mjNGAIN];
+      const double older_reading = p[Property::reading_age] * (v - bias[2] / gain * d->qacc[dof[j]]);
+      d->ctrl[a] = goal(a, t, p[Property::delay]) + q - seen[j] + older_reading;
+      double torque = gain * d->ctrl[a] + bias[0] + bias[1] * q + bias[2] * v;
       if (m->actuator_forcelimited[a] != 0)
         torque = std::clamp(torque, m->actuator_forcerange[2 * a], m->actuator_forcerange[2 * a + 1]);
       double given = torque;

@@ -94,19 +94,22 @@ DriveTorque RobotStep::drive(Eigen::Index i, Eigen::Index row, double t, double 
   seen[i] = std::clamp(seen[i], q[i] - p[Property::backlash], q[i] + p[Property::backlash]);
   const double gain = 1 + p[Property::torque_gain];
   torque.constant = gain * stated.kp * (1 + p[Property::kp_error]) * (torque.goal - seen[i] - p[Property::sensor_bias]);
-  torque.damping = gain * stated.kd * (1 + p[Property::kd_error]);
+  const double age = p[Property::reading_age], kd = gain * stated.kd * (1 + p[Property::kd_error]);
+  torque.damping = kd - gain * stated.kp * (1 + p[Property::kp_error]) * age;
+  torque.inertia = -kd * age;
   const double limit = stated.limit * (1 - p[Property::torque_limit]);
   torque.told = torque.constant - torque.damping * middle[i];
   torque.saturated = limit > 0 && std::abs(torque.told) > limit;
   if (torque.saturated) {
     torque.constant = torque.told = std::copysign(limit, torque.told);
-    torque.damping = 0;
+    torque.damping = torque.inertia = 0;
   }
   if (p[Property::lag] > 0) {
     const double share = lag_share(h, p[Property::lag]);
     if (!std::isfinite(lagging[i])) lagging[i] = torque.told;
     torque.constant = (1 - share) * lagging[i] + share * torque.constant;
     torque.damping *= share;
+    torque.inertia *= share;
   }
   return torque;
 }
@@ -207,10 +210,11 @@ void RobotStep::advance(Eigen::Index row, double t, double h) {
     const double force = torque.constant + p[Property::constant_torque] -
                          p[Property::drag] * middle[i] * std::abs(middle[i]) - data->qfrc_bias[model_joint.dof] -
                          spring;
-    mass(i, i) += p[Property::armature];
+    const double inertia = p[Property::armature] + torque.inertia;
+    mass(i, i) += inertia;
     dissipation[i] = p[Property::viscous] + torque.damping;
     implicit[i] = h * dissipation[i] < stiff * mass(i, i) ? 0.5 : 1;
-    momentum[i] += p[Property::armature] * v[i] + h * (force - (1 - implicit[i]) * dissipation[i] * v[i]);
+    momentum[i] += inertia * v[i] + h * (force - (1 - implicit[i]) * dissipation[i] * v[i]);
     mass(i, i) += h * implicit[i] * dissipation[i];
     friction[i] = h * (p[Property::coulomb] + p[Property::breakaway] * stribeck_share(middle[i]) +
                        p[Property::load_friction] * std::abs(torque.constant - torque.damping * middle[i]));

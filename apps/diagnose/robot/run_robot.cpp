@@ -18,6 +18,7 @@
 #include "swapped_joints.hpp"
 #include "swapped_torques.hpp"
 #include "torque_hold.hpp"
+#include "torque_scale.hpp"
 #include "xml_text.hpp"
 
 namespace diagnose_robot {
@@ -100,6 +101,19 @@ std::vector<surefoot::LogFault> swapped_columns(bool repair, Evidence& evidence)
   return faults;
 }
 
+// Scales of torques are uncertain, as the setup may say, where the recordings refute the stated ones.
+void allow_for_scales(Robot& robot, Evidence& evidence, std::vector<std::string>& remarks) {
+  std::string list;
+  for (const int j : joints_of_other_scale(evidence))
+    list += (list.empty() ? "" : ", ") + robot.joints[static_cast<std::size_t>(j)].setup.torque.name;
+  if (list.empty()) return;
+  remarks.push_back(list +
+                    ": no torque of its joint in N m (or N), but on another scale, as a current of its motor, or of the "
+                    "other sign; scales of all torques are calibrated, as calibrate = [\"gains\"] asks for");
+  robot.setup.calibrate_gains = true;
+  prepare(evidence);
+}
+
 }  // namespace
 
 int run_robot(const diagnose_program::CommandLine& line) {
@@ -112,7 +126,7 @@ int run_robot(const diagnose_program::CommandLine& line) {
   const RobotSetup setup = read_setup(line.setup);
   RobotModel model = load_robot(line.model);
   std::vector<std::string> remarks = model.remarks;
-  const Robot robot = bind_robot(std::move(model), setup);
+  Robot robot = bind_robot(std::move(model), setup);
   Evidence evidence(robot);
   example::Interrupt interrupt;
   evidence.threads = surefoot::Threads(line.threads);
@@ -121,12 +135,13 @@ int run_robot(const diagnose_program::CommandLine& line) {
   diagnose_program::prepare_folder(line.out);
   diagnose_program::Progress progress(line.quiet);
   const std::vector<surefoot::LogFault> faults = swapped_columns(line.repair, evidence);
+  const bool usable = faults.empty() || line.repair;
+  if (usable) allow_for_scales(robot, evidence, remarks);
   if (hold_torques(evidence)) {
     remarks.push_back(
         "recorded torques are taken as commands that stand until the next row: these recordings refute that they act "
         "as they are logged");
   }
-  const bool usable = faults.empty() || line.repair;
   RobotDiagnosis d =
       usable
           ? diagnose_robot(evidence, [&](const std::string& stage, double share) { progress.show(stage, share, ""); })

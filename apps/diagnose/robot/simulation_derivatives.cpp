@@ -21,7 +21,7 @@ struct Tree {
   std::vector<std::size_t> entries;
   std::vector<std::vector<std::pair<Eigen::Index, Property>>> own;  // by place: columns of entries of this joint
   Eigen::MatrixXd angle, speed, before, middle, seen, lagging;
-  Eigen::MatrixXd constant, damping;             // of drives, in this step
+  Eigen::MatrixXd constant, damping, inertia;    // of drives, in this step
   Eigen::MatrixXd by_angle, by_speed, by_entry;  // of inverse dynamics
   Eigen::MatrixXd mass, right;
 };
@@ -120,7 +120,7 @@ struct Tangent {
     const bool touches = std::abs(then.seen[i] - angle) > p[Property::backlash];
     if (touches) tree.seen.row(r) = tree.angle.row(r);
     const double gain = 1 + p[Property::torque_gain], kp = gain * stated.kp * (1 + p[Property::kp_error]);
-    const double kd = gain * stated.kd * (1 + p[Property::kd_error]);
+    const double kd = gain * stated.kd * (1 + p[Property::kd_error]), age = p[Property::reading_age];
     const double error = drive.goal - now.seen[i] - p[Property::sensor_bias];
     const double share = lag_share(h, p[Property::lag]);
     const double follows = drive.saturated ? 0 : share;
@@ -129,12 +129,18 @@ struct Tangent {
     }
     tree.constant.row(r) = (1 - share) * tree.lagging.row(r) - follows * kp * tree.seen.row(r);
     tree.damping.row(r).setZero();
+    tree.inertia.row(r).setZero();
     for (const auto& [c, property] : tree.own[static_cast<std::size_t>(r)]) {
-      double& constant = tree.constant(r, c);
+      double &constant = tree.constant(r, c), &damping = tree.damping(r, c), &inertia = tree.inertia(r, c);
       if (property == Property::kp_error) constant += follows * gain * stated.kp * error;
+      if (property == Property::kp_error) damping = -follows * gain * stated.kp * age;
       if (property == Property::torque_gain) constant += follows * kp / gain * error;
-      if (property == Property::torque_gain) tree.damping(r, c) = follows * kd / gain;
-      if (property == Property::kd_error) tree.damping(r, c) = follows * gain * stated.kd;
+      if (property == Property::torque_gain) damping = follows * (kd - kp * age) / gain;
+      if (property == Property::torque_gain) inertia = -follows * kd * age / gain;
+      if (property == Property::kd_error) damping = follows * gain * stated.kd;
+      if (property == Property::kd_error) inertia = -follows * gain * stated.kd * age;
+      if (property == Property::reading_age) damping = -follows * kp;
+      if (property == Property::reading_age) inertia = -follows * kd;
       if (property == Property::sensor_bias) constant -= follows * kp;
       if (property == Property::torque_limit && drive.saturated) constant -= share * sign_of(drive.told) * stated.limit;
       if (property == Property::lag) constant += by_lag(i, drive);
@@ -170,7 +176,7 @@ struct Tangent {
     auto right = tree.right.row(r);
     right += (h - load) * tree.constant.row(r) + (h * by_middle + load * drive.damping) * tree.middle.row(r) -
              h * (1 - share) * now.dissipation[i] * tree.speed.row(r) +
-             (load * middle - h * damped) * tree.damping.row(r);
+             (load * middle - h * damped) * tree.damping.row(r) - (now.v[i] - then.speed[i]) * tree.inertia.row(r);
     for (const auto& [c, property] : tree.own[static_cast<std::size_t>(r)]) {
       double& entry = right[c];
       if (property == Property::coulomb) entry -= slips * h;
@@ -192,6 +198,7 @@ struct Tangent {
     tree.angle += h / 2 * tree.speed;
     tree.constant.resize(size, tree.angle.cols());
     tree.damping.resize(size, tree.angle.cols());
+    tree.inertia.resize(size, tree.angle.cols());
     for (Eigen::Index r = 0; r < size; ++r) {
       for (Eigen::Index k = 0; k < size; ++k)
         tree.mass(r, k) = now.mass(tree.joints[static_cast<std::size_t>(r)], tree.joints[static_cast<std::size_t>(k)]);

@@ -13,7 +13,7 @@ bool is_of_one_joint(Property p) { return p == Property::constant_torque || p ==
 // Of the bus or the program of the drives, which all joints share; unlike friction it has no size of the motor in it.
 bool is_of_electronics(Property p) {
   return p == Property::kp_error || p == Property::kd_error || p == Property::torque_gain || p == Property::delay ||
-         p == Property::lag || p == Property::load_friction;
+         p == Property::lag || p == Property::load_friction || p == Property::reading_age;
 }
 
 bool is_considered(const Robot& robot, const PropertyInfo& info, int joint) {
@@ -29,9 +29,9 @@ bool is_considered(const Robot& robot, const PropertyInfo& info, int joint) {
   return !is_of_pair(info.property) || at.before >= 0;
 }
 
-// How much later recorded torques act than they are logged: one clock for all joints.
-bool is_of_log(const Robot& robot, Property p) {
-  return p == Property::delay && robot.setup.drive == DriveKind::torque;
+// How much later recorded torques act than they are logged, or how old readings are: one clock for all joints.
+bool is_of_clock(const Robot& robot, Property p) {
+  return (p == Property::delay && robot.setup.drive == DriveKind::torque) || p == Property::reading_age;
 }
 
 // Whether links have the same mass and inertia, so that an error of the model is that of all of them.
@@ -80,7 +80,7 @@ std::vector<Term> all_terms(const Robot& robot, const std::vector<JointScale>& s
       for (const int j : robot.groups[g]) {
         if (is_considered(robot, info, j)) joints.push_back(j);
       }
-      if (is_of_log(robot, info.property) && robot.groups.size() > 1) continue;
+      if (is_of_clock(robot, info.property) && robot.groups.size() > 1) continue;
       if (!joints.empty() && may_be_tied(robot, info, joints))
         terms.push_back(make_term(joints, static_cast<int>(g), info, scales));
     }
@@ -96,7 +96,7 @@ std::vector<Term> all_terms(const Robot& robot, const std::vector<JointScale>& s
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
       const int joint = static_cast<int>(j);
       const auto& group = robot.groups[static_cast<std::size_t>(robot.joints[j].group)];
-      if (is_of_log(robot, info.property)) continue;
+      if (is_of_clock(robot, info.property)) continue;
       if (group.size() > 1 && is_considered(robot, info, joint)) terms.push_back(make_term({joint}, -1, info, scales));
     }
   }
