@@ -68,3 +68,19 @@ TEST_CASE("a term that explains a joint does not give way to a more probable one
   wanted[last] = 1;
   CHECK(choose_terms(model, wanted, TermSet(last + 1, 1)) == wanted);
 }
+
+TEST_CASE("terms that explain other errors are no tie, however much they explain") {
+  LinearModel model = precise_and_slow();
+  const auto last = static_cast<std::size_t>(precise_terms);
+  TermSet set(last + 1, 0);
+  set[0] = 1;
+  CHECK_FALSE(explain_the_same(model, set, {0, precise_terms, 0}));
+  // Two columns that are the same.
+  for (Sums& sums : model.sums[0]) {
+    sums.gram.row(1) = sums.gram.row(0).eval();
+    sums.gram.col(1) = sums.gram.col(0).eval();
+    sums.slope[1] = sums.slope[0];
+  }
+  add_up(model);
+  CHECK(explain_the_same(model, set, {0, 1, 0}));
+}

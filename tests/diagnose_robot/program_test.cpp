@@ -51,6 +51,11 @@ TEST_CASE("dry friction in one joint of an arm is found with its size, and nothi
   CHECK(double(result["effects"][0]["parameters"][0]["value"]) == doctest::Approx(0.6).epsilon(0.05));
   CHECK(double(result["robot"]["rmse_replayed"]) ==
         doctest::Approx(double(result["robot"]["rmse_after"])).epsilon(0.02));
+  REQUIRE(result["robot"]["not_named"].size() == 5);  // of each joint: dry, viscous, inertia, but for what was found
+  for (const json& other : result["robot"]["not_named"]) {
+    const double stated = other["effect"] == "rotor_inertia" ? blind_robots::file_armature : 0;
+    CHECK(std::abs(double(other["value"]) - stated) < 3 * double(other["stderr"]));
+  }
   for (const char* file : {"report.html", "augmented.xml", "augmented.hpp"})
     CHECK(std::filesystem::file_size(folder.file(std::string("out/") + file)) > 100);
 }

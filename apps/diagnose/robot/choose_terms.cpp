@@ -312,6 +312,14 @@ double worth_beside_unexplained(const LinearModel& model, const TermSet& set, Ei
   return held_out_gain(model, set, term).taken / std::max(1e-300, wanted);
 }
 
+bool explain_the_same(const LinearModel& model, const TermSet& set, const TermAlternative& tie) {
+  constexpr double half = 0.5;
+  const double now = fit_linear(model, set).criterion,
+               without = fit_linear(model, changed(set, tie.instead, false)).criterion,
+               with_both = fit_linear(model, changed(set, tie.other, true)).criterion;
+  return now - with_both < half * (without - now);
+}
+
 std::vector<TermAlternative> alternatives_of(const LinearModel& model, const TermSet& set, const TermSet& allowed) {
   std::vector<TermAlternative> result;
   const double now = fit_linear(model, set).criterion;

@@ -51,6 +51,10 @@ struct TermAlternative {
   double criterion = 0;                 // -2 log of the odds against it
 };
 
+/// Whether two terms explain the same errors: beside the one of the set, the other is worth less than half of what the
+/// first is. Terms that explain as much, but elsewhere, are no tie.
+bool explain_the_same(const LinearModel& model, const TermSet& set, const TermAlternative& tie);
+
 /// For each term of the set those outside that would do as well, within odds of 8.
 std::vector<TermAlternative> alternatives_of(const LinearModel& model, const TermSet& set, const TermSet& allowed);
 

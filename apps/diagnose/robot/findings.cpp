@@ -43,6 +43,33 @@ void name_links(const Evidence& evidence, const std::vector<Eigen::Index>& like_
   }
 }
 
+// Friction and rotor inertia of groups, or of joints alone in theirs, that are not there.
+std::vector<Eigen::Index> friction_not_there(const Evidence& evidence, const TermSet& set) {
+  std::vector<Eigen::Index> result;
+  for (std::size_t t = 0; t < set.size(); ++t) {
+    const Term& term = evidence.terms[t];
+    const bool asked =
+        term.property == Property::coulomb || term.property == Property::viscous || term.property == Property::armature;
+    const auto silent = [&](int j) { return evidence.silent[static_cast<std::size_t>(j)] != 0; };
+    if (asked && set[t] == 0 && term.group >= 0 && std::ranges::none_of(term.joints, silent))
+      result.push_back(static_cast<Eigen::Index>(t));
+  }
+  return result;
+}
+
+void list_not_named(const Evidence& evidence, const SearchResult& found, const std::vector<Eigen::Index>& others,
+                    const Eigen::VectorXd& error, RobotDiagnosis& d) {
+  for (const Eigen::Index t : others) {
+    const Term& term = evidence.terms[static_cast<std::size_t>(t)];
+    const PropertyInfo& info = info_of(term.property);
+    TermSet set = found.set;
+    set[static_cast<std::size_t>(t)] = 1;
+    const double value = nominal_of(evidence.robot, term) + fit_linear(found.linear, set).change[t];
+    d.not_named.push_back(
+        {place_of(evidence.robot, term), info.effect, info.parameter, unit_of(evidence.robot, term), value, error[t]});
+  }
+}
+
 // Where every other joint of the group has a difference of its own, what the group has is what this joint has.
 bool stands_for_group(const Evidence& evidence, const TermSet& set, const Term& single, const Term& tied) {
   return std::ranges::all_of(tied.joints, [&](int joint) {
@@ -70,8 +97,10 @@ double overall(const Evidence& evidence, const Eigen::VectorXd& rms) {
 }
 
 void name_effects(const Evidence& evidence, const SearchResult& found, RobotDiagnosis& d) {
-  const UncertainBodies bodies = allow_for_bodies(evidence, found);
+  const std::vector<Eigen::Index> others = friction_not_there(evidence, found.set);
+  const UncertainBodies bodies = allow_for_bodies(evidence, found, others);
   const Eigen::VectorXd& error = bodies.standard_errors;
+  list_not_named(evidence, found, others, error, d);
   const Eigen::VectorXd odds = evidence_of_terms(found.linear, found.set);
   name_links(evidence, bodies.like_link, d);
   for (std::size_t t = 0; t < found.set.size(); ++t) {
@@ -119,6 +148,7 @@ void name_alternatives(const Evidence& evidence, const SearchResult& found, Robo
     const Term& term = evidence.terms[static_cast<std::size_t>(one.other)];
     const Term& instead = evidence.terms[static_cast<std::size_t>(one.instead)];
     if (instead.property == Property::reading_age) continue;  // is not named itself
+    if (!explain_the_same(found.linear, found.set, one)) continue;
     surefoot::Alternative alternative;
     alternative.effects = {{info_of(term.property).effect, place_of(evidence.robot, term)}};
     alternative.indistinguishable = true;

@@ -25,6 +25,12 @@ struct JointDifference {
   bool differs = false;  // named; otherwise ruled out beyond the interval
 };
 
+/// Friction or rotor inertia that was not named, with the size that it would have beside what was.
+struct SizeNotNamed {
+  std::string place, effect, parameter, unit;
+  double value = 0, standard_error = 0;
+};
+
 /// What no size of would show in the recordings, such as the offset of an encoder on a vertical axis.
 struct InvisibleEffect {
   std::string joint, effect, parameter;
@@ -59,6 +65,7 @@ struct RobotDiagnosis {
   double step = 0;      // [s] of the simulation
   std::vector<JointError> joints;
   std::vector<JointDifference> differences;
+  std::vector<SizeNotNamed> not_named;
   std::vector<InvisibleEffect> invisible;
   std::vector<AugmentedEntry> augmented;
   std::vector<std::string> effect_columns;  // of shares

@@ -54,6 +54,19 @@ Json differences_json(const RobotDiagnosis& d) {
   return list;
 }
 
+Json not_named_json(const RobotDiagnosis& d) {
+  Json list = Json::array();
+  for (const SizeNotNamed& one : d.not_named) {
+    list.push_back({{"place", one.place},
+                    {"effect", one.effect},
+                    {"parameter", one.parameter},
+                    {"unit", one.unit},
+                    {"value", finite_or_null(one.value)},
+                    {"stderr", finite_or_null(one.standard_error)}});
+  }
+  return list;
+}
+
 Json invisible_json(const RobotDiagnosis& d) {
   Json list = Json::array();
   for (const InvisibleEffect& one : d.invisible)
@@ -89,6 +102,7 @@ std::string robot_json(const RobotDiagnosis& d) {
                    {"step_s", d.step},
                    {"joints", joints_json(d)},
                    {"differences", differences_json(d)},
+                   {"not_named", not_named_json(d)},
                    {"invisible", invisible_json(d)},
                    {"augmented", augmented_json(d)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

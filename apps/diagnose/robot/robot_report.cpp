@@ -9,6 +9,7 @@
 #include "../report_style.hpp"
 #include "../wording.hpp"
 #include "../write_json.hpp"
+#include "findings.hpp"
 #include "robot_files.hpp"
 
 namespace diagnose_robot {
@@ -127,10 +128,24 @@ std::string differences_part(const RobotDiagnosis& d) {
   std::string html = "<h2>Joints against their groups</h2>\n<table>\n" +
                      row({"joint", "effect", "group has", "difference", "verdict"}, "th");
   for (const JointDifference& one : d.differences) {
-    const double most = std::abs(one.difference) + 1.96 * one.standard_error;
+    const double most = std::abs(one.difference) + z95 * one.standard_error;
     html += row({one.joint, one.effect + " " + one.parameter, with_unit(one.of_group, one.unit),
-                 rounded(one.difference) + " +- " + rounded(1.96 * one.standard_error, 2),
+                 rounded(one.difference) + " +- " + rounded(z95 * one.standard_error, 2),
                  one.differs ? "differs" : "more than " + with_unit(most, one.unit) + " is ruled out"});
+  }
+  return html + "</table>\n";
+}
+
+std::string not_named_part(const RobotDiagnosis& d) {
+  if (d.not_named.empty()) return "";
+  std::string html =
+      "<h2>Friction and rotor inertia that are not named</h2>\n<p>With the size that each would have "
+      "beside what was found, and its interval.</p>\n<table>\n" +
+      row({"joint", "effect", "size", "interval"}, "th");
+  for (const SizeNotNamed& one : d.not_named) {
+    const double reach = z95 * one.standard_error;
+    html += row({one.place, one.effect + " " + one.parameter, with_unit(one.value, one.unit),
+                 rounded(one.value - reach) + " to " + rounded(one.value + reach)});
   }
   return html + "</table>\n";
 }
@@ -193,7 +208,7 @@ std::string robot_report(const RobotDiagnosis& d) {
          "content=\"width=device-width,initial-scale=1\"><title>Diagnosis of " +
          escaped(d.common.model) + "</title><style>" + diagnose_program::report_style +
          "</style></head><body><main>\n" + head_part(d) + faults_part(d) + effects_part(d) + joints_part(d) +
-         differences_part(d) + charts_part(d) + augmented_part(d) + remarks_part(d) + "<footer>" +
+         differences_part(d) + not_named_part(d) + charts_part(d) + augmented_part(d) + remarks_part(d) + "<footer>" +
          diagnose_program::duration_text(d.common.seconds) + ", seed " + std::to_string(d.common.seed) +
          "</footer>\n</main></body></html>\n";
 }

@@ -66,10 +66,22 @@ std::vector<Eigen::Index> terms_like_links(const Evidence& wide, const LinearMod
   return result;
 }
 
+Eigen::VectorXd errors_with(const LinearModel& model, const TermSet& set, const std::vector<Eigen::Index>& others) {
+  Eigen::VectorXd result = standard_errors(model, set);
+  for (const Eigen::Index other : others) {
+    TermSet more = set;
+    more[static_cast<std::size_t>(other)] = 1;
+    result[other] = standard_errors(model, more)[other];
+  }
+  return result;
+}
+
 }  // namespace
 
-UncertainBodies allow_for_bodies(const Evidence& evidence, const SearchResult& found) {
-  if (evidence.robot.setup.calibrate_bodies || !found.complete) return {standard_errors(found.linear, found.set), {}};
+UncertainBodies allow_for_bodies(const Evidence& evidence, const SearchResult& found,
+                                 const std::vector<Eigen::Index>& others) {
+  if (evidence.robot.setup.calibrate_bodies || !found.complete)
+    return {errors_with(found.linear, found.set, others), {}};
   const Evidence wide = with_bodies(evidence);
   const auto count = static_cast<Eigen::Index>(evidence.terms.size());
   Eigen::VectorXd theta = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(wide.terms.size()));
@@ -78,7 +90,7 @@ UncertainBodies allow_for_bodies(const Evidence& evidence, const SearchResult& f
   std::copy(found.set.begin(), found.set.end(), set.begin());
   RigidCache cache;
   const LinearModel model = linearize(wide, theta, found.starts, found.errors, cache);
-  return {standard_errors(model, set).head(count), terms_like_links(wide, model, set)};
+  return {errors_with(model, set, others).head(count), terms_like_links(wide, model, set)};
 }
 
 }  // namespace diagnose_robot
