@@ -162,6 +162,26 @@ TEST_CASE("goals that arrive late are replayed as nearly as goals that do not") 
   CHECK(distance() < 5 * in_time);
 }
 
+TEST_CASE("readings that drives act on are as old in the replay as in the simulation") {
+  const ScratchFolder folder;
+  robot_test::write_files(folder, robot_test::small_arm(), 2, 1);
+  const Robot robot = robot_test::load(folder);
+  Evidence evidence(robot);
+  robot_test::add_recording(evidence, folder.file("rec_1.csv"));
+  const StartState start = start_of(evidence.motions[0]);
+  RobotPhysics physics = robot.nominal;
+  const auto simulated = [&] { return simulate_robot(robot, evidence.recordings[0], start, physics); };
+  const auto replayed = [&] {
+    const AugmentedModel augmented =
+        augmented_model(robot, physics, simulation_step(robot, evidence.recordings[0]) / steps_of_ours, folder.path());
+    return replay(robot, augmented, physics, evidence.recordings[0], start);
+  };
+  const Eigen::MatrixXd ours = simulated(), theirs = replayed();
+  for (JointPhysics& joint : physics) joint[Property::reading_age] = 0.002;
+  const Eigen::MatrixXd by_age = simulated() - ours;
+  CHECK((replayed() - theirs - by_age).norm() < 0.05 * by_age.norm());
+}
+
 TEST_CASE("friction by load under strong damping is simulated as shorter steps say") {
   const ScratchFolder folder;
   auto arm = robot_test::small_arm();

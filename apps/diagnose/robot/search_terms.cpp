@@ -82,8 +82,8 @@ bool drop_one(const Evidence& evidence, const Worth& worth_of_term, const Linear
   return true;
 }
 
-// In the end, when nothing more is to be found: terms that are small beside what nothing explains, or as small as they
-// are uncertain.
+// In the end, when nothing more is to be found: terms that are small beside what nothing explains, as small as they are
+// uncertain, or smaller than anybody would correct a model for.
 void leave_out_small(const Evidence& evidence, RigidCache& cache, Point& point, std::vector<std::string>& dropped) {
   Eigen::VectorXd noise = noise_by_joint(evidence, evidence.robot.nominal, 1);
   if (evidence.numerical.size() > 0) noise = (noise.cwiseAbs2() + evidence.numerical.cwiseAbs2()).cwiseSqrt();
@@ -91,10 +91,12 @@ void leave_out_small(const Evidence& evidence, RigidCache& cache, Point& point, 
     const LinearModel model = linearize(evidence, point.theta, point.starts, point.errors, cache);
     const Eigen::VectorXd error = standard_errors(model, point.set);
     const Worth worth = [&](Eigen::Index t) {
-      return std::min(worth_beside_unexplained(model, point.set, t, noise),
-                      std::abs(point.theta[t]) / (z95 * std::max(1e-300, error[t])));
+      const double size = std::abs(point.theta[t]);
+      return std::min({worth_beside_unexplained(model, point.set, t, noise),
+                       size / (z95 * std::max(1e-300, error[t])), size / model.smallest[t]});
     };
-    if (!drop_one(evidence, worth, model, "which is small beside what nothing explains, or its interval contains 0",
+    if (!drop_one(evidence, worth, model, "which is small beside what nothing explains, its interval contains 0, or nobody would correct a "
+                  "model by so little",
                   point, dropped))
       return;
     point.errors = errors_at(evidence, point.theta, point.starts);

@@ -104,7 +104,8 @@ void set_priors(const Evidence& evidence, LinearModel& model) {
       if (evidence.numerical.size() > 0)
         numerical += evidence.numerical[j] * evidence.numerical[j] / static_cast<double>(model.acts_on.back().size());
     }
-    model.least_taken[t] = times_numerical * std::sqrt(numerical);
+    // How the drives work is not named, and no reason to name something else instead.
+    model.least_taken[t] = term.property == Property::reading_age ? 0 : times_numerical * std::sqrt(numerical);
     model.refines.push_back(bases_of(evidence, term));
   }
 }
