@@ -8,9 +8,9 @@ namespace {
 
 std::string row(const Robot& robot, std::size_t j, const JointPhysics& p) {
   std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(), "%.9g, %.9g, %.9g, %.9g, %.9g, %.9g, %.9g, %.9g}},\n", p[Property::coulomb],
+  std::snprintf(text.data(), text.size(), "%.9g, %.9g, %.9g, %.9g, %.9g, %.9g, %.9g, %.9g, %.9g}},\n", p[Property::coulomb],
                 p[Property::breakaway], p[Property::load_friction], p[Property::drag], p[Property::delay],
-                p[Property::lag], p[Property::backlash], p[Property::reading_age]);
+                p[Property::lag], p[Property::backlash], p[Property::reading_age], p[Property::reading_age] + p[Property::speed_age]);
   return "    {{\"" + robot.joints[j].setup.name + "\", " + text.data();
 }
 
@@ -35,7 +35,8 @@ namespace surefoot_robot {
 struct JointExtras {
   const char* name;
   double coulomb, breakaway, load_friction, drag;  // [N m], [N m], [1], [N m s^2/rad^2]
-  double delay, lag, backlash, age;                // [s], [s], [rad], [s] of the readings that the drive acts on
+  double delay, lag, backlash;                     // [s], [s], [rad]
+  double angle_age, speed_age;                     // [s] of the readings that the drive acts on
 };
 
 inline constexpr double stribeck_speed = 0.1;  // [rad/s]
@@ -70,7 +71,7 @@ class Extras {
       if (!begun_) seen_[j] = q;
       seen_[j] = std::clamp(seen_[j], q - joint.backlash, q + joint.backlash);
       const mjtNum* bias = m->actuator_biasprm + j * mjNBIAS;
-      const double gain = m->actuator_gainprm[j * mjNGAIN], older_reading = joint.age * (v - bias[2] / gain * d->qacc[dof_[j]]);
+      const double gain = m->actuator_gainprm[j * mjNGAIN], older_reading = joint.angle_age * v - joint.speed_age * bias[2] / gain * d->qacc[dof_[j]];
       d->ctrl[j] = newer + (back - static_cast<double>(whole)) * (older - newer) + (q - seen_[j]) * position_drive + older_reading;
       double torque = gain * d->ctrl[j] + bias[0] + bias[1] * q + bias[2] * v;
       if (m->actuator_forcelimited[j]) torque = std::clamp(torque, m->actuator_forcerange[2 * j], m->actuator_forcerange[2 * j + 1]);

@@ -104,6 +104,8 @@ std::string place_in_mjcf(Property p) {
     case Property::link_com_y:
     case Property::link_com_z:
       return "body inertial pos";
+    case Property::goal_clock:
+      return "nowhere: of the log";
     case Property::payload:
       return "body inertial mass, pos, inertia";
     default:

@@ -26,6 +26,17 @@ std::string sentence_of(const Evidence& evidence, const Term& term, double value
   return std::string(info.of_group) + " of " + size + " at " + place;
 }
 
+std::string timing_sentence(Property property, double seconds) {
+  const std::string size = rounded(1000 * std::abs(seconds)) + " ms";
+  const std::string what = property == Property::reading_age ? "the drives act on readings that are " + size + " old"
+                           : property == Property::speed_age ? "the drives act on speeds that are " + size +
+                                                                   " older than their angles"
+                                                             : "goals act " + size +
+                                                                   (seconds < 0 ? " earlier" : " later") +
+                                                                   " than they are logged";
+  return what + ", a part of a row or of the drives' period: no missing physics";
+}
+
 // A stated tie: the inertia of a rotor, and that of the link which turns with it.
 void name_links(const Evidence& evidence, const std::vector<Eigen::Index>& like_link, RobotDiagnosis& d) {
   for (const Eigen::Index t : like_link) {
@@ -108,9 +119,8 @@ void name_effects(const Evidence& evidence, const SearchResult& found, RobotDiag
     const auto at = static_cast<Eigen::Index>(t);
     const Term& term = evidence.terms[t];
     const PropertyInfo& info = info_of(term.property);
-    if (term.property == Property::reading_age) {
-      d.common.remarks.push_back({"", "the drives act on readings that are " + rounded(1000 * found.theta[at]) +
-                                          " ms old, as any does that computes: no missing physics"});
+    if (is_of_timing(term.property)) {
+      d.common.remarks.push_back({"", timing_sentence(term.property, found.theta[at])});
       continue;
     }
     const double value_now = found.theta[at] + (term.group == single_joint ? 0 : nominal_of(evidence.robot, term));
@@ -147,7 +157,7 @@ void name_alternatives(const Evidence& evidence, const SearchResult& found, Robo
   for (const TermAlternative& one : alternatives_of(found.linear, found.set, all)) {
     const Term& term = evidence.terms[static_cast<std::size_t>(one.other)];
     const Term& instead = evidence.terms[static_cast<std::size_t>(one.instead)];
-    if (instead.property == Property::reading_age) continue;  // is not named itself
+    if (is_of_timing(instead.property)) continue;  // is not named itself
     if (!explain_the_same(found.linear, found.set, one)) continue;
     surefoot::Alternative alternative;
     alternative.effects = {{info_of(term.property).effect, place_of(evidence.robot, term)}};

@@ -22,8 +22,12 @@ const std::array<PropertyInfo, property_count>& property_table() {
       {torque_gain, "input_gain", "gain_error", "1", "torque other than the drive is told", -9, 20, true, false, false},
       {reading_scale, "sensor_scale", "scale_error", "1", "recorded torque on another scale, or of the other sign", -20,
        100, false, true, true},
-      // Half of a period of its loop, over which torque is held, and the time it takes to read and compute; never named.
+      // Half of a period of its loop, over which torque is held, and the time it takes to read and compute.
       {reading_age, "drive_sampling", "age", "s", "readings that are old when the drive acts on them", 0, 4, true, false,
+       false},
+      // Differences of angles are half a period old.
+      {speed_age, "drive_sampling", "speed_age", "s", "speeds that are older than angles", 0, 4, true, false, false},
+      {goal_clock, "drive_sampling", "goal_clock", "s", "goals that act later than they are logged", -1, 1, true, false,
        false},
       {torque_limit, "saturation", "missing_share", "1", "torque limit below the stated one", 0, 9.9, true, false,
        false},
@@ -78,7 +82,10 @@ double typical_size(Property property, const JointScale& scale) {
     case Property::delay:
       return time;
     case Property::reading_age:
+    case Property::speed_age:
       return loop;
+    case Property::goal_clock:
+      return row_share * scale.row;
     case Property::stiffness:
       return share * scale.torque / scale.angle;
     case Property::backlash:

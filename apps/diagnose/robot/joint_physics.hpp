@@ -20,6 +20,8 @@ enum class Property : unsigned char {
   torque_gain,      // relative, of all torque that a position drive gives [1]
   reading_scale,    // relative, of the recorded torque of a torque drive: 0.25 reads a quarter more than there is [1]
   reading_age,      // of the angles and speeds that a position drive acts on [s]
+  speed_age,        // the same of the speeds alone, beyond that [s]
+  goal_clock,       // by which goals act later than they are logged, less than any delay that is named [s]
   torque_limit,     // share of the stated limit that is missing [1]
   lag,              // time constant of the torque [s]
   delay,            // of what the drive is told, goal or torque [s]
@@ -72,6 +74,9 @@ inline double sign_of(double x) { return x > 0 ? 1.0 : x < 0 ? -1.0 : 0.0; }
 /// Mass, centre of mass or payload of a link.
 inline bool is_of_body(Property p) { return p >= Property::link_mass && p <= Property::payload; }
 
+/// How drives and logs keep time: fitted, as all of them must, and never named.
+inline bool is_of_timing(Property p) { return p >= Property::reading_age && p <= Property::goal_clock; }
+
 /// On the sum of the speeds of two joints.
 inline bool is_of_pair(Property p) { return p >= Property::pair_coulomb && p <= Property::pair_armature; }
 
@@ -82,7 +87,11 @@ struct JointScale {
   double link_size = 0.1;  // [m]
   double link_mass = 1;    // [kg]
   double offset = 0.05;    // [rad] by which encoders are mounted or zeroed wrongly
+  double row = 0.005;      // [s] between two rows
 };
+
+/// A recording says no more about time than when in its rows something was read or told.
+inline constexpr double row_share = 0.25;
 
 /// A size that the property might well have at this joint: bounds and steps of finite differences are measured in it.
 double typical_size(Property property, const JointScale& scale);

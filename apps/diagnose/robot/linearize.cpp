@@ -78,6 +78,7 @@ void prepare(Evidence& evidence) {
              std::max(still, reading),
              0.1,
              1};
+    scale.row = evidence.recordings.front().row_period();
     const ModelJoint& joint = evidence.robot.joints[j].model;
     if (joint.slides) scale.offset = std::max(still, angle_share * angle);
     const double size = std::hypot(joint.tip[0], joint.tip[1], joint.tip[2]);

@@ -24,7 +24,7 @@ struct Replay {
   double goal(Eigen::Index joint, double t, double late) const {
     const auto next = std::upper_bound(recording.time.begin(), recording.time.end(), t + 1e-9) - recording.time.begin();
     const Eigen::Index row = std::max<Eigen::Index>(0, next - 1);
-    return late > 0 ? mean_goal(recording, joint, row, t - late, model->opt.timestep) : recording.goal(row, joint);
+    return late != 0 ? mean_goal(recording, joint, row, t - late, model->opt.timestep) : recording.goal(row, joint);
   }
 
   void before_step(double t) {
@@ -38,8 +38,9 @@ struct Replay {
       seen[j] = std::clamp(seen[j], q - p[Property::backlash], q + p[Property::backlash]);
       const mjtNum* bias = m->actuator_biasprm + a * mjNBIAS;
       const double gain = m->actuator_gainprm[a * mjNGAIN];
-      const double older_reading = p[Property::reading_age] * (v - bias[2] / gain * d->qacc[dof[j]]);
-      d->ctrl[a] = goal(a, t, p[Property::delay]) + q - seen[j] + older_reading;
+      const double age = p[Property::reading_age], of_speed = age + p[Property::speed_age];
+      const double older_reading = age * v - of_speed * bias[2] / gain * d->qacc[dof[j]];
+      d->ctrl[a] = goal(a, t, p[Property::delay] + p[Property::goal_clock]) + q - seen[j] + older_reading;
       double torque = gain * d->ctrl[a] + bias[0] + bias[1] * q + bias[2] * v;
       if (m->actuator_forcelimited[a] != 0)
         torque = std::clamp(torque, m->actuator_forcerange[2 * a], m->actuator_forcerange[2 * a + 1]);

@@ -88,15 +88,15 @@ DriveTorque RobotStep::drive(Eigen::Index i, Eigen::Index row, double t, double 
   const JointSetup& stated = robot.joints[static_cast<std::size_t>(i)].setup;
   const JointPhysics& p = joint(i);
   DriveTorque torque;
-  torque.goal =
-      p[Property::delay] > 0 ? mean_goal(recording, i, row, t - p[Property::delay], h) : recording.goal(row, i);
+  const double late = p[Property::delay] + p[Property::goal_clock];
+  torque.goal = late == 0 ? recording.goal(row, i) : mean_goal(recording, i, row, t - late, h);
   // Positions are those of mid-step.
   seen[i] = std::clamp(seen[i], q[i] - p[Property::backlash], q[i] + p[Property::backlash]);
   const double gain = 1 + p[Property::torque_gain];
   torque.constant = gain * stated.kp * (1 + p[Property::kp_error]) * (torque.goal - seen[i] - p[Property::sensor_bias]);
   const double age = p[Property::reading_age], kd = gain * stated.kd * (1 + p[Property::kd_error]);
   torque.damping = kd - gain * stated.kp * (1 + p[Property::kp_error]) * age;
-  torque.inertia = -kd * age;
+  torque.inertia = -kd * (age + p[Property::speed_age]);
   const double limit = stated.limit * (1 - p[Property::torque_limit]);
   torque.told = torque.constant - torque.damping * middle[i];
   torque.saturated = limit > 0 && std::abs(torque.told) > limit;

@@ -72,7 +72,7 @@ bool drop_one(const Evidence& evidence, const Worth& worth_of_term, const Linear
   }
   if (worst < 0) return false;
   const Term& term = evidence.terms[static_cast<std::size_t>(worst)];
-  if (term.property != Property::reading_age)
+  if (!is_of_timing(term.property))
     dropped.push_back(std::string(info_of(term.property).effect) + " at " + place_of(evidence.robot, term) +
                     " was dropped: it takes " +
                     diagnose_program::percent(held_out_gain(model, point.set, worst).share) +

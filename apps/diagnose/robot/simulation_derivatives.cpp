@@ -120,7 +120,8 @@ struct Tangent {
     const bool touches = std::abs(then.seen[i] - angle) > p[Property::backlash];
     if (touches) tree.seen.row(r) = tree.angle.row(r);
     const double gain = 1 + p[Property::torque_gain], kp = gain * stated.kp * (1 + p[Property::kp_error]);
-    const double kd = gain * stated.kd * (1 + p[Property::kd_error]), age = p[Property::reading_age];
+    const double kd = gain * stated.kd * (1 + p[Property::kd_error]), age = p[Property::reading_age],
+                 of_speed = age + p[Property::speed_age];
     const double error = drive.goal - now.seen[i] - p[Property::sensor_bias];
     const double share = lag_share(h, p[Property::lag]);
     const double follows = drive.saturated ? 0 : share;
@@ -136,15 +137,15 @@ struct Tangent {
       if (property == Property::kp_error) damping = -follows * gain * stated.kp * age;
       if (property == Property::torque_gain) constant += follows * kp / gain * error;
       if (property == Property::torque_gain) damping = follows * (kd - kp * age) / gain;
-      if (property == Property::torque_gain) inertia = -follows * kd * age / gain;
+      if (property == Property::torque_gain) inertia = -follows * kd * of_speed / gain;
       if (property == Property::kd_error) damping = follows * gain * stated.kd;
-      if (property == Property::kd_error) inertia = -follows * gain * stated.kd * age;
+      if (property == Property::kd_error) inertia = -follows * gain * stated.kd * of_speed;
       if (property == Property::reading_age) damping = -follows * kp;
-      if (property == Property::reading_age) inertia = -follows * kd;
+      if (property == Property::reading_age || property == Property::speed_age) inertia = -follows * kd;
       if (property == Property::sensor_bias) constant -= follows * kp;
       if (property == Property::torque_limit && drive.saturated) constant -= share * sign_of(drive.told) * stated.limit;
       if (property == Property::lag) constant += by_lag(i, drive);
-      if (property == Property::delay) constant += follows * kp * goal_by_delay(i);
+      if (property == Property::delay || property == Property::goal_clock) constant += follows * kp * goal_by_delay(i);
     }
   }
 
@@ -156,7 +157,7 @@ struct Tangent {
   }
 
   double goal_by_delay(Eigen::Index i) const {
-    const double from = time - now.joint(i)[Property::delay];
+    const double from = time - now.joint(i)[Property::delay] - now.joint(i)[Property::goal_clock];
     return (mean_goal(now.recording, i, row, from - delay_difference, h) - mean_goal(now.recording, i, row, from, h)) /
            delay_difference;
   }

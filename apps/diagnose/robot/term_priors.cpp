@@ -14,9 +14,6 @@ constexpr double smallest_share = 0.1;
 constexpr double ordinary_spread = 0.25;
 constexpr double stated_prior = 2;  // typical sizes: a gain or mass that is stated is rarely off by more than some 20 %
 
-// A recording says no more about time than when in its rows something was read or told.
-constexpr double row_share = 0.25;
-
 double smallest_size(const Evidence& evidence, const Term& term, double of_group) {
   double smallest = smallest_share * term.typical;
   if (term.group == single_joint) smallest = std::max(smallest, ordinary_spread * std::abs(of_group));
@@ -104,8 +101,8 @@ void set_priors(const Evidence& evidence, LinearModel& model) {
       if (evidence.numerical.size() > 0)
         numerical += evidence.numerical[j] * evidence.numerical[j] / static_cast<double>(model.acts_on.back().size());
     }
-    // How the drives work is not named, and no reason to name something else instead.
-    model.least_taken[t] = term.property == Property::reading_age ? 0 : times_numerical * std::sqrt(numerical);
+    // What is never named must not be large enough for a name: or something else would stand for it.
+    model.least_taken[t] = is_of_timing(term.property) ? 0 : times_numerical * std::sqrt(numerical);
     model.refines.push_back(bases_of(evidence, term));
   }
 }

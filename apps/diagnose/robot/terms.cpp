@@ -13,7 +13,7 @@ bool is_of_one_joint(Property p) { return p == Property::constant_torque || p ==
 // Of the bus or the program of the drives, which all joints share; unlike friction it has no size of the motor in it.
 bool is_of_electronics(Property p) {
   return p == Property::kp_error || p == Property::kd_error || p == Property::torque_gain || p == Property::delay ||
-         p == Property::lag || p == Property::load_friction || p == Property::reading_age;
+         p == Property::lag || p == Property::load_friction || is_of_timing(p);
 }
 
 bool is_considered(const Robot& robot, const PropertyInfo& info, int joint) {
@@ -29,9 +29,9 @@ bool is_considered(const Robot& robot, const PropertyInfo& info, int joint) {
   return !is_of_pair(info.property) || at.before >= 0;
 }
 
-// How much later recorded torques act than they are logged, or how old readings are: one clock for all joints.
+// How much later recorded torques act than they are logged, how old readings are: one clock for all joints.
 bool is_of_clock(const Robot& robot, Property p) {
-  return (p == Property::delay && robot.setup.drive == DriveKind::torque) || p == Property::reading_age;
+  return (p == Property::delay && robot.setup.drive == DriveKind::torque) || is_of_timing(p);
 }
 
 // Whether links have the same mass and inertia, so that an error of the model is that of all of them.
