@@ -90,7 +90,8 @@ TEST_CASE("derivatives of a simulation are those that differences give, for ever
   SUBCASE("with something of everything") {
     for (const PropertyInfo& info : property_table()) {
       if (!info.position_drive || info.property == Property::backlash) continue;
-      physics[0][info.property] = physics[1][info.property] = info.property == Property::torque_limit ? 0.9 : 0.01;
+      const bool timing = is_of_timing(info.property), limit = info.property == Property::torque_limit;
+      physics[0][info.property] = physics[1][info.property] = timing ? 0.0005 : limit ? 0.9 : 0.01;
     }
   }
   physics[0][Property::coulomb] = 0.4;

@@ -177,7 +177,11 @@ TEST_CASE("readings that drives act on are as old in the replay as in the simula
     return replay(robot, augmented, physics, evidence.recordings[0], start);
   };
   const Eigen::MatrixXd ours = simulated(), theirs = replayed();
-  for (JointPhysics& joint : physics) joint[Property::reading_age] = 0.002;
+  for (JointPhysics& joint : physics) {
+    joint[Property::reading_age] = 0.001;
+    joint[Property::speed_age] = 0.001;
+    joint[Property::goal_clock] = -0.0007;
+  }
   const Eigen::MatrixXd by_age = simulated() - ours;
   CHECK((replayed() - theirs - by_age).norm() < 0.05 * by_age.norm());
 }

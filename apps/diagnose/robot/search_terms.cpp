@@ -58,13 +58,15 @@ Point start(const Evidence& evidence) {
 
 using Worth = std::function<double(Eigen::Index)>;
 
-// Takes the term away that is worth least, if that is less than it must be, and says why.
+// Takes the term away that is worth least, if that is less than it must be, and says why. What is never named need not
+// be worth a name.
 bool drop_one(const Evidence& evidence, const Worth& worth_of_term, const LinearModel& model, const std::string& why,
               Point& point, std::vector<std::string>& dropped) {
   Eigen::Index worst = -1;
   double least = 1;
   for (Eigen::Index t = 0; t < point.theta.size(); ++t) {
-    if (point.set[static_cast<std::size_t>(t)] == 0) continue;
+    const bool timing = is_of_timing(evidence.terms[static_cast<std::size_t>(t)].property);
+    if (point.set[static_cast<std::size_t>(t)] == 0 || timing) continue;
     const double worth = worth_of_term(t);
     if (worth >= least) continue;
     least = worth;
@@ -72,8 +74,7 @@ bool drop_one(const Evidence& evidence, const Worth& worth_of_term, const Linear
   }
   if (worst < 0) return false;
   const Term& term = evidence.terms[static_cast<std::size_t>(worst)];
-  if (!is_of_timing(term.property))
-    dropped.push_back(std::string(info_of(term.property).effect) + " at " + place_of(evidence.robot, term) +
+  dropped.push_back(std::string(info_of(term.property).effect) + " at " + place_of(evidence.robot, term) +
                     " was dropped: it takes " +
                     diagnose_program::percent(held_out_gain(model, point.set, worst).share) +
                     " off the error of its joints on held-out blocks, " + why);

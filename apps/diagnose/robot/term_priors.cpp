@@ -94,8 +94,9 @@ void set_priors(const Evidence& evidence, LinearModel& model) {
     for (const int j : model.acts_on.back()) independent += model.independent[j];
     for (const Term& other : evidence.terms)
       alike += (other.group == single_joint) == (term.group == single_joint) ? 1 : 0;
-    // Schwarz's log n for the parameter, and the choice among so many terms (extended BIC of Chen and Chen, 2008).
-    model.cost[t] = std::log(independent) + 2 * std::log(alike);
+    // Schwarz's log n for the parameter, and the choice among so many terms (extended BIC of Chen and Chen, 2008),
+    // which is none where every drive has it.
+    model.cost[t] = std::log(independent) + (is_of_timing(term.property) ? 0 : 2 * std::log(alike));
     double numerical = 0;
     for (const int j : model.acts_on.back()) {
       if (evidence.numerical.size() > 0)
