@@ -203,6 +203,24 @@ TEST_CASE("friction by load under strong damping is simulated as shorter steps s
   CHECK((usual - fine).norm() < 0.0006);
 }
 
+TEST_CASE("a drive that damps its joint within a step is simulated as shorter steps say") {
+  const ScratchFolder folder;
+  auto arm = robot_test::small_arm();
+  arm.joints[1].kp *= 60;
+  arm.joints[1].kd *= 60;
+  robot_test::write_files(folder, arm, 2, 1);
+  Robot robot = robot_test::load(folder);
+  Evidence evidence(robot);
+  robot_test::add_recording(evidence, folder.file("rec_1.csv"));
+  const StartState start = start_of(evidence.motions[0]);
+  const auto simulated = [&] { return simulate_robot(robot, evidence.recordings[0], start, robot.nominal); };
+  const Eigen::MatrixXd usual = simulated();
+  robot.setup.step = 0.0001;
+  const Eigen::MatrixXd difference = usual - simulated();
+  constexpr double encoder = 1.5e-5;  // [rad], a part of a step of 14 bits
+  CHECK(difference.norm() / std::sqrt(static_cast<double>(difference.size())) < encoder);
+}
+
 TEST_CASE("torques lag by as much as they should at any step, and lags below a step count") {
   const ScratchFolder folder;
   robot_test::write_files(folder, robot_test::small_arm(), 2, 1);

@@ -11,10 +11,13 @@
 namespace diagnose_robot {
 namespace {
 
-constexpr double stiff = 1;              // damping over a step, beyond which it is taken fully implicit, lest it rings
 constexpr double runaway = 1e3;          // [rad]
 constexpr double shortest = 1e-12;       // [s]: rounding
 constexpr double smallest_share = 1e-6;  // of a step, that a substep takes
+
+// Share of damping that acts on the speed at the end of a step, the rest on that at its beginning: half of it, which is
+// of second order, or as much more as it takes lest speeds ring, where `damped` = step * damping / mass is beyond 2.
+double implicit_share(double damped) { return damped > 2 ? 1 - 1 / damped : 0.5; }
 
 }  // namespace
 
@@ -213,7 +216,7 @@ void RobotStep::advance(Eigen::Index row, double t, double h) {
     const double inertia = p[Property::armature] + torque.inertia;
     mass(i, i) += inertia;
     dissipation[i] = p[Property::viscous] + torque.damping;
-    implicit[i] = h * dissipation[i] < stiff * mass(i, i) ? 0.5 : 1;
+    implicit[i] = implicit_share(h * dissipation[i] / mass(i, i));
     momentum[i] += inertia * v[i] + h * (force - (1 - implicit[i]) * dissipation[i] * v[i]);
     mass(i, i) += h * implicit[i] * dissipation[i];
     friction[i] = h * (p[Property::coulomb] + p[Property::breakaway] * stribeck_share(middle[i]) +
@@ -224,10 +227,10 @@ void RobotStep::advance(Eigen::Index row, double t, double h) {
   bool by_load = false;
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     const DriveTorque& torque = drives[static_cast<std::size_t>(i)];
-    const double share = joint(i)[Property::load_friction], mean = (v[i] + next_[i]) / 2;
+    const double share = joint(i)[Property::load_friction], damped = implicit[i] * next_[i] + (1 - implicit[i]) * v[i];
     friction[i] +=
         h * share *
-        (std::abs(torque.constant - torque.damping * mean) - std::abs(torque.constant - torque.damping * middle[i]));
+        (std::abs(torque.constant - torque.damping * damped) - std::abs(torque.constant - torque.damping * middle[i]));
     by_load = by_load || share > 0;
   }
   if (by_load) solve_friction();
