@@ -73,10 +73,10 @@ std::vector<Start> starts_at(const Evidence& evidence, const LinearModel& model,
 
 }  // namespace
 
-int OtherStarts::worst_joint(const Evidence& evidence, const Point& point) const {
+// Joints beyond their noise that were not tried yet, of the tree of the worst one, the worst first.
+std::vector<int> OtherStarts::worst_joints(const Evidence& evidence, const Point& point) const {
   const Eigen::VectorXd rms = rms_by_joint(evidence, point.errors);
-  int worst = -1;
-  double most = 1;
+  std::vector<std::pair<double, int>> beyond;
   for (Eigen::Index j = 0; j < rms.size(); ++j) {
     double noise = 0;
     for (const RobotRecording& recording : evidence.recordings)
@@ -84,30 +84,46 @@ int OtherStarts::worst_joint(const Evidence& evidence, const Point& point) const
     const double numerical = evidence.numerical.size() > 0 ? evidence.numerical[j] : 0;
     const double needed = std::hypot(criteria_.beyond_noise * noise, times_numerical * numerical);
     const double ratio = rms[j] / std::max(1e-12, needed);
-    if (ratio <= most || std::ranges::find(tried_, static_cast<int>(j)) != tried_.end()) continue;
-    most = ratio;
-    worst = static_cast<int>(j);
+    const bool tried = std::ranges::find(tried_, static_cast<int>(j)) != tried_.end();
+    if (ratio > 1 && !tried) beyond.emplace_back(ratio, static_cast<int>(j));
   }
-  return worst;
+  std::ranges::stable_sort(beyond, std::ranges::greater{}, &std::pair<double, int>::first);
+  std::vector<int> joints;
+  const auto tree = [&](int joint) { return evidence.robot.joints[static_cast<std::size_t>(joint)].tree; };
+  for (const auto& [ratio, joint] : beyond) {
+    if (static_cast<int>(joints.size()) < criteria_.joints && (joints.empty() || tree(joint) == tree(joints.front())))
+      joints.push_back(joint);
+  }
+  return joints;
 }
 
 bool OtherStarts::try_next(const Evidence& evidence, const LinearModel& model, Point& point) {
   if (evidence.robot.setup.drive == DriveKind::torque) return false;
-  const double now = misfit(evidence, model, point) + cost_of(model, point.set);
-  while (static_cast<int>(tried_.size()) < criteria_.most_joints && !evidence.stop.stop_requested()) {
-    const int joint = worst_joint(evidence, point);
-    if (joint < 0) return false;
-    tried_.push_back(joint);
-    std::vector<Start> starts = starts_at(evidence, model, without_joint(evidence, point, joint), joint);
-    std::vector<std::size_t> seen;  // terms that were fitted
-    for (Start& start : starts) {
-      if (static_cast<int>(seen.size()) == criteria_.finalists || evidence.stop.stop_requested()) break;
-      if (std::ranges::find(seen, start.term) != seen.end()) continue;
-      seen.push_back(start.term);
-      settle(evidence, model, criteria_.fits, start.point);
-      if (misfit(evidence, model, start.point) + cost_of(model, start.point.set) > now - ChoiceCriteria().needed)
-        continue;
-      point = start.point;
+  const auto cost = [&](const Point& at) { return misfit(evidence, model, at) + cost_of(model, at.set); };
+  double least = cost(point) - ChoiceCriteria().needed;
+  while (tries_ < criteria_.most_tries) {
+    const std::vector<int> joints = worst_joints(evidence, point);
+    if (joints.empty()) return false;
+    ++tries_;
+    bool found = false;
+    Point best;
+    for (const int joint : joints) {
+      tried_.push_back(joint);
+      std::vector<std::size_t> seen;  // terms that were fitted
+      for (Start& start : starts_at(evidence, model, without_joint(evidence, point, joint), joint)) {
+        if (static_cast<int>(seen.size()) == criteria_.finalists || evidence.stop.stop_requested()) break;
+        if (std::ranges::find(seen, start.term) != seen.end()) continue;
+        seen.push_back(start.term);
+        settle(evidence, model, criteria_.fits, start.point);
+        const double here = cost(start.point);
+        if (!(here < least)) continue;
+        least = here;
+        best = start.point;
+        found = true;
+      }
+    }
+    if (found) {
+      point = std::move(best);
       return true;
     }
   }
