@@ -28,19 +28,20 @@ Point without_joint(const Evidence& evidence, const Point& point, int joint) {
 struct Start {
   Point point;
   std::size_t term = 0;
+  bool read = false;  // its size was read off the motion, which says more than the error before anything is fitted
   double misfit = 0;
 };
 
-// Sizes at which a term may show that is not there yet.
-std::vector<double> sizes_of(const Evidence& evidence, const RobotPhysics& bare, const Term& term) {
-  std::vector<double> result;
+// Sizes at which a term may show that is not there yet: those that were read off the motion, and some others.
+std::vector<std::pair<double, bool>> sizes_of(const Evidence& evidence, const RobotPhysics& bare, const Term& term) {
+  std::vector<std::pair<double, bool>> result;
   const int joint = term.joints.front();
   const double stated = evidence.robot.joints[static_cast<std::size_t>(joint)].setup.limit;
   if (term.property == Property::torque_limit) {
-    for (const double limit : limits_along_motion(evidence, bare, joint)) result.push_back(1 - limit / stated);
+    for (const double limit : limits_along_motion(evidence, bare, joint)) result.emplace_back(1 - limit / stated, true);
   }
   for (const double size : sizes) {
-    for (const double side : {1.0, -1.0}) result.push_back(side * size * term.typical);
+    for (const double side : {1.0, -1.0}) result.emplace_back(side * size * term.typical, false);
   }
   return result;
 }
@@ -51,10 +52,10 @@ std::vector<Start> starts_at(const Evidence& evidence, const LinearModel& model,
   for (std::size_t t = 0; t < evidence.terms.size(); ++t) {
     const Term& term = evidence.terms[t];
     if (!is_of_joint(term, joint) || is_of_body(term.property)) continue;
-    for (const double value : sizes_of(evidence, physics, term)) {
+    for (const auto& [value, read] : sizes_of(evidence, physics, term)) {
       const auto at = static_cast<Eigen::Index>(t);
       if (value < model.low[at] || value > model.high[at]) continue;
-      Start start{bare, t, 0};
+      Start start{bare, t, read, 0};
       start.point.set[t] = 1;
       start.point.theta[at] = value;
       starts.push_back(std::move(start));
@@ -109,11 +110,14 @@ bool OtherStarts::try_next(const Evidence& evidence, const LinearModel& model, P
     Point best;
     for (const int joint : joints) {
       tried_.push_back(joint);
-      std::vector<std::size_t> seen;  // terms that were fitted
+      std::vector<std::pair<std::size_t, bool>> seen;  // terms that were fitted
+      int others = 0;                                  // of sizes that were not read
       for (Start& start : starts_at(evidence, model, without_joint(evidence, point, joint), joint)) {
-        if (static_cast<int>(seen.size()) == criteria_.finalists || evidence.stop.stop_requested()) break;
-        if (std::ranges::find(seen, start.term) != seen.end()) continue;
-        seen.push_back(start.term);
+        if (evidence.stop.stop_requested()) break;
+        const std::pair<std::size_t, bool> one(start.term, start.read);
+        if (std::ranges::find(seen, one) != seen.end() || (!start.read && others == criteria_.finalists)) continue;
+        seen.push_back(one);
+        others += start.read ? 0 : 1;
         settle(evidence, model, criteria_.fits, start.point);
         const double here = cost(start.point);
         if (!(here < least)) continue;

@@ -12,7 +12,7 @@ struct StartCriteria {
   int most_tries = 2;         // the worst joint first
   int joints = 2;             // of one tree that are tried together, the worst: joints that move each other share errors,
                               // and the cause may be at either
-  int finalists = 3;          // of the starts of a joint, that are fitted
+  int finalists = 3;          // of the starts of a joint, that are fitted, beside a size that the motion shows
   int fits = 5;               // moves of each of these
 };
 
