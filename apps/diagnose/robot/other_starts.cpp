@@ -46,6 +46,12 @@ std::vector<std::pair<double, bool>> sizes_of(const Evidence& evidence, const Ro
   return result;
 }
 
+// A size at its bound explains nothing: errors would fall further beyond what is possible.
+bool is_at_bound(const LinearModel& model, const Start& start) {
+  const auto t = static_cast<Eigen::Index>(start.term);
+  return start.point.theta[t] <= model.low[t] || start.point.theta[t] >= model.high[t];
+}
+
 std::vector<Start> starts_at(const Evidence& evidence, const LinearModel& model, const Point& bare, int joint) {
   const RobotPhysics physics = physics_of(evidence.terms, bare.theta, evidence.robot.nominal);
   std::vector<Start> starts;
@@ -120,7 +126,7 @@ bool OtherStarts::try_next(const Evidence& evidence, const LinearModel& model, P
         others += start.read ? 0 : 1;
         settle(evidence, model, criteria_.fits, start.point);
         const double here = cost(start.point);
-        if (!(here < least)) continue;
+        if (!(here < least) || is_at_bound(model, start)) continue;
         least = here;
         best = start.point;
         found = true;
