@@ -198,6 +198,7 @@ void compare_with_groups(const Evidence& evidence, const SearchResult& found, Ro
 void share_errors(const Evidence& evidence, const SearchResult& found, RobotDiagnosis& d) {
   for (std::size_t t = 0; t < found.set.size(); ++t) {
     const std::string name = info_of(evidence.terms[t].property).effect;
+    if (is_of_timing(evidence.terms[t].property)) continue;
     if (found.set[t] != 0 && std::ranges::find(d.effect_columns, name) == d.effect_columns.end())
       d.effect_columns.push_back(name);
   }
