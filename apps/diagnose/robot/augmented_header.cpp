@@ -8,9 +8,10 @@ namespace {
 
 std::string row(const Robot& robot, std::size_t j, const JointPhysics& p) {
   std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(), "%.9g, %.9g, %.9g, %.9g, %.9g, %.9g, %.9g, %.9g, %.9g}},\n", p[Property::coulomb],
-                p[Property::breakaway], p[Property::load_friction], p[Property::drag], p[Property::delay],
-                p[Property::lag], p[Property::backlash], p[Property::reading_age], p[Property::reading_age] + p[Property::speed_age]);
+  std::snprintf(text.data(), text.size(), "%.9g, %.9g, %.9g, %.9g, %.9g, %.9g, %.9g, %.9g, %.9g}},\n",
+                p[Property::coulomb], p[Property::breakaway], p[Property::load_friction], p[Property::drag],
+                p[Property::delay], p[Property::lag], p[Property::backlash], p[Property::reading_age],
+                p[Property::reading_age] + p[Property::speed_age]);
   return "    {{\"" + robot.joints[j].setup.name + "\", " + text.data();
 }
 

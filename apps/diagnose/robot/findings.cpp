@@ -29,11 +29,9 @@ std::string sentence_of(const Evidence& evidence, const Term& term, double value
 std::string timing_sentence(Property property, double seconds) {
   const std::string size = rounded(1000 * std::abs(seconds)) + " ms";
   const std::string what = property == Property::reading_age ? "the drives act on readings that are " + size + " old"
-                           : property == Property::speed_age ? "the drives act on speeds that are " + size +
-                                                                   " older than their angles"
-                                                             : "goals act " + size +
-                                                                   (seconds < 0 ? " earlier" : " later") +
-                                                                   " than they are logged";
+                           : property == Property::speed_age
+                               ? "the drives act on speeds that are " + size + " older than their angles"
+                               : "goals act " + size + (seconds < 0 ? " earlier" : " later") + " than they are logged";
   return what + ", a part of a row or of the drives' period: no missing physics";
 }
 

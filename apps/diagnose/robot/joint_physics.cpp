@@ -23,8 +23,8 @@ const std::array<PropertyInfo, property_count>& property_table() {
       {reading_scale, "sensor_scale", "scale_error", "1", "recorded torque on another scale, or of the other sign", -20,
        100, false, true, true},
       // Half of a period of its loop, over which torque is held, and the time it takes to read and compute.
-      {reading_age, "drive_sampling", "age", "s", "readings that are old when the drive acts on them", 0, 4, true, false,
-       false},
+      {reading_age, "drive_sampling", "age", "s", "readings that are old when the drive acts on them", 0, 4, true,
+       false, false},
       // Differences of angles are half a period old.
       {speed_age, "drive_sampling", "speed_age", "s", "speeds that are older than angles", 0, 4, true, false, false},
       {goal_clock, "drive_sampling", "goal_clock", "s", "goals that act later than they are logged", -1, 1, true, false,

@@ -8,8 +8,8 @@
 
 namespace diagnose_robot {
 
-/// Torque of a drive: constant - damping * speed - inertia * acceleration. Readings that are old by a short time tau are
-/// those of now less tau times their rate: damping kd - kp tau, inertia -kd tau.
+/// Torque of a drive: constant - damping * speed - inertia * acceleration. Readings that are old by a short time tau
+/// are those of now less tau times their rate: damping kd - kp tau, inertia -kd tau.
 struct DriveTorque {
   double goal = 0, constant = 0, damping = 0, inertia = 0;
   double told = 0;         // before limit and lag, at the speed of mid-step

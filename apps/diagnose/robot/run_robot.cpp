@@ -107,9 +107,10 @@ void allow_for_scales(Robot& robot, Evidence& evidence, std::vector<std::string>
   for (const int j : joints_of_other_scale(evidence))
     list += (list.empty() ? "" : ", ") + robot.joints[static_cast<std::size_t>(j)].setup.torque.name;
   if (list.empty()) return;
-  remarks.push_back(list +
-                    ": no torque of its joint in N m (or N), but on another scale, as a current of its motor, or of the "
-                    "other sign; scales of all torques are calibrated, as calibrate = [\"gains\"] asks for");
+  remarks.push_back(
+      list +
+      ": no torque of its joint in N m (or N), but on another scale, as a current of its motor, or of the "
+      "other sign; scales of all torques are calibrated, as calibrate = [\"gains\"] asks for");
   robot.setup.calibrate_gains = true;
   prepare(evidence);
 }

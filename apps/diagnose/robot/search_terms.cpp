@@ -93,10 +93,11 @@ void leave_out_small(const Evidence& evidence, RigidCache& cache, Point& point, 
     const Eigen::VectorXd error = standard_errors(model, point.set);
     const Worth worth = [&](Eigen::Index t) {
       const double size = std::abs(point.theta[t]);
-      return std::min({worth_beside_unexplained(model, point.set, t, noise),
-                       size / (z95 * std::max(1e-300, error[t])), size / model.smallest[t]});
+      return std::min({worth_beside_unexplained(model, point.set, t, noise), size / (z95 * std::max(1e-300, error[t])),
+                       size / model.smallest[t]});
     };
-    if (!drop_one(evidence, worth, model, "which is small beside what nothing explains, its interval contains 0, or nobody would correct a "
+    if (!drop_one(evidence, worth, model,
+                  "which is small beside what nothing explains, its interval contains 0, or nobody would correct a "
                   "model by so little",
                   point, dropped))
       return;
