@@ -72,6 +72,16 @@ Term make_term(const std::vector<int>& joints, int group, const PropertyInfo& in
 
 }  // namespace
 
+Term term_of_joint(const PropertyInfo& info, std::size_t joint, const JointScale& scale) {
+  Term term;
+  term.property = info.property;
+  term.joints = {static_cast<int>(joint)};
+  term.typical = typical_size(info.property, scale);
+  term.low = info.low * term.typical;
+  term.high = info.high * term.typical;
+  return term;
+}
+
 std::vector<Term> all_terms(const Robot& robot, const std::vector<JointScale>& scales) {
   std::vector<Term> terms;
   for (const PropertyInfo& info : property_table()) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct Term {
 
 /// Groups first, then what all joints may have alike, then single joints.
 std::vector<Term> all_terms(const Robot& robot, const std::vector<JointScale>& scales);
+
+/// A property of one joint, all of it: within the bounds of the property, whatever its group has.
+Term term_of_joint(const PropertyInfo& info, std::size_t joint, const JointScale& scale);
 
 /// A property of a joint, by which errors are derived.
 struct PhysicsEntry {

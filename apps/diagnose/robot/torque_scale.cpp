@@ -10,13 +10,7 @@ Evidence with_scales(const Evidence& evidence) {
   Evidence wide = evidence;
   const PropertyInfo& info = info_of(Property::reading_scale);
   for (std::size_t j = 0; j < evidence.robot.joints.size(); ++j) {
-    Term term;
-    term.property = info.property;
-    term.joints = {static_cast<int>(j)};
-    term.typical = typical_size(info.property, evidence.scales[j]);
-    term.low = info.low * term.typical;
-    term.high = info.high * term.typical;
-    wide.terms.push_back(term);
+    wide.terms.push_back(term_of_joint(info, j, evidence.scales[j]));
   }
   wide.entries = entries_of(wide.terms);
   return wide;

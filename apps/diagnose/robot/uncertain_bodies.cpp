@@ -20,13 +20,7 @@ Evidence with_bodies(const Evidence& evidence) {
   for (const PropertyInfo& info : property_table()) {
     if (!is_of_body(info.property) || info.property == Property::payload) continue;
     for (std::size_t j = 0; j < evidence.robot.joints.size(); ++j) {
-      Term term;
-      term.property = info.property;
-      term.joints = {static_cast<int>(j)};
-      term.typical = typical_size(info.property, evidence.scales[j]);
-      term.low = info.low * term.typical;
-      term.high = info.high * term.typical;
-      wide.terms.push_back(term);
+      wide.terms.push_back(term_of_joint(info, j, evidence.scales[j]));
     }
   }
   wide.entries = entries_of(wide.terms);
