@@ -100,9 +100,10 @@ SUREFOOT_ONCE Selection ranked(const Search& search, const std::vector<Evaluated
     selection.nominal = pool[i];
     without = share[i];
   }
-  // that something is missing, residuals may show anyway: the verdict then says that what is named is a part of it
+  // What residuals show to be missing anyway is named as far as it stands out: the verdict says that this is a part.
   const bool refuted = search.problem.structured(selection.nominal.hypothesis, search.problem.fit);
-  const bool something = 1 - without > (refuted ? criteria.tie_odds : criteria.named_odds) * without;
+  const bool something =
+      1 - without > criteria.named_odds * without || (refuted && share[order.front()] > criteria.tie_odds * without);
   const bool named = something && search.effects(pool[order.front()]) > 0;
   const std::size_t first = without_improbable(search, pool, share, closest_of_tie(search, pool, share, order.front()));
   selection.chosen = named ? pool[first] : selection.nominal;
