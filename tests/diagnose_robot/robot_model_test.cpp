@@ -30,6 +30,34 @@ bool contains(const std::string& text, const std::string& words) {
   return text.find(words) != std::string::npos && text.find('\n') == std::string::npos;
 }
 
+Robot small_robot(const ScratchFolder& folder) {
+  robot_test::write_files(folder, robot_test::small_arm(), 2, 1);
+  return robot_test::load(folder);
+}
+
+// The small arm and one recording, which our simulation and MuJoCo, with the corrected model, both follow.
+struct FollowingArm {
+  ScratchFolder folder;
+  Robot robot;
+  Evidence evidence;
+  StartState start;
+
+  FollowingArm() : robot(small_robot(folder)), evidence(robot) {
+    robot_test::add_recording(evidence, folder.file("rec_1.csv"));
+    start = start_of(evidence.motions[0]);
+  }
+  const RobotRecording& recording() const { return evidence.recordings[0]; }
+  Eigen::MatrixXd simulated(const RobotPhysics& physics) const {
+    return simulate_robot(robot, recording(), start, physics);
+  }
+  AugmentedModel augmented(const RobotPhysics& physics) const {
+    return augmented_model(robot, physics, simulation_step(robot, recording()) / steps_of_ours, folder.path());
+  }
+  Eigen::MatrixXd replayed(const RobotPhysics& physics) const {
+    return replay(robot, augmented(physics), physics, recording(), start);
+  }
+};
+
 }  // namespace
 
 TEST_CASE("a model that MuJoCo cannot load is refused in one sentence") {
@@ -117,11 +145,7 @@ TEST_CASE("a floating base, joints without columns, degrees and contacts are sai
 }
 
 TEST_CASE("the corrected model loads in MuJoCo and moves as the simulation that it came from") {
-  const ScratchFolder folder;
-  robot_test::write_files(folder, robot_test::small_arm(), 2, 1);
-  const Robot robot = robot_test::load(folder);
-  Evidence evidence(robot);
-  robot_test::add_recording(evidence, folder.file("rec_1.csv"));
+  const FollowingArm arm;
   RobotPhysics physics(2);
   physics[0][Property::coulomb] = 0.5;
   physics[0][Property::armature] = 0.05;
@@ -132,58 +156,33 @@ TEST_CASE("the corrected model loads in MuJoCo and moves as the simulation that 
   physics[1][Property::payload] = 0.4;
   physics[1][Property::backlash] = 0.01;
   physics[1][Property::constant_torque] = 0.2;
-  const StartState start = start_of(evidence.motions[0]);
-  const Eigen::MatrixXd ours = simulate_robot(robot, evidence.recordings[0], start, physics);
-  const AugmentedModel augmented =
-      augmented_model(robot, physics, simulation_step(robot, evidence.recordings[0]) / steps_of_ours, folder.path());
-  const Eigen::MatrixXd theirs = replay(robot, augmented, physics, evidence.recordings[0], start);
-  const double error = (evidence.recordings[0].angle - ours).norm();
+  const Eigen::MatrixXd ours = arm.simulated(physics), theirs = arm.replayed(physics);
+  const double error = (arm.recording().angle - ours).norm();
   CHECK((ours - theirs).norm() < 0.05 * error);
-  CHECK((evidence.recordings[0].angle - theirs).norm() == doctest::Approx(error).epsilon(0.02));
-  CHECK(augmented.xml.find("frictionloss=\"0.5\"") != std::string::npos);
+  CHECK((arm.recording().angle - theirs).norm() == doctest::Approx(error).epsilon(0.02));
+  CHECK(arm.augmented(physics).xml.find("frictionloss=\"0.5\"") != std::string::npos);
 }
 
 TEST_CASE("goals that arrive late are replayed as nearly as goals that do not") {
-  const ScratchFolder folder;
-  robot_test::write_files(folder, robot_test::small_arm(), 2, 1);
-  const Robot robot = robot_test::load(folder);
-  Evidence evidence(robot);
-  robot_test::add_recording(evidence, folder.file("rec_1.csv"));
-  const StartState start = start_of(evidence.motions[0]);
-  RobotPhysics physics = robot.nominal;
-  const auto distance = [&] {
-    const Eigen::MatrixXd ours = simulate_robot(robot, evidence.recordings[0], start, physics);
-    const AugmentedModel augmented =
-        augmented_model(robot, physics, simulation_step(robot, evidence.recordings[0]) / steps_of_ours, folder.path());
-    return (ours - replay(robot, augmented, physics, evidence.recordings[0], start)).norm();
-  };
+  const FollowingArm arm;
+  RobotPhysics physics = arm.robot.nominal;
+  const auto distance = [&] { return (arm.simulated(physics) - arm.replayed(physics)).norm(); };
   const double in_time = distance();
   for (JointPhysics& joint : physics) joint[Property::delay] = 0.0123;
   CHECK(distance() < 5 * in_time);
 }
 
 TEST_CASE("readings that drives act on are as old in the replay as in the simulation") {
-  const ScratchFolder folder;
-  robot_test::write_files(folder, robot_test::small_arm(), 2, 1);
-  const Robot robot = robot_test::load(folder);
-  Evidence evidence(robot);
-  robot_test::add_recording(evidence, folder.file("rec_1.csv"));
-  const StartState start = start_of(evidence.motions[0]);
-  RobotPhysics physics = robot.nominal;
-  const auto simulated = [&] { return simulate_robot(robot, evidence.recordings[0], start, physics); };
-  const auto replayed = [&] {
-    const AugmentedModel augmented =
-        augmented_model(robot, physics, simulation_step(robot, evidence.recordings[0]) / steps_of_ours, folder.path());
-    return replay(robot, augmented, physics, evidence.recordings[0], start);
-  };
-  const Eigen::MatrixXd ours = simulated(), theirs = replayed();
+  const FollowingArm arm;
+  RobotPhysics physics = arm.robot.nominal;
+  const Eigen::MatrixXd ours = arm.simulated(physics), theirs = arm.replayed(physics);
   for (JointPhysics& joint : physics) {
     joint[Property::reading_age] = 0.001;
     joint[Property::speed_age] = 0.001;
     joint[Property::goal_clock] = -0.0007;
   }
-  const Eigen::MatrixXd by_age = simulated() - ours;
-  CHECK((replayed() - theirs - by_age).norm() < 0.05 * by_age.norm());
+  const Eigen::MatrixXd by_age = arm.simulated(physics) - ours;
+  CHECK((arm.replayed(physics) - theirs - by_age).norm() < 0.05 * by_age.norm());
 }
 
 TEST_CASE("friction by load under strong damping is simulated as shorter steps say") {

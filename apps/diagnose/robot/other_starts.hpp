@@ -10,9 +10,9 @@ struct StartCriteria {
   double beyond_noise = 1.5;  // times the noise: joints with larger errors are tried, as for the verdict, unless they
                               // are by less than a term must take away
   int most_tries = 2;         // the worst joint first
-  int joints = 2;     // of one tree that are tried together, the worst: joints that move each other share errors,
-                      // and the cause may be at either
-  int finalists = 3;  // of the starts of a joint, that are fitted, beside a size that the motion shows
+  int joints = 2;             // of one tree that are tried together, the worst: joints that move each other share
+                              // errors, and the cause may be at either
+  int finalists = 3;          // of the starts of a joint, that are fitted, beside a size that the motion shows
   int fits = 5;               // moves of each of these
 };
 

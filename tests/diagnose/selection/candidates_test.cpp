@@ -116,7 +116,7 @@ TEST_CASE("an asymmetry is tried only on what is above zero at times and below i
   const BoundSimulator bound = bind_simulator(toys::LeakyTank{}, {one_way, back});
   const Hypothesis base = nominal_hypothesis(bound);
   const auto signs_in = [&](const std::vector<std::size_t>& recordings) {
-    return input_ranges(bound, base, recordings, simulate_all(bound, base, recordings, {}, serially())).both_signs;
+    return input_values(bound, base, recordings, simulate_all(bound, base, recordings, {}, serially())).both_signs;
   };
   CHECK(signs_in({0}) == std::vector<bool>{false, false});  // the valve, and the inflow that it makes
   CHECK(signs_in({1}) == std::vector<bool>{false, false});
@@ -131,7 +131,7 @@ TEST_CASE("a zone in which nothing happens is looked for only where some values 
     one.inputs(0, 50) = value;
     const BoundSimulator bound = bind_simulator(toys::LeakyTank{}, {one});
     const Hypothesis base = nominal_hypothesis(bound);
-    return input_ranges(bound, base, {0}, simulate_all(bound, base, {0}, {}, serially())).small_values[0];
+    return input_values(bound, base, {0}, simulate_all(bound, base, {0}, {}, serially())).small_values[0];
   };
   CHECK(small_with(-0.5));
   CHECK_FALSE(small_with(1.5));

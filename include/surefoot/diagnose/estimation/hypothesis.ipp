@@ -190,8 +190,8 @@ SUREFOOT_INLINE std::vector<Variable> variables_of(const BoundSimulator& bound, 
       const double scale = measure_size(bound, attached, *attached.effect->start_measure);
       double low = -initial_range * scale, high = initial_range * scale;
       const auto at = static_cast<std::size_t>(attached.at);
-      if (attached.effect->place == Place::input && at < bound.sizes.input_low.size()) {  // what follows an input
-        const double first = recording.inputs(attached.at, 0);                            // stays within its range
+      if (attached.effect->place == Place::input && at < bound.sizes.input_low.size()) {
+        const double first = recording.inputs(attached.at, 0);  // what follows an input stays within its range
         low = bound.sizes.input_low[at] - first;
         high = bound.sizes.input_high[at] - first;
         if (!(high > low)) continue;

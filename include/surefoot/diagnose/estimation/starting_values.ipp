@@ -24,7 +24,8 @@ SUREFOOT_ONCE double peak_at(const BoundSimulator& bound, const AttachedEffect& 
   } else if (attached.effect->place == Place::state) {
     peak = bound.sizes.state_peak[at];
   } else if (attached.effect->place == Place::input) {
-    peak = at < inputs ? bound.sizes.input_peak[at] : bound.sizes.signal_peak[at - inputs];
+    peak = at < inputs ? std::max(-bound.sizes.input_low[at], bound.sizes.input_high[at])
+                       : bound.sizes.signal_peak[at - inputs];
   }
   return peak > 0 ? peak : 1;
 }

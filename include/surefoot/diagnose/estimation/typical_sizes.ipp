@@ -116,8 +116,8 @@ SUREFOOT_ONCE Sizes measure_sizes(const BoundSimulator& bound, const Hypothesis&
   const auto n = bound.info.states.size(), m = bound.info.inputs.size(), s = bound.info.signals.size();
   std::vector<double> state(n), position(n), rate(n), effort(n), input(m), signal(s);
   sizes.state_peak.assign(n, 0.0);
-  sizes.input_peak.assign(m, 0.0);
-  sizes.input_low = sizes.input_high = sizes.input_peak;
+  sizes.input_low.assign(m, 0.0);
+  sizes.input_high.assign(m, 0.0);
   sizes.signal_peak.assign(s, 0.0);
   double rows = 0, intervals = 0, duration = 0;
   for (const std::size_t r : recordings) {
@@ -141,7 +141,6 @@ SUREFOOT_ONCE Sizes measure_sizes(const BoundSimulator& bound, const Hypothesis&
     add_squares(input, recording.inputs, weight, false);
     add_squares(signal, signals, weight, false);
     raise_peaks(sizes.state_peak, states);
-    raise_peaks(sizes.input_peak, recording.inputs);
     widen(sizes.input_low, sizes.input_high, recording.inputs);
     raise_peaks(sizes.signal_peak, signals);
   }

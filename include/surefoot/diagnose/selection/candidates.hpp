@@ -21,13 +21,13 @@ std::vector<bool> distinct_inputs(const BoundSimulator& bound, const Hypothesis&
                                   const std::vector<SimulatedRun>& trajectories,
                                   double collinear = SelectionCriteria{}.collinear);
 
-/// What inputs and signals (after the inputs) take.
-struct InputRanges {
+/// By input and signal (after the inputs): which values it takes in any of the recordings.
+struct InputValues {
   std::vector<bool> both_signs;    // values above 0 at times, and below 0 at others
   std::vector<bool> small_values;  // other than 0, and less than half of the largest
 };
 
-InputRanges input_ranges(const BoundSimulator& bound, const Hypothesis& hypothesis,
+InputValues input_values(const BoundSimulator& bound, const Hypothesis& hypothesis,
                          const std::vector<std::size_t>& recordings, const std::vector<SimulatedRun>& trajectories);
 
 /// Inputs that are 0 in the first row of every recording, and signals (after the inputs) if all inputs are: it is the

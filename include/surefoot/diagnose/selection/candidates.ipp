@@ -81,7 +81,7 @@ void visit_values(const BoundSimulator& bound, const Hypothesis& hypothesis, con
   }
 }
 
-SUREFOOT_ONCE InputRanges input_ranges(const BoundSimulator& bound, const Hypothesis& hypothesis,
+SUREFOOT_ONCE InputValues input_values(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                        const std::vector<std::size_t>& recordings,
                                        const std::vector<SimulatedRun>& trajectories) {
   constexpr double small = 0.5;  // of the largest
@@ -93,7 +93,7 @@ SUREFOOT_ONCE InputRanges input_ranges(const BoundSimulator& bound, const Hypoth
     highest[k] = std::max(highest[k], value);
     if (value != 0) least[k] = std::min(least[k], std::abs(value));
   });
-  InputRanges result{std::vector<bool>(count), std::vector<bool>(count)};
+  InputValues result{std::vector<bool>(count), std::vector<bool>(count)};
   for (std::size_t k = 0; k < count; ++k) {
     result.both_signs[k] = lowest[k] < 0 && highest[k] > 0;
     result.small_values[k] = least[k] < small * std::max(-lowest[k], highest[k]);

@@ -271,7 +271,7 @@ SUREFOOT_ONCE std::vector<std::size_t> groups_of(const std::vector<Trial>& trial
   return begin;
 }
 
-/// Values as multiples of others; 1 for what is zero in both.
+/// Values as multiples of others; 1 where the other is zero.
 SUREFOOT_ONCE Eigen::VectorXd ratios(const Eigen::VectorXd& values, const Eigen::VectorXd& of) {
   Eigen::VectorXd result = Eigen::VectorXd::Ones(values.size());
   for (Eigen::Index k = 0; k < values.size(); ++k) {

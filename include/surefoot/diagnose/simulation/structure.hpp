@@ -32,7 +32,7 @@ struct Sizes {
   std::vector<double> state, input, signal, output;
   std::vector<double> rate, effort;                         // by state: from row to row; of rate * effort
   std::vector<double> position;                             // by state: deviation from its mean
-  std::vector<double> state_peak, input_peak, signal_peak;  // largest absolute values
+  std::vector<double> state_peak, signal_peak;              // largest absolute values
   std::vector<double> input_low, input_high;                // smallest and largest values, or 0
   double time = 1;                                          // of 200 rows [s], or steps
 };

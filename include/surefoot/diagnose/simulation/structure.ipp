@@ -25,7 +25,7 @@ SUREFOOT_ONCE Sizes unit_sizes(const SimulatorInfo& info) {
   sizes.signal.assign(info.signals.size(), 1.0);
   sizes.output.assign(info.outputs.size(), 1.0);
   sizes.state_peak = sizes.state;
-  sizes.input_peak = sizes.input_high = sizes.input;
+  sizes.input_high = sizes.input;
   sizes.input_low.assign(info.inputs.size(), -1.0);
   sizes.signal_peak = sizes.signal;
   return sizes;

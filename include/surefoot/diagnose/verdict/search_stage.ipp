@@ -39,13 +39,13 @@ SUREFOOT_ONCE std::vector<AttachedEffect> candidate_effects(const EstimationSetu
       distinct_inputs(setup.bound, calibration.calibrated.hypothesis, setup.split.training, calibration.training_runs));
   const bool map = setup.bound.info.kind == SimulatorKind::map;  // whose first row is the first command
   const std::vector<bool> zero = zero_at_first(setup.bound, setup.split.training);
-  const InputRanges ranges =
-      input_ranges(setup.bound, calibration.calibrated.hypothesis, setup.split.training, calibration.training_runs);
+  const InputValues values =
+      input_values(setup.bound, calibration.calibrated.hypothesis, setup.split.training, calibration.training_runs);
   std::erase_if(candidates, [&](const AttachedEffect& one) {
     const auto at = static_cast<std::size_t>(one.at);
     const Effect& effect = *one.effect;
-    return (effect.from_rest && (map || zero[at])) || (effect.needs_both_signs && !ranges.both_signs[at]) ||
-           (effect.needs_small_values && !ranges.small_values[at]);
+    return (effect.from_rest && (map || zero[at])) || (effect.needs_both_signs && !values.both_signs[at]) ||
+           (effect.needs_small_values && !values.small_values[at]);
   });
   return candidates;
 }

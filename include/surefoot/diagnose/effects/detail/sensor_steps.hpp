@@ -72,8 +72,8 @@ inline std::vector<double> lattice_steps(Values readings) {
   return {};
 }
 
-/// How much each value counts so that all parts of the range in which there are some count alike: the many readings of a
-/// machine at rest say little about steps. 0 for what is not finite.
+/// How much each value counts so that all parts of the range in which there are some count alike: the many readings of
+/// a machine at rest say little about steps. All values are finite, and within `range` from `low` on.
 inline std::vector<double> weights_by_part(Values values, double low, double range) {
   constexpr std::size_t parts = 300;
   const auto part_of = [&](double value) {
