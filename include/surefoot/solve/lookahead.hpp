@@ -52,6 +52,7 @@ class Lookahead {
   struct Result {
     Action action;     // mean of the actions about as good as the best
     double value = 0;  // mean of their Q
+    double gap = 0;    // by which the best is better than the median action
   };
 
   /// `value`: see ValueFunction. `policy`: what is followed for options.follow transitions; null: nothing. Both outlive
@@ -240,7 +241,8 @@ class Lookahead {
     sorted = q_;
     std::ranges::nth_element(sorted, sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2));
     const double scale = options_.softness * (q_[best] - sorted[sorted.size() / 2]);
-    if (!(scale > 0)) return {to_action(candidates_[best]), q_[best]};
+    const double gap = q_[best] - sorted[sorted.size() / 2];
+    if (!(scale > 0)) return {to_action(candidates_[best]), q_[best], gap};
     Unit mean = Unit::Zero();
     double value = 0;
     double total = 0;
@@ -252,7 +254,7 @@ class Lookahead {
       value += weight * q_[c];
       total += weight;
     }
-    return {to_action(mean / total), value / total};
+    return {to_action(mean / total), value / total, gap};
   }
 
   const P& problem_;

@@ -85,7 +85,27 @@ struct PolicyCost {
   Estimate cost;          // as they are
   double discounted = 0;  // mean of the discounted ones, which is what the values are about
   double length = 0;      // mean length of the runs [transitions]
+  int transient = 0;      // see transient_of()
 };
+
+/// The number of transitions until runs have come to rest, or to whatever else goes on and on: those that bring most of
+/// what mean costs differ from what they are at the end. `costs`: mean over the runs, transition after transition. All
+/// of them where there is no such beginning.
+inline int transient_of(std::span<const double> costs) {
+  constexpr double most = 0.9;         // of the sum of those differences
+  constexpr std::size_t end_part = 5;  // the last fifth of a run is its end
+  const std::size_t last = std::max<std::size_t>(1, costs.size() / end_part);
+  double end = 0;
+  for (const double cost : costs.last(last)) end += cost / static_cast<double>(last);
+  double all = 0;
+  for (const double cost : costs) all += std::abs(cost - end);
+  double sum = 0;
+  for (std::size_t t = 0; t < costs.size(); ++t) {
+    sum += std::abs(costs[t] - end);
+    if (sum >= most * all && all > 0) return static_cast<int>(t) + 1;
+  }
+  return static_cast<int>(costs.size());
+}
 
 /// Over runs that are the same for every policy; in lockstep, so that a forest sees many states at once.
 template <Problem P, Executor E>
@@ -95,7 +115,10 @@ PolicyCost policy_cost(const P& problem, const typename ForestPolicy<P>::ActionF
   constexpr std::size_t runs_per_job = 64;
   const ForestPolicy<P> policy(problem, forest, options.agreement);
   const auto count = static_cast<std::size_t>(runs);
+  const std::size_t jobs = (count + runs_per_job - 1) / runs_per_job;
+  const auto horizon = static_cast<std::size_t>(options.horizon);
   std::vector<double> plain(count, 0.0), discounted(count, 0.0), length(count, 0.0);
+  std::vector<double> by_time(jobs * horizon, 0.0);  // costs of the runs of a job, transition after transition
   const auto job = [&](std::size_t chunk) {
     std::vector<std::size_t> live;
     std::vector<State> states;
@@ -112,6 +135,7 @@ PolicyCost policy_cost(const P& problem, const typename ForestPolicy<P>::ActionF
         Rng noise = Rng(seed, live[k]).stream(1).stream(static_cast<std::uint64_t>(t));
         const Step<State> step = problem.step(states[k], actions[k], noise);
         plain[live[k]] -= step.reward;
+        by_time[chunk * horizon + static_cast<std::size_t>(t)] -= step.reward;
         length[live[k]] += 1;
         discounted[live[k]] -= weight * step.reward;
         if (step.terminal) continue;
@@ -122,9 +146,12 @@ PolicyCost policy_cost(const P& problem, const typename ForestPolicy<P>::ActionF
       states.resize(kept);
     }
   };
-  fill(executor, (count + runs_per_job - 1) / runs_per_job, job, {}, Results<double>{plain, runs_per_job},
-       Results<double>{discounted, runs_per_job}, Results<double>{length, runs_per_job});
-  return {estimate(plain), estimate(discounted).mean, estimate(length).mean};
+  fill(executor, jobs, job, {}, Results<double>{plain, runs_per_job}, Results<double>{discounted, runs_per_job},
+       Results<double>{length, runs_per_job}, Results<double>{by_time, horizon});
+  for (std::size_t i = horizon; i < by_time.size(); ++i) by_time[i % horizon] += by_time[i];
+  by_time.resize(horizon);
+  for (double& cost : by_time) cost /= static_cast<double>(count);
+  return {estimate(plain), estimate(discounted).mean, estimate(length).mean, transient_of(by_time)};
 }
 
 /// The other size of policy, in leaves per tree, that an iteration tries: three times smaller and larger in turn,

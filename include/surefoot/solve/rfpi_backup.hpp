@@ -56,13 +56,15 @@ std::vector<typename P::State> choose_states(const P& problem, const RfpiOptions
   Rng choice = rng.stream(0);
   if (before.iteration == 0) states = random_subset(std::vector(seed_states.begin(), seed_states.end()), count, choice);
   const auto wanted = static_cast<std::size_t>(options.visited_share * static_cast<double>(count));
-  const auto visit = [&](const ActOnBatch<P>& acting, double exploration) {
+  // About `some` states, of the first `transitions` of runs.
+  const auto visit = [&](const ActOnBatch<P>& acting, double exploration, std::size_t some, int transitions,
+                         const Rng& runs_rng) {
     if (!options.replace_short_runs) {
-      const std::size_t runs = wanted / static_cast<std::size_t>(options.horizon) + 1;
-      return visited_states(problem, acting, runs, options.horizon, exploration, executor, rng.stream(1), stop,
+      const std::size_t runs = some / static_cast<std::size_t>(transitions) + 1;
+      return visited_states(problem, acting, runs, transitions, exploration, executor, runs_rng, stop,
                             RunEnd::state_box);
     }
-    return enough_visited_states(problem, acting, wanted, options.horizon, exploration, executor, rng.stream(1), stop,
+    return enough_visited_states(problem, acting, some, transitions, exploration, executor, runs_rng, stop,
                                  RunEnd::state_box);
   };
   if (!initial) {
@@ -72,12 +74,19 @@ std::vector<typename P::State> choose_states(const P& problem, const RfpiOptions
         !options.adapt ? options.exploration
                        : survived_exploration(problem, acting, before.policy.trees(), options.exploration,
                                               before.length, options.horizon, executor, rng.stream(2), work, stop);
-    states = visit(acting, exploration);
+    const bool has_transient = options.adapt && before.transient > 0 && before.transient < options.horizon;
+    const std::size_t of_whole_runs = has_transient ? wanted / 2 : wanted;
+    states = visit(acting, exploration, of_whole_runs, options.horizon, rng.stream(1));
+    if (has_transient) {
+      const auto early = visit(acting, exploration, wanted - of_whole_runs, before.transient, rng.stream(3));
+      states.insert(states.end(), early.begin(), early.end());
+    }
     work.steps += states.size();
     work.lookups += states.size() * before.policy.trees();
   } else {
     // Every action is random, held for some steps.
-    const auto visited = visit([](auto some) { return std::vector<typename P::Action>(some.size()); }, 1.0);
+    const auto visited = visit([](auto some) { return std::vector<typename P::Action>(some.size()); }, 1.0,
+                               wanted, options.horizon, rng.stream(1));
     work.steps += visited.size();
     const auto some = random_subset(visited, std::min(wanted, count - std::min(count, states.size())), choice);
     states.insert(states.end(), some.begin(), some.end());
@@ -209,6 +218,7 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& given, const
   }
   after.cost = cost.cost.mean;
   after.length = cost.length;
+  after.transient = cost.transient;
   return after;
 }
 

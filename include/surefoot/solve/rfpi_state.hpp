@@ -65,6 +65,7 @@ struct RfpiState {
   ActionForest policy;  // empty: none yet
   double cost = 0;      // of that policy over the evaluation runs
   double length = 0;    // of its evaluation runs, mean [transitions]
+  int transient = 0;    // of those, see transient_of() [transitions]
   int leaves = 0;       // per tree, the size of policy that did best; 0: none yet
   bool follows = false;  // whether lookaheads follow the policy
   OpinionsOf opinions = OpinionsOf::distances;  // of the policy's leaves, the kind that did best
@@ -76,7 +77,7 @@ struct RfpiState {
 
 namespace detail {
 
-constexpr FileFormat checkpoint_format{"SURERFPI", 5, "a checkpoint of RFPI"};
+constexpr FileFormat checkpoint_format{"SURERFPI", 6, "a checkpoint of RFPI"};
 constexpr FileFormat first_checkpoint_format{"SURERFPI", 1, "a checkpoint of RFPI"};  // no trend, no sizes
 
 template <class Vector>
@@ -164,6 +165,7 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const R
   detail::write_optional(out, state.policy);
   out.f64(state.cost);
   out.f64(state.length);
+  out.u32(static_cast<std::uint32_t>(state.transient));
   out.u32(static_cast<std::uint32_t>(state.leaves));
   out.u8(state.follows ? 1 : 0);
   out.u8(state.opinions == OpinionsOf::actions ? 1 : 0);
@@ -207,6 +209,7 @@ RfpiState<P> load_checkpoint(std::span<const std::byte> bytes, const std::string
   if (!first) {
     state.cost = in.f64();
     state.length = in.f64();
+    state.transient = static_cast<int>(in.u32() & 0x7FFFFFFFU);
     state.leaves = static_cast<int>(in.u32() & 0x7FFFFFFFU);
     state.follows = in.u8() != 0;
     state.opinions = in.u8() != 0 ? OpinionsOf::actions : OpinionsOf::distances;

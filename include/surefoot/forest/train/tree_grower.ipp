@@ -208,21 +208,38 @@ class TreeGrower {
     return open.input < 0 ? -std::numeric_limits<double>::infinity() : open.gain;
   }
 
+  // Every so many of the records that affine fits are scored on.
+  std::size_t score_step(std::size_t count) const {
+    const auto most = static_cast<std::size_t>(options_.score_samples);
+    return most == 0 ? 1 : std::max<std::size_t>(1, count / most);
+  }
+
+  static std::size_t count_left(const RecordSpan& records, std::size_t input, float threshold) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < records.count; ++i) count += records[i][input] <= threshold ? 1U : 0U;
+    return count;
+  }
+
   void score_fits(const RecordSpan& records, Open& open) {
-    linear_->measure(records, chosen_, thresholds_.data(), low_.data(), high_.data(), mean_.data());
+    const std::size_t step = score_step(records.count);
+    const RecordSpan some{records.first, (records.count + step - 1) / step, records.stride * step};
+    linear_->measure(some, chosen_, thresholds_.data(), low_.data(), high_.data(), mean_.data());
     const double together = linear_->explained_together(output_scale_, options_.ridge);
     const auto fewest = static_cast<std::size_t>(options_.min_leaf);
     double best = gain_of(open);
     for (std::size_t c = 0; c < chosen_.size(); ++c) {
-      const std::size_t left_count = linear_->left_count(c);
+      const std::size_t scored_left = linear_->left_count(c);
+      if (scored_left == 0 || scored_left == some.count) continue;
+      const double gain =
+          (linear_->explained_apart(c, output_scale_, options_.ridge) - together) * static_cast<double>(step);
+      if (!(gain > best)) continue;
+      const auto input = static_cast<std::size_t>(chosen_[c]);
+      const std::size_t left_count = step == 1 ? scored_left : count_left(records, input, thresholds_[input]);
       if (left_count < fewest || records.count - left_count < fewest) continue;
-      const double gain = linear_->explained_apart(c, output_scale_, options_.ridge) - together;
-      if (gain > best) {
-        best = gain;
-        open.input = chosen_[c];
-        open.threshold = thresholds_[static_cast<std::size_t>(chosen_[c])];
-        open.gain = gain;
-      }
+      best = gain;
+      open.input = chosen_[c];
+      open.threshold = thresholds_[input];
+      open.gain = gain;
     }
   }
 
