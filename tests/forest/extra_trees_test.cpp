@@ -126,6 +126,23 @@ TEST_CASE("limits on leaves, depth and samples per leaf are kept") {
   }
 }
 
+TEST_CASE("splits scored on some samples are nearly as good, and leave as many samples in every leaf") {
+  const auto samples = toy::sample(toy::Cliff{}, 8000, 1, 0.1);
+  const auto test = toy::sample(toy::Cliff{}, 2000, 2);
+  ExtraTreesOptions options{.trees = 4, .min_leaf = 40};
+  const auto on_all = train_extra_trees<LinearLeaf>(samples, options, Serial{}, 1);
+  options.score_samples = 100;
+  const auto on_some = train_extra_trees<LinearLeaf>(samples, options, Serial{}, 1);
+  CHECK_FALSE(on_some == on_all);
+  CHECK(1 - toy::explained(on_some, test) < 1.2 * (1 - toy::explained(on_all, test)));
+  for (std::size_t t = 0; t < 4; ++t) {
+    const Shape shape = shape_of(on_some, t, samples);
+    CHECK(*std::min_element(shape.leaf_counts.begin(), shape.leaf_counts.end()) >= 40);
+  }
+  options.score_samples = 8000;
+  CHECK(train_extra_trees<LinearLeaf>(samples, options, Serial{}, 1) == on_all);
+}
+
 TEST_CASE("leaves are spent where they pay most") {
   const auto samples = toy::sample(toy::Cliff{}, 3000, 1);
   const auto test = toy::sample(toy::Cliff{}, 1000, 2);

@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <utility>
+#include <vector>
+
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/rollout.hpp"
 #include "surefoot/forest/dataset.hpp"
@@ -58,6 +61,31 @@ TEST_CASE("evaluation runs fit the horizon unless they are given") {
   CHECK(evaluation_runs({.horizon = 1000, .evaluation_runs = 7}) == 7);
 }
 
+TEST_CASE("runs are in transition until nine tenths have come of what sets them apart from their end") {
+  std::vector<double> costs(50, 0.25);  // what goes on and on does not count
+  for (std::size_t t = 0; t < 20; ++t) costs[t] = 1;
+  CHECK(transient_of(costs) == 18);
+  for (double& cost : costs) cost = -cost;  // rewards that come from a goal on
+  CHECK(transient_of(costs) == 18);
+}
+
+TEST_CASE("runs without a beginning of their own are in transition to their end") {
+  CHECK(transient_of(std::vector<double>(50, 0.25)) == 50);
+  CHECK(transient_of(std::vector<double>{3}) == 1);
+}
+
+TEST_CASE("a policy does better by more than the error of the mean difference, on the same runs") {
+  const auto of = [](std::vector<double> runs) {
+    PolicyCost cost;
+    cost.runs = std::move(runs);
+    return cost;
+  };
+  const PolicyCost usual = of({10, 200, 30, 4});
+  CHECK(does_better(of({9, 199, 29, 3}), usual));  // always by 1, however much the runs differ
+  CHECK_FALSE(does_better(of({0, 209, 20, 12}), usual));
+  CHECK_FALSE(does_better(usual, usual));
+}
+
 TEST_CASE("the cost of a policy is the one that evaluate() finds") {
   const toy::Pendulum problem;
   Dataset<3, 1> data;
@@ -71,6 +99,9 @@ TEST_CASE("the cost of a policy is the one that evaluate() finds") {
   CHECK(cost.cost.mean == doctest::Approx(-evaluate(problem, policy, runs, Serial{}, 5).mean).epsilon(1e-12));
   const RolloutOptions discounted{.runs = 70, .horizon = 30, .discount = 0.9};
   CHECK(cost.length == 30);
+  CHECK(cost.runs.size() == 70);
+  CHECK(cost.transient >= 1);
+  CHECK(cost.transient <= 30);
   CHECK(cost.discounted == doctest::Approx(-evaluate(problem, policy, discounted, Serial{}, 5).mean).epsilon(1e-12));
 }
 

@@ -52,7 +52,6 @@ class Lookahead {
   struct Result {
     Action action;     // mean of the actions about as good as the best
     double value = 0;  // mean of their Q
-    double gap = 0;    // by which the best is better than the median action
   };
 
   /// `value`: see ValueFunction. `policy`: what is followed for options.follow transitions; null: nothing. Both outlive
@@ -241,8 +240,7 @@ class Lookahead {
     sorted = q_;
     std::ranges::nth_element(sorted, sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2));
     const double scale = options_.softness * (q_[best] - sorted[sorted.size() / 2]);
-    const double gap = q_[best] - sorted[sorted.size() / 2];
-    if (!(scale > 0)) return {to_action(candidates_[best]), q_[best], gap};
+    if (!(scale > 0)) return {to_action(candidates_[best]), q_[best]};
     Unit mean = Unit::Zero();
     double value = 0;
     double total = 0;
@@ -254,7 +252,7 @@ class Lookahead {
       value += weight * q_[c];
       total += weight;
     }
-    return {to_action(mean / total), value / total, gap};
+    return {to_action(mean / total), value / total};
   }
 
   const P& problem_;

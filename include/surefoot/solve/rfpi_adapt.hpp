@@ -86,7 +86,17 @@ struct PolicyCost {
   double discounted = 0;  // mean of the discounted ones, which is what the values are about
   double length = 0;      // mean length of the runs [transitions]
   int transient = 0;      // see transient_of()
+  std::vector<double> runs;  // the discounted ones, run by run
 };
+
+/// Whether a policy does better than another one on the same runs, by more than chance explains: the mean difference of
+/// their discounted costs is more than its standard error.
+inline bool does_better(const PolicyCost& one, const PolicyCost& other) {
+  std::vector<double> differences = other.runs;
+  for (std::size_t i = 0; i < differences.size(); ++i) differences[i] -= one.runs[i];
+  const Estimate by = estimate(differences);
+  return by.mean > by.standard_error;
+}
 
 /// The number of transitions until runs have come to rest, or to whatever else goes on and on: those that bring most of
 /// what mean costs differ from what they are at the end. `costs`: mean over the runs, transition after transition. All
@@ -96,7 +106,8 @@ inline int transient_of(std::span<const double> costs) {
   constexpr std::size_t end_part = 5;  // the last fifth of a run is its end
   const std::size_t last = std::max<std::size_t>(1, costs.size() / end_part);
   double end = 0;
-  for (const double cost : costs.last(last)) end += cost / static_cast<double>(last);
+  for (const double cost : costs.last(last)) end += cost;
+  end /= static_cast<double>(last);
   double all = 0;
   for (const double cost : costs) all += std::abs(cost - end);
   double sum = 0;
@@ -151,7 +162,8 @@ PolicyCost policy_cost(const P& problem, const typename ForestPolicy<P>::ActionF
   for (std::size_t i = horizon; i < by_time.size(); ++i) by_time[i % horizon] += by_time[i];
   by_time.resize(horizon);
   for (double& cost : by_time) cost /= static_cast<double>(count);
-  return {estimate(plain), estimate(discounted).mean, estimate(length).mean, transient_of(by_time)};
+  return {estimate(plain), estimate(discounted).mean, estimate(length).mean, transient_of(by_time),
+          std::move(discounted)};
 }
 
 /// The other size of policy, in leaves per tree, that an iteration tries: three times smaller and larger in turn,

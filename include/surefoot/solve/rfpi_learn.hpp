@@ -19,6 +19,7 @@
 #include "surefoot/solve/rfpi_adapt.hpp"
 #include "surefoot/solve/rfpi_options.hpp"
 #include "surefoot/solve/rfpi_state.hpp"
+#include "surefoot/solve/rfpi_work.hpp"
 
 namespace surefoot::detail {
 
@@ -31,12 +32,6 @@ auto feature_matrix(const P& problem, const StateSamples<P>& a, const StateSampl
     for (const auto& state : samples->states) inputs.col(column++) = features(problem, state).template cast<float>();
   }
   return inputs;
-}
-
-/// What fitting a forest counts: every sample passes every level of every tree.
-inline std::uint64_t fit_work(std::size_t samples, std::size_t inputs, const ExtraTreesOptions& options) {
-  const double levels = std::log2(2 + static_cast<double>(samples) / options.min_leaf);
-  return static_cast<std::uint64_t>(static_cast<double>(samples * inputs) * options.trees * levels);
 }
 
 /// The forest of actions learnt from two sets of samples.
@@ -56,7 +51,7 @@ auto fit_policy(const P& problem, const StateSamples<P>& a, const StateSamples<P
       for (int i = 0; i < P::action_dim; ++i) unit[i] = half[i] > 0 ? (action[i] - box.center()[i]) / half[i] : 0;
     }
   }
-  work.fits += fit_work(a.size() + b.size(), static_cast<std::size_t>(feature_dim<P>()), options);
+  work.fits += fit_work(a.size() + b.size(), feature_dim<P>(), P::action_dim, options);
   const std::uint64_t seed = Rng(rng).bits();
   Trees trees = opinions == OpinionsOf::actions
                     ? train_extra_trees<LikeActionLeaf>(data, options, executor, seed, std::move(stop)).raw()
@@ -80,12 +75,12 @@ auto fit_value(const P& problem, const StateSamples<P>& a, const StateSamples<P>
   data.outputs.resize(1, data.inputs.cols());
   std::copy(a.values.begin(), a.values.end(), data.outputs.data());
   std::copy(b.values.begin(), b.values.end(), data.outputs.data() + a.size());
-  work.fits += fit_work(a.size() + b.size(), static_cast<std::size_t>(feature_dim<P>()), options);
+  work.fits += fit_work(a.size() + b.size(), feature_dim<P>(), 1, options);
   if constexpr (std::is_same_v<Leaf, LinearLeaf>) {
     ExtraTreesOptions compared = options;
     compared.trees = std::min(options.trees, 2 * trend_trees);
     const std::size_t few = std::min(trend_samples, a.size() + b.size());
-    work.fits += fit_work(few, static_cast<std::size_t>(feature_dim<P>()), compared);
+    work.fits += fit_work(few, feature_dim<P>(), 1, compared);
     return train_value_forest(std::move(data), options, executor, Rng(rng).bits(), std::move(stop));
   } else {
     return train_extra_trees<Leaf>(data, options, executor, Rng(rng).bits(), std::move(stop));
@@ -106,8 +101,11 @@ PolicyCost counted_cost(const P& problem, const typename RfpiState<P>::ActionFor
 /// Iterations from one trial of the other kind of opinions to the next, and the one of them that has it.
 constexpr int opinions_tried_every = 4, opinions_tried_at = 2;
 
-/// Learns the policy in two sizes, now and then with opinions of the other kind too, and keeps the one that does best
-/// on the evaluation runs.
+/// Iterations from one trial of a smaller size to the next where the policy has the largest: each costs a forest.
+constexpr int smaller_tried_every = 3;
+
+/// Learns the policy, mostly in another size too, now and then with opinions of the other kind, and keeps the one that
+/// does best on the evaluation runs.
 template <Problem P, Executor E>
 PolicyCost learn_policy(const P& problem, const RfpiOptions& options, const RfpiState<P>& before, RfpiState<P>& after,
                         const E& executor, const Rng& rng, std::uint64_t evaluation_seed, std::stop_token stop) {
@@ -128,13 +126,15 @@ PolicyCost learn_policy(const P& problem, const RfpiOptions& options, const Rfpi
   const auto try_other = [&](int leaves, OpinionsOf opinions) {
     auto another = learn(leaves, opinions);
     const PolicyCost cost = cost_of(another);
-    if (cost.discounted >= best.discounted) return;
+    if (!does_better(cost, best)) return;
     best = cost;
     after.policy = std::move(another);
     after.leaves = leaves;
     after.opinions = opinions;
   };
-  try_other(other_size(after.leaves, most, before.iteration), after.opinions);
+  if (after.leaves < most || before.iteration % smaller_tried_every == 0) {
+    try_other(other_size(after.leaves, most, before.iteration), after.opinions);
+  }
   if (before.iteration % opinions_tried_every == opinions_tried_at) {
     try_other(after.leaves, after.opinions == OpinionsOf::actions ? OpinionsOf::distances : OpinionsOf::actions);
   }

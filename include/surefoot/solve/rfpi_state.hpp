@@ -19,6 +19,7 @@
 #include "surefoot/solve/action_leaf.hpp"
 #include "surefoot/solve/forest_policy.hpp"
 #include "surefoot/solve/rfpi_options.hpp"
+#include "surefoot/solve/rfpi_work.hpp"
 #include "surefoot/solve/value_forest.hpp"
 
 namespace surefoot {
@@ -31,22 +32,6 @@ struct StateSamples {
   std::vector<typename P::Action> actions;
 
   std::size_t size() const { return states.size(); }
-};
-
-/// Work done so far, in counts that do not depend on the clock or the threads.
-struct RfpiWork {
-  std::uint64_t steps = 0;    // simulated transitions
-  std::uint64_t lookups = 0;  // trees descended
-  std::uint64_t fits = 0;     // samples * trees * inputs fitted, levels of the trees included
-  static constexpr auto fields = std::tuple(&RfpiWork::steps, &RfpiWork::lookups, &RfpiWork::fits);
-
-  /// Nominal seconds of one core.
-  double seconds(const Budget& budget) const {
-    constexpr double lookup_ns = 50;
-    constexpr double fit_ns = 6;
-    return 1e-9 * (budget.step_ns * static_cast<double>(steps) + lookup_ns * static_cast<double>(lookups) +
-                   fit_ns * static_cast<double>(fits));
-  }
 };
 
 template <Problem P>
