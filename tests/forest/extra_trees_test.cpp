@@ -131,7 +131,7 @@ TEST_CASE("splits scored on some samples are nearly as good, and leave as many s
   const auto test = toy::sample(toy::Cliff{}, 2000, 2);
   ExtraTreesOptions options{.trees = 4, .min_leaf = 40};
   const auto on_all = train_extra_trees<LinearLeaf>(samples, options, Serial{}, 1);
-  options.score_samples = 100;
+  options.split_samples = 100;
   const auto on_some = train_extra_trees<LinearLeaf>(samples, options, Serial{}, 1);
   CHECK_FALSE(on_some == on_all);
   CHECK(1 - toy::explained(on_some, test) < 1.2 * (1 - toy::explained(on_all, test)));
@@ -139,7 +139,7 @@ TEST_CASE("splits scored on some samples are nearly as good, and leave as many s
     const Shape shape = shape_of(on_some, t, samples);
     CHECK(*std::min_element(shape.leaf_counts.begin(), shape.leaf_counts.end()) >= 40);
   }
-  options.score_samples = 8000;
+  options.split_samples = 8000;
   CHECK(train_extra_trees<LinearLeaf>(samples, options, Serial{}, 1) == on_all);
 }
 

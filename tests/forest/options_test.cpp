@@ -19,7 +19,7 @@ TEST_CASE("options of training that make no sense are named") {
   complains("trees", [](ExtraTreesOptions& o) { o.trees = 0; });
   complains("candidates", [](ExtraTreesOptions& o) { o.candidates = -1; });
   complains("draws", [](ExtraTreesOptions& o) { o.draws = 0; });
-  complains("score_samples", [](ExtraTreesOptions& o) { o.score_samples = -1; });
+  complains("split_samples", [](ExtraTreesOptions& o) { o.split_samples = -1; });
   complains("min_leaf", [](ExtraTreesOptions& o) { o.min_leaf = 0; });
   complains("max_depth", [](ExtraTreesOptions& o) { o.max_depth = -1; });
   complains("max_leaves", [](ExtraTreesOptions& o) { o.max_leaves = -1; });

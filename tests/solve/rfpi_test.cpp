@@ -276,6 +276,39 @@ TEST_CASE("no state outside of the box is learnt from, however unstable the runs
   }
 }
 
+TEST_CASE("a checkpoint keeps for how long runs are in transition") {
+  const toy::TemporaryFile file("transient");
+  RfpiState<toy::DoubleIntegrator> state;
+  state.transient = 17;
+  save_checkpoint(file.path.string(), 7, state);
+  CHECK(load_checkpoint<toy::DoubleIntegrator>(file.path.string(), 7).transient == 17);
+}
+
+TEST_CASE("half of the states that runs visit are of their transient") {
+  struct Clock : toy::DoubleIntegrator {  // the first number of a state counts transitions
+    State initial_state(Rng&) const { return State::Zero(); }
+    Step<State> step(const State& state, const Action&, Rng&) const { return {state + State(0.01, 0), 0, false}; }
+  };
+  const Clock clock;
+  RfpiOptions options = resolved({.horizon = 20});
+  RfpiState<Clock> before;
+  before.iteration = options.initial_iterations;
+  before.policy = train_extra_trees<LinearLeaf>(
+      Dataset<2, 1>{Eigen::MatrixXf::Random(2, 50), Eigen::MatrixXd::Constant(1, 50, 0.0), {}}, {.trees = 2}, Serial{},
+      1);
+  const auto early = [&](int transient, bool adapt) {
+    before.transient = transient;
+    options.adapt = adapt;
+    RfpiWork work;
+    const auto states = detail::choose_states(clock, options, before, 1000, {}, Serial{}, Rng(1), work, {});
+    return std::ranges::count_if(states, [](const auto& s) { return s[1] == 0 && s[0] < 0.045; });  // of five steps
+  };
+  CHECK(early(5, true) == doctest::Approx(250 + 250 / 4).epsilon(0.1));  // of 500 that are visited
+  CHECK(early(20, true) == doctest::Approx(500 / 4).epsilon(0.1));
+  CHECK(early(0, true) == early(20, true));
+  CHECK(early(5, false) == early(20, true));
+}
+
 TEST_CASE("a training that resumes from nothing starts anew") {
   const toy::TemporaryFile file("fresh");
   RfpiOptions options = tiny();

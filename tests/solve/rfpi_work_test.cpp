@@ -42,7 +42,7 @@ TEST_CASE(
 TEST_CASE("scores on some samples, and few leaves, cost less") {
   const ExtraTreesOptions all{.trees = 2, .min_leaf = 30};
   ExtraTreesOptions some = all, few = all;
-  some.score_samples = 300;
+  some.split_samples = 300;
   few.max_leaves = 10;
   CHECK(detail::fit_work(100'000, 11, 3, some) < detail::fit_work(100'000, 11, 3, all));
   CHECK(detail::fit_work(100'000, 11, 3, few) < detail::fit_work(100'000, 11, 3, all));

@@ -20,7 +20,7 @@ SUREFOOT_ONCE void check(const ExtraTreesOptions& options) {
   require(options.min_leaf >= 1, "min_leaf must be at least 1");
   require(options.max_depth >= 0, "max_depth must be at least 1, or 0 for no limit");
   require(options.max_leaves >= 0, "max_leaves must be at least 1, or 0 for no limit");
-  require(options.score_samples >= 0, "score_samples must be at least 1, or 0 for all");
+  require(options.split_samples >= 0, "split_samples must be at least 1, or 0 for all");
   require(options.ridge >= 0 && std::isfinite(options.ridge), "ridge must be finite and at least 0");
 }
 

@@ -60,7 +60,7 @@ std::uint64_t rfpi_fingerprint(const P& problem, const RfpiOptions& o, std::uint
   for (const ExtraTreesOptions* f : {&o.value_forest, &o.policy_forest}) {
     number(f->trees, f->candidates, f->min_leaf, f->max_depth, f->max_leaves, f->bootstrap, f->threshold_rule,
            f->model_score, f->ridge, f->clamp);
-    if (f->draws != 1 || f->score_samples != 0) number(f->draws, f->score_samples);  // not in version 0.1
+    if (f->draws != 1 || f->split_samples != 0) number(f->draws, f->split_samples);  // not in version 0.1
   }
   if (o.adapt || std::isfinite(o.agreement) || l.hold != 1) number(o.adapt, o.agreement, l.hold);  // not in version 0.1
   if (o.replace_short_runs) number(o.replace_short_runs);                                          // likewise

@@ -54,7 +54,7 @@ struct RfpiOptions {
   LookaheadOptions lookahead = {};
   ExtraTreesOptions value_forest = {.trees = 12, .min_leaf = 20, .model_score = false};
   // What the robot carries.
-  ExtraTreesOptions policy_forest = {.trees = 4, .draws = 4, .min_leaf = 30, .max_leaves = 2000, .score_samples = 300};
+  ExtraTreesOptions policy_forest = {.trees = 4, .draws = 4, .min_leaf = 30, .max_leaves = 2000, .split_samples = 300};
 
   // ValueMethod::backup: every iteration samples new states and forgets older ones.
   int first_states = 3000;         // samples of the first iterations

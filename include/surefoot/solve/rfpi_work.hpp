@@ -44,8 +44,8 @@ inline std::uint64_t fit_work(std::size_t samples, int inputs, int outputs, cons
   const double splits = (options.candidates > 0 ? std::min(options.candidates, inputs) : inputs) * options.draws;
   double work = count * (levels * (moved + in) + in * (in + out) + vector * moved);
   if (options.model_score) {
-    // A level of so many nodes has `count` samples, of which at most so many per node are scored.
-    const double most = options.score_samples > 0 ? options.score_samples : count;
+    // A level of so many nodes has `count` samples; of each node about split_samples are scored.
+    const double most = options.split_samples > 0 ? options.split_samples : count;
     double scored = 0;
     for (double nodes = 1; nodes < leaves; nodes *= 2) scored += std::min(count, nodes * most);
     const double products = in * (in + 2 * out + 1) / 2;

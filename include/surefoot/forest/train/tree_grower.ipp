@@ -210,7 +210,7 @@ class TreeGrower {
 
   // Every so many of the records that affine fits are scored on.
   std::size_t score_step(std::size_t count) const {
-    const auto most = static_cast<std::size_t>(options_.score_samples);
+    const auto most = static_cast<std::size_t>(options_.split_samples);
     return most == 0 ? 1 : std::max<std::size_t>(1, count / most);
   }
 
