@@ -44,7 +44,8 @@ std::vector<T> random_subset(std::vector<T> items, std::size_t count, Rng& rng) 
   return items;
 }
 
-/// The states of an iteration: some from the whole box, some that the policy visits now, some from before. Runs end
+/// The states of an iteration: some from the whole box, some that the policy visits now, half of those while its runs
+/// are in transition (else runs that have arrived and stay fill the samples), some from before. Runs end
 /// where they leave the box: a policy that is not stable yet would fill the samples with states from ever further away,
 /// whose values are so large that what a forest gets wrong about them hides the differences where it matters.
 template <Problem P, Executor E>
