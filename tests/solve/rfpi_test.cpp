@@ -309,6 +309,35 @@ TEST_CASE("half of the states that runs visit are of their transient") {
   CHECK(early(5, false) == early(20, true));
 }
 
+TEST_CASE("states that share a leaf are sorted next to each other, and none is lost") {
+  const toy::DoubleIntegrator problem;
+  Rng rng(1);
+  std::vector<Vec<2>> states;
+  for (int i = 0; i < 300; ++i) states.push_back(problem.state_box().sample(rng));
+  Dataset<2, 1> data;
+  data.inputs = Eigen::MatrixXf::Random(2, 500);
+  data.outputs = Eigen::MatrixXd::Random(1, 500);
+  const auto forest = train_extra_trees<LinearLeaf>(data, {.trees = 3, .min_leaf = 20}, Serial{}, 1);
+  const auto by_numbers = [](const Vec<2>& a, const Vec<2>& b) {
+    return std::pair(a[0], a[1]) < std::pair(b[0], b[1]);
+  };
+  std::vector<Vec<2>> sorted = states;
+  detail::sort_by_leaves(problem, forest, sorted);
+  std::vector<std::uint32_t> leaves(forest.trees());
+  std::uint32_t before = 0;
+  for (const Vec<2>& state : sorted) {
+    forest.leaf_indices(state, leaves);
+    CHECK(leaves[0] >= before);
+    before = leaves[0];
+  }
+  CHECK(before > 0);
+  std::ranges::sort(sorted, by_numbers);
+  std::ranges::sort(states, by_numbers);
+  CHECK(sorted == states);
+  detail::sort_by_leaves(problem, decltype(forest){}, sorted);  // there are no leaves yet
+  CHECK(sorted == states);
+}
+
 TEST_CASE("a training that resumes from nothing starts anew") {
   const toy::TemporaryFile file("fresh");
   RfpiOptions options = tiny();

@@ -103,6 +103,24 @@ std::vector<typename P::State> choose_states(const P& problem, const RfpiOptions
   return states;
 }
 
+/// Puts states that share leaves next to each other: large forests are then read from the cache that the states before
+/// have filled, and not from memory, more than a time for every state and tree.
+template <Problem P, class F>
+void sort_by_leaves(const P& problem, const F& forest, std::vector<typename P::State>& states) {
+  if (forest.empty()) return;
+  std::vector<std::uint32_t> leaves(forest.trees());
+  std::vector<std::pair<std::uint32_t, std::size_t>> order(states.size());
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    forest.leaf_indices(features(problem, states[i]), leaves);
+    order[i] = {leaves[0], i};
+  }
+  std::ranges::sort(order);
+  std::vector<typename P::State> sorted;
+  sorted.reserve(states.size());
+  for (const auto& [leaf, i] : order) sorted.push_back(states[i]);
+  states = std::move(sorted);
+}
+
 /// Mean return of short runs that start with the given actions, follow the policy, and end on the value forest.
 template <Problem P, class Value>
 void backup_values(const P& problem, const RfpiOptions& options, const ForestPolicy<P>& policy, const Value& value,
@@ -173,6 +191,8 @@ RfpiState<P> improve_by_backup(const P& problem, const RfpiOptions& given, const
     options.lookahead.hold = initial ? std::max(initial_hold, options.lookahead.hold)
                                      : chosen_hold(problem, before.value, states, options, rng.stream(5), after.work);
   }
+  sort_by_leaves(problem, before.value.forest, samples.states);
+  after.work.lookups += samples.size() * before.value.trees();
   constexpr std::size_t states_per_job = 16;
   const std::size_t jobs = (samples.size() + states_per_job - 1) / states_per_job;
   std::vector<RfpiWork> done(jobs);

@@ -20,7 +20,7 @@ struct RfpiWork {
 
   /// Nominal seconds of one core. Prices: CPU time of the two parts, measured apart (docs/rfpi.md).
   double seconds(const Budget& budget) const {
-    constexpr double lookup_ns = 20;
+    constexpr double lookup_ns = 25;
     constexpr double fit_ns = 0.5;
     return 1e-9 * (budget.step_ns * static_cast<double>(steps) + lookup_ns * static_cast<double>(lookups) +
                    fit_ns * static_cast<double>(fits));
