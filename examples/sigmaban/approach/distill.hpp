@@ -21,11 +21,12 @@
 namespace sigmaban {
 
 struct DistillOptions {
-  int runs = 16'000;          // of the larger policy, from the problem's starts
-  int horizon = 50;           // [transitions] of each run
+  int runs = 40'000;  // of the larger policy, from the problem's starts
+  int horizon = 20;   // [transitions] of each run: later it stands where it may kick, and there is little to learn
   double exploration = 0.02;  // chance per step of a run to hold a random action for 1 to 3 steps
   int min_leaf = 30;          // fewest states in a leaf
-  int draws = 4;              // thresholds tried per input: a single tree has no others to average bad splits with
+  int draws = 8;              // thresholds tried per input: a single tree has no others to average bad splits with
+  int split_samples = 1000;   // about so many states of a node score a split
 };
 
 /// What the larger policy does where it goes: features in, actions out.
@@ -67,6 +68,7 @@ surefoot::ForestPolicy<P> imitate(const P& problem,
   tree.max_leaves = leaves;
   tree.min_leaf = options.min_leaf;
   tree.draws = options.draws;
+  tree.split_samples = options.split_samples;
   tree.threshold_rule = surefoot::ThresholdRule::balanced;
   return {problem, surefoot::train_extra_trees<surefoot::LinearLeaf>(demonstrations, tree, executor, seed)};
 }

@@ -127,7 +127,7 @@ double kilobytes(const std::string& text) { return static_cast<double>(text.size
 template <class Problem>
 surefoot::ForestPolicy<Problem> shrink(const surefoot::ForestPolicy<Problem>& policy, const ExportOptions& options,
                                        const surefoot::Threads& threads) {
-  const DistillOptions distill{.runs = options.runs, .horizon = Problem::horizon};
+  const DistillOptions distill{.runs = options.runs};
   const auto data = demonstrations(policy, distill, threads, options.seed);
   int leaves = static_cast<int>(1000 * options.max_kb / 143);  // about what a leaf takes in the file [bytes]
   for (;;) {
