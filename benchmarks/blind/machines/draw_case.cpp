@@ -19,6 +19,8 @@ using plants::Kind;
 using plants::System;
 
 constexpr int fine = 10;                // integration steps per row of the true machine
+constexpr int finer = 4 * fine;         // that show whether those are enough
+constexpr double unresolved = 0.3;      // of the noise: what the steps of the true machine may cost, root mean square
 constexpr int coarse = 2;               // of the model that is calibrated
 constexpr int tries_per_machine = 12;   // draws of effects before another machine is drawn
 constexpr int machines_per_case = 200;  // before giving up
@@ -49,11 +51,24 @@ bool is_sound(const CompiledMachine& machine, const Sizes& sizes) {
   return true;
 }
 
-// Runs the true machine. False if it went astray.
+// Whether the steps of the true machine leave no mark: what is hidden is its physics, and not how it was integrated.
+bool is_resolved(const plants::Case& one, const Values& actual, const Recording& recording) {
+  const auto check = one.system.simulate(actual, one.faults, recording, How{finer, false, false, nullptr}).outputs;
+  for (std::size_t k = 0; k < check.size(); ++k) {
+    double squares = 0;
+    for (std::size_t i = 0; i < check[k].size(); ++i) squares += std::pow(check[k][i] - recording.ideal[k][i], 2);
+    if (!(squares <= std::pow(unresolved * one.system.noise[k], 2) * static_cast<double>(check[k].size())))
+      return false;
+  }
+  return true;
+}
+
+// Runs the true machine. False if it went astray, or is not resolved.
 bool read_all(Random& random, plants::Case& one, const Sizes& sizes) {
   const Values actual = plants::actual_values(one.system);
   for (Recording& recording : one.system.recordings) {
     recording.ideal = one.system.simulate(actual, one.faults, recording, How{fine, false, false, nullptr}).outputs;
+    if (!is_resolved(one, actual, recording)) return false;
     for (std::size_t k = 0; k < recording.ideal.size(); ++k)
       for (const double value : recording.ideal[k])
         if (!(std::abs(value) < 20 * sizes.outputs[k].peak)) return false;

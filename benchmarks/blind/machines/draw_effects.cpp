@@ -36,6 +36,7 @@ class Drawing {
       case Law::load_bristles:
         one.a = graded(random_, 0.06, 0.35);
         one.b = machine_.states[s].load.empty() ? 0 : static_cast<double>(random_.index(2));
+        one.c = random_.uniform(0.1, 0.6) * speed * machine_.period;
         break;
       case Law::constant:
       case Law::weight_offset:

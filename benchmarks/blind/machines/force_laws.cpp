@@ -23,6 +23,9 @@ double sliding_level(const Hidden& one, const Motion& motion) {
 }
 
 double bristle_stiffness(const Hidden& one, const Motion& motion) {
+  // Bristles pressed harder are stiffer: they slip after the same way under any load. With a constant stiffness they
+  // would let go each time that the load passes zero, in no time at all, which no integration follows.
+  if (one.law == Law::load_bristles) return sliding_level(one, motion) / one.c;
   const double frequency = (one.law == Law::soft_bristles ? soft_bristles : stiff_bristles) / motion.period;
   return motion.inertia * frequency * frequency;
 }

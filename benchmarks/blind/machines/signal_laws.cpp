@@ -28,26 +28,28 @@ void delay_input(double delay, const Column& times, Column& values) {
   values.back() = asked[from];
 }
 
-// Lags, rate limits and what wears: one pass from the first step to the last.
+// Lags, rate limits and what wears: one pass from the first step to the last. A step gets the mean of what its ends
+// have, so that nothing is later than the law says.
 void remember(const Hidden& one, const Column& times, Column& values) {
   const Column asked = values;
   double first = asked[0], second = asked[0], work = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double step = i + 1 < values.size() ? times[i + 1] - times[i] : 0;
+    const double first_before = first, second_before = second, work_before = work;
     if (one.law == Law::rate_limit) {
-      values[i] = first;
       first += std::clamp(asked[i] - first, -one.a * step, one.a * step);
+      values[i] = 0.5 * (first_before + first);
     } else if (one.law == Law::ageing) {
-      values[i] = asked[i] * (1 - std::min(one.a * work, 0.95));
       work += (std::abs(asked[i]) / one.b - work) * step / one.c;
+      values[i] = asked[i] * (1 - std::min(0.5 * one.a * (work_before + work), 0.95));
     } else if (one.law == Law::slow_sag) {
-      values[i] = asked[i] * (1 - one.a * work);
       work += (std::abs(asked[i]) - work) * (1 - std::exp(-step / one.b));
+      values[i] = asked[i] * (1 - 0.5 * one.a * (work_before + work));
     } else {
-      values[i] = one.law == Law::second_lag ? second : first;
       const double share = 1 - std::exp(-step / (one.law == Law::second_lag ? one.a / 2 : one.a));
       first += (asked[i] - first) * share;
-      second += (first - second) * share;
+      second += (0.5 * (first_before + first) - second) * share;
+      values[i] = one.law == Law::second_lag ? 0.5 * (second_before + second) : 0.5 * (first_before + first);
     }
   }
 }
@@ -131,7 +133,10 @@ void change_input(const Hidden& one, const Column& times, Column& values) {
   if (values.empty()) return;
   if (one.law == Law::delay) return delay_input(one.a, times, values);
   if (has_memory(one.law) || one.law == Law::ageing || one.law == Law::slow_sag) return remember(one, times, values);
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_signal(one, values[i], times[i] - times[0]);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double end = i + 1 < values.size() ? times[i + 1] : times[i];
+    values[i] = static_signal(one, values[i], 0.5 * (times[i] + end) - times[0]);
+  }
 }
 
 double factor_of_parameter(const Hidden& one, double time) {

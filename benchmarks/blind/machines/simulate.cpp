@@ -23,6 +23,7 @@ class Run {
         states_(compiled.states.size()),
         y_(states_ + hidden_size * hidden.size(), 0.0),
         held_(hidden.size(), 0.0),
+        held_at_(hidden.size(), recording.time.empty() ? 0.0 : recording.time[0]),
         past_(hidden.size()) {
     for (std::size_t i = 0; i < parameters.size(); ++i) reg(compiled_.parameters[i]) = parameters[i];
     std::size_t meta = 0;
@@ -189,7 +190,8 @@ class Run {
       } else if (one.law == Law::second_lag) {
         value = starting_ ? value : y[own + 1];
       } else if (one.law == Law::rate_limit) {
-        value = held_[k];
+        const double reach = one.a * (time - held_at_[k]);
+        value = starting_ ? value : within(value, held_[k], reach);
       } else if (one.law == Law::delay) {
         value = past_[k].empty() ? value : past_[k].value_at(time - one.a);
       } else {
@@ -270,6 +272,7 @@ class Run {
       if (one.where == Where::signal && has_memory(one.law)) {
         const double asked = held_asked_[k % held_asked_.size()];
         if (one.law == Law::rate_limit) held_[k] += std::clamp(asked - held_[k], -one.a * step, one.a * step);
+        held_at_[k] = time;
         if (one.law == Law::delay) past_[k].add(time, asked, one.a);
       } else if (one.where == Where::state && one.law == Law::overflow) {
         double& amount = y_[at(one.target)];
@@ -323,7 +326,7 @@ class Run {
   std::vector<double> registers_;
   std::size_t states_;
   std::vector<double> y_;  // states, then hidden_size per effect
-  std::vector<double> held_;
+  std::vector<double> held_, held_at_;  // and since when [s]
   std::vector<Past> past_;
   std::array<double, 4> held_asked_{};  // what was asked of signals with a memory, by effect
   double asked_now_ = 0;

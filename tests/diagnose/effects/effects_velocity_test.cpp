@@ -128,6 +128,37 @@ TEST_CASE("friction that depends on the load takes its share of the force") {
   CHECK(effects::load_dependent_friction_in_gears().dry(m, p) == doctest::Approx(2.0));
 }
 
+// A motor whose torque comes through a coil: no input acts on its speed at once.
+struct Coil {
+  using State = Vec<2>;
+  using Input = Vec<1>;
+  using Output = Vec<1>;
+  double constant = 0.4;  // [N m/A]
+
+  SimulatorInfo info() const {
+    return {.name = "coil",
+            .states = {{"w", "rad/s", "N m"}, {"current", "A"}},
+            .inputs = {{"voltage", "V"}},
+            .outputs = {{"w_rad_s", "rad/s"}},
+            .parameters = {}};
+  }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd&) const {
+    return {constant * x[1] / mass, (u[0] - x[1]) / 0.05};
+  }
+  State effort(const State&, const Input&, const Eigen::VectorXd&) const { return {mass, 1}; }
+  Output observe(const State& x, const Input&, const Eigen::VectorXd&) const { return x.head<1>(); }
+};
+
+TEST_CASE("the drive that a friction takes its share of may come through a state of the actuator") {
+  const Recording recording = driven(101, 0.01, 0, 0, std::vector(101, 4.0));
+  Augmented augmented;
+  augmented.effects = {{.name = "load_dependent_friction", .attached_to = "w", .form = "drive", .values = {0.25}}};
+  const auto rubbed = simulate_augmented(Coil{}, augmented, recording).states;
+  const auto weaker = simulate_augmented(Coil{.constant = 0.75 * 0.4}, Augmented{}, recording).states;
+  CHECK(rubbed(0, 100) > 0.1);
+  CHECK(rubbed(0, 100) == doctest::Approx(weaker(0, 100)).epsilon(2e-3));  // it sets out within the first row
+}
+
 TEST_CASE("a friction with presliding has all of its level after some travel, and none where it reversed") {
   const Effect effect = effects::with_presliding(effects::load_dependent_friction());
   CHECK(effect.form == "drive, presliding");

@@ -74,6 +74,31 @@ TEST_CASE("signals count as driven even where orders far away saturate them") {
   }
 }
 
+// A motor with a coil, behind an amplifier with a lag, and a battery that nothing of it drains.
+struct MotorWithCoil {
+  using State = Vec<5>;
+  using Input = Vec<1>;
+  using Output = Vec<1>;
+  SimulatorInfo info() const {
+    return {.name = "motor_with_coil",
+            .states = {{"angle", "rad"}, {"speed", "rad/s"}, {"current", "A"}, {"amplified", "V"}, {"charge", "C"}},
+            .inputs = {{"voltage", "V"}},
+            .outputs = {{"angle_rad", "rad"}},
+            .parameters = {}};
+  }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& /*p*/) const {
+    return {x[1], 3 * x[2] - 0.1 * x[1], 5 * (x[3] - 2 * x[2] - 0.3 * x[1]), 20 * (u[0] - x[3]), -0.01 * x[4]};
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return x.head<1>(); }
+};
+
+TEST_CASE("states between the inputs and what moves are those of an actuator") {
+  const auto motor = facts_of(MotorWithCoil{}, toys::blank_recording(MotorWithCoil{}.info(), 5, 0.1));
+  CHECK(motor.actuator == std::vector<bool>{false, false, true, true, false});
+  const auto block = facts_of(toys::SlidingBlock{}, toys::blank_recording(toys::SlidingBlock{}.info(), 5, 0.1));
+  CHECK(block.actuator == std::vector<bool>{false, false});
+}
+
 // A speed in degrees; a force that no input drives; an output that shows the speed times ten.
 struct Odd {
   using State = Vec<2>;

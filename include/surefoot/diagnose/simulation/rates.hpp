@@ -14,6 +14,16 @@ namespace surefoot::diagnosis {
 /// What a dry friction does during a step.
 enum class Mode : std::int8_t { back = -1, stuck = 0, forth = 1 };
 
+/// The states as they would be without inputs, at the same positions and speeds.
+template <Simulator S>
+typename S::State undriven_states(const AugmentedSimulator<S>& m, const typename S::State& x) {
+  auto undriven = copied(x);
+  for (Eigen::Index i = 0; i < undriven.size(); ++i) {
+    if (m.structure.actuator[static_cast<std::size_t>(i)]) undriven[i] = 0;
+  }
+  return undriven;
+}
+
 /// The rates as they would be without inputs.
 template <Simulator S>
 typename S::State undriven_rates(const AugmentedSimulator<S>& m, const typename S::State& x,
@@ -23,7 +33,7 @@ typename S::State undriven_rates(const AugmentedSimulator<S>& m, const typename 
   const auto no_drive = [&m](int i, double value) {
     return m.structure.driven_signal[static_cast<std::size_t>(i)] ? 0.0 : value;
   };
-  return evaluate(m.simulator, x, undriven, m.p, no_drive);
+  return evaluate(m.simulator, undriven_states(m, x), undriven, m.p, no_drive);
 }
 
 /// That of one state alone.
@@ -33,7 +43,7 @@ double undriven_rate(const AugmentedSimulator<S>& m, const EffectSlot& slot, con
   auto undriven = copied(u);
   if (!m.driven_signals) undriven.setZero();
   if constexpr (requires { m.simulator.rate_without(m.structure.driven_signal, slot.at, x, undriven); }) {
-    return m.simulator.rate_without(m.structure.driven_signal, slot.at, x, undriven);
+    return m.simulator.rate_without(m.structure.driven_signal, slot.at, undriven_states(m, x), undriven);
   } else {
     return undriven_rates(m, x, u)[slot.at];
   }

@@ -47,6 +47,7 @@ struct StructureSearch {
   std::vector<std::vector<bool>> speed;       // [i][j]: the rate of state i is state j
   std::vector<std::vector<bool>> reads;       // [i][k]: output k reads state i
   std::vector<std::vector<bool>> depends_on;  // [i][j]: the rate, or next value, of state i depends on state j
+  std::vector<bool> driven;                   // [i]: the rate of state i changes with the inputs
 };
 
 SUREFOOT_ONCE void refute(StructureSearch& search, const Eigen::VectorXd& x, const Eigen::VectorXd& rate,
@@ -98,6 +99,25 @@ SUREFOOT_ONCE std::vector<bool> states_that_remember(const StructureSearch& sear
   return remembers;
 }
 
+/// States between the inputs and what moves, as the current of a coil, the pressure behind a valve or the sum of a
+/// controller: the inputs lead to them, by themselves or through others of that kind.
+SUREFOOT_ONCE std::vector<bool> actuator_states(const StructureSearch& search, const SimulatorStructure& structure) {
+  const std::size_t n = search.driven.size();
+  std::vector<bool> may_be(n, true), result(n, false);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (structure.velocity[i]) may_be[i] = false;
+    if (structure.position_of[i] >= 0) may_be[static_cast<std::size_t>(structure.position_of[i])] = false;
+  }
+  for (std::size_t round = 0; round < n; ++round) {  // each finds what those of the one before lead to
+    for (std::size_t i = 0; i < n; ++i) {
+      bool led_to = search.driven[i];
+      for (std::size_t j = 0; j < n; ++j) led_to = led_to || (result[j] && search.depends_on[i][j]);
+      result[i] = may_be[i] && led_to;
+    }
+  }
+  return result;
+}
+
 /// Fills in what remains true.
 SUREFOOT_ONCE void conclude_structure(const StructureSearch& search, const SimulatorInfo& info,
                                       SimulatorStructure& structure) {
@@ -128,6 +148,7 @@ SUREFOOT_ONCE void conclude_structure(const StructureSearch& search, const Simul
     structure.velocity[i] = info.kind == SimulatorKind::ode && (structure.position_of[i] >= 0 ||
                                                                 !state.effort_unit.empty() || is_speed_unit(state.unit));
   }
+  structure.actuator = actuator_states(search, structure);
 }
 
 /// States on which a force does anything by way of the simulator's response. Throws a DiagnoseError where the response
@@ -208,7 +229,7 @@ SUREFOOT_ONCE SimulatorStructure find_structure(const SimulatorAnswers& answers,
   SimulatorStructure structure;
   structure.driven_signal.assign(info.signals.size(), false);
   StructureSearch search{std::vector(n, std::vector<bool>(n, true)), std::vector(n, std::vector<bool>(k, true)),
-                         std::vector(n, std::vector<bool>(n, false))};
+                         std::vector(n, std::vector<bool>(n, false)), std::vector<bool>(n, false)};
   Rng rng(1);
   std::vector<double> signals(info.signals.size());
   constexpr int rounds = 36;
@@ -228,7 +249,11 @@ SUREFOOT_ONCE SimulatorStructure find_structure(const SimulatorAnswers& answers,
     find_dependencies(search, answers, x, u, rate, scale, rng);
     const double reach = (round % 2 == 0 ? 10 : -10) * scale;
     for (double& value : u) value += reach * (0.1 + rng.uniform());
-    answers.rates(x, u, &signals);
+    const Eigen::VectorXd driven = answers.rates(x, u, &signals);
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      if (!nearly_equal(rate[row], driven[row])) search.driven[i] = true;
+    }
     for (std::size_t i = 0; i < signals.size(); ++i) {
       if (!nearly_equal(first[i], signals[i])) structure.driven_signal[i] = true;
     }
