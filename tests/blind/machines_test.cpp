@@ -9,6 +9,7 @@
 #include "machines/draw_case.hpp"
 #include "machines/equivalents.hpp"
 #include "machines/free_start.hpp"
+#include "machines/laws.hpp"
 #include "plants/calibrate.hpp"
 #include "plants/systems.hpp"
 
@@ -186,4 +187,47 @@ TEST_CASE("initial values that the model file leaves free are those of the readi
       machines::simulate_as_user(machine, actual, {}, recording, {4, false, false, nullptr, true}, {1e-3});
   CHECK(found.states[0][0] == doctest::Approx(0.07).epsilon(1e-6));
   CHECK(found.outputs[0].back() == doctest::Approx(recording.readings[0].back()).epsilon(1e-6));
+}
+
+TEST_CASE("a lagged or limited input is as late as its law says, and no step later") {
+  constexpr double step = 0.1, slope = 2;
+  plants::Column times, ramp;
+  for (int i = 0; i < 400; ++i) times.push_back(step * i), ramp.push_back(slope * step * (i + 0.5));
+  struct Expected {
+    Law law;
+    double a, value;
+  };
+  const double middle = times[300] + 0.5 * step;
+  for (const auto& [law, a, value] :
+       {Expected{Law::lag, 1.5, slope * (middle - 1.5)}, Expected{Law::second_lag, 1.5, slope * (middle - 1.5)},
+        Expected{Law::rate_limit, 1.2, 1.2 * (middle - times[1])}}) {
+    plants::Column values = ramp;
+    values[0] = 0;  // it rests until the second step
+    machines::change_input(effect("", "push", Where::input, law, 0, a), times, values);
+    CHECK(std::abs(values[300] - value) < 0.1 * slope * step);
+  }
+}
+
+TEST_CASE("hidden physics does not depend on the steps that it is integrated with") {
+  for (const Law law : {Law::load_bristles, Law::bristles, Law::rate_limit, Law::lag}) {
+    const bool force = law == Law::load_bristles || law == Law::bristles;
+    machines::Hidden hidden = effect("", force ? "v" : "push", force ? Where::speed : Where::input, law, force ? 1 : 0,
+                                     law == Law::load_bristles ? 0.2
+                                     : law == Law::lag         ? 0.05
+                                                               : 2);
+    hidden.b = 0, hidden.c = 1e-3;
+    const machines::Drawn one = with_effect(hidden);
+    const plants::Recording& recording = one.one.system.recordings[0];
+    plants::Recording seen = recording;
+    const auto run = [&](int steps) {
+      return machines::simulate(*one.machine, {2, 80, 5}, one.hidden, seen, {steps, false, false, nullptr}).outputs[0];
+    };
+    const plants::Column coarse = run(10), fine = run(160);
+    double apart = 0, size = 0;
+    for (std::size_t i = 0; i < fine.size(); ++i) {
+      apart += std::pow(coarse[i] - fine[i], 2), size += std::pow(fine[i], 2);
+    }
+    CAPTURE(static_cast<int>(law));
+    CHECK(std::sqrt(apart / size) < 1e-3);
+  }
 }
