@@ -46,6 +46,9 @@ TEST_CASE("products are Eigen's, few to the last bit") {
       check_product(surefoot::detail::product(turned, b), turned * b, m);
       check_product(surefoot::detail::transposed_product(a, b), a.transpose() * b, m);
       CHECK(surefoot::detail::transposed_product(a, x) == a.transpose() * x);
+      const Eigen::MatrixXd weighted = x.asDiagonal() * a, square = surefoot::detail::symmetric_product(weighted, a);
+      CHECK((square - a.transpose() * x.asDiagonal() * a).norm() <= 1e-14 * (a.transpose() * a).norm());
+      CHECK(square == square.transpose());
       CHECK(surefoot::detail::product(a, y) == a * y);
       CHECK(surefoot::detail::norm(x) == x.norm());
       CHECK(surefoot::detail::column_norm(a, n - 1) == a.col(n - 1).norm());

@@ -125,6 +125,16 @@ SUREFOOT_INLINE Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& a, con
   return result;
 }
 
+SUREFOOT_INLINE Eigen::MatrixXd symmetric_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  Eigen::MatrixXd result(a.cols(), b.cols());
+  for (Eigen::Index j = 0; j < b.cols(); ++j) {
+    for (Eigen::Index i = j; i < a.cols(); ++i) {
+      result(i, j) = result(j, i) = dot(a.data() + i * a.rows(), b.data() + j * b.rows(), a.rows());
+    }
+  }
+  return result;
+}
+
 SUREFOOT_INLINE Eigen::VectorXd transposed_product(const Eigen::MatrixXd& a, const Eigen::VectorXd& x) {
   Eigen::VectorXd result(a.cols());
   for (Eigen::Index i = 0; i < a.cols(); ++i) {
