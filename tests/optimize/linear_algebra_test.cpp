@@ -46,8 +46,11 @@ TEST_CASE("products are Eigen's, few to the last bit") {
       check_product(surefoot::detail::product(turned, b), turned * b, m);
       check_product(surefoot::detail::transposed_product(a, b), a.transpose() * b, m);
       CHECK(surefoot::detail::transposed_product(a, x) == a.transpose() * x);
-      const Eigen::MatrixXd weighted = x.asDiagonal() * a, square = surefoot::detail::symmetric_product(weighted, a);
-      CHECK((square - a.transpose() * x.asDiagonal() * a).norm() <= 1e-14 * (a.transpose() * a).norm());
+      Eigen::MatrixXd apart = a;  // columns of different rows
+      for (Eigen::Index j = 0; j < n; j += 2) apart.col(j).head(m / 2).setZero();
+      for (Eigen::Index j = 1; j < n; j += 3) apart.col(j).tail(m - m / 3).setZero();
+      const Eigen::MatrixXd square = surefoot::detail::weighted_square(apart, x);
+      CHECK((square - apart.transpose() * x.asDiagonal() * apart).norm() <= 1e-14 * a.squaredNorm());
       CHECK(square == square.transpose());
       CHECK(surefoot::detail::product(a, y) == a * y);
       CHECK(surefoot::detail::norm(x) == x.norm());

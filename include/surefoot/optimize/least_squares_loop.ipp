@@ -150,11 +150,7 @@ class LeastSquaresFit {
           "least_squares: the Jacobian must be finite with one row per residual and one column per parameter");
     }
     const Eigen::VectorXd weights = weights_at_x();
-    Eigen::MatrixXd weighted = jacobian_at_x_;
-    for (Eigen::Index j = 0; j < x_.size(); ++j) {
-      for (Eigen::Index i = 0; i < weights.size(); ++i) weighted(i, j) *= weights[i];
-    }
-    hessian_ = symmetric_product(weighted, jacobian_at_x_);
+    hessian_ = weighted_square(jacobian_at_x_, weights);
     take_gradient(weights);
   }
 

@@ -125,11 +125,32 @@ SUREFOOT_INLINE Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& a, con
   return result;
 }
 
-SUREFOOT_INLINE Eigen::MatrixXd symmetric_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  Eigen::MatrixXd result(a.cols(), b.cols());
-  for (Eigen::Index j = 0; j < b.cols(); ++j) {
+/// The rows of a column from its first that is not 0 to its last, begun at a multiple of dot()'s four.
+struct RowRange {
+  Eigen::Index begin, end;
+};
+
+SUREFOOT_INLINE RowRange rows_in_use(const double* column, Eigen::Index count) {
+  RowRange rows{0, count};
+  while (rows.end > 0 && column[rows.end - 1] == 0) --rows.end;
+  while (rows.begin < rows.end && column[rows.begin] == 0) ++rows.begin;
+  rows.begin -= rows.begin % 4;
+  return rows;
+}
+
+SUREFOOT_INLINE Eigen::MatrixXd weighted_square(const Eigen::MatrixXd& a, const Eigen::VectorXd& weights) {
+  std::vector<RowRange> used;
+  for (Eigen::Index j = 0; j < a.cols(); ++j) used.push_back(rows_in_use(a.data() + j * a.rows(), a.rows()));
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(a.cols(), a.cols());
+  Eigen::VectorXd weighted(a.rows());
+  for (Eigen::Index j = 0; j < a.cols(); ++j) {
+    const RowRange own = used[static_cast<std::size_t>(j)];
+    for (Eigen::Index k = own.begin; k < own.end; ++k) weighted[k] = weights[k] * a(k, j);
     for (Eigen::Index i = j; i < a.cols(); ++i) {
-      result(i, j) = result(j, i) = dot(a.data() + i * a.rows(), b.data() + j * b.rows(), a.rows());
+      const RowRange other = used[static_cast<std::size_t>(i)];
+      const Eigen::Index begin = std::max(own.begin, other.begin), end = std::min(own.end, other.end);
+      if (begin >= end) continue;
+      result(i, j) = result(j, i) = dot(weighted.data() + begin, a.data() + i * a.rows() + begin, end - begin);
     }
   }
   return result;
