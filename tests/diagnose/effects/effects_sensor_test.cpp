@@ -69,6 +69,16 @@ TEST_CASE("soft rounding is monotone, odd, and keeps multiples of the step nearl
   for (const double off : {-0.25, 0.25}) CHECK(std::abs(effects::soft_round(2 + off) - 2) < 0.03);
 }
 
+TEST_CASE("a sensor with sharp edges rounds, but for a hundredth of a step beside them") {
+  const auto rounded = read(effects::sharpened(effects::quantization()), {0.1}, {0, 1, 2}, {0.147, 0.153, -0.247});
+  CHECK(rounded[0] == doctest::Approx(0.1).epsilon(0.02));
+  CHECK(rounded[1] == doctest::Approx(0.2).epsilon(0.02));
+  CHECK(rounded[2] == doctest::Approx(-0.2).epsilon(0.02));
+  const auto cut = read(effects::sharpened(effects::quantization_floor()), {0.1}, {0, 1}, {0.197, -0.103});
+  CHECK(cut[0] == doctest::Approx(0.1).epsilon(0.02));
+  CHECK(cut[1] == doctest::Approx(-0.2).epsilon(0.02));
+}
+
 TEST_CASE("a sensor in steps reads multiples of its step") {
   const auto y = read(effects::quantization(), {0.1}, {0, 1, 2}, {0.12, 0.31, -0.48});
   CHECK(y[0] == doctest::Approx(0.1).epsilon(0.02));

@@ -82,6 +82,18 @@ TEST_CASE("a force that was there before the first row is found with its hystere
   CHECK(found.noise_ratio < 1.1);
 }
 
+TEST_CASE("the edges of a coarse sensor are as sharp as its readings say") {
+  for (const std::string form : {"sharp", ""}) {
+    const Diagnosis found = diagnosed({"quantization", "x_m", form, {}, {0.03}}, 0);
+    INFO(found.sentence);
+    REQUIRE(found.effects.size() == 1);
+    CHECK(found.effects[0].name == "quantization");
+    CHECK(found.effects[0].form == form);
+    CHECK(found.effects[0].parameters[0].value == doctest::Approx(0.03).epsilon(0.01));
+    CHECK(found.noise_ratio < 1.1);
+  }
+}
+
 TEST_CASE("a hysteresis between two forms is found in the one that holds both, a plain one in its own") {
   const Diagnosis between = diagnosed({"hysteresis", "v", "any exponent", {}, {4, 0.2, 0, 1.5}}, 0);
   INFO(between.sentence);

@@ -139,10 +139,16 @@ SUREFOOT_ONCE std::vector<Effect> state_effects() {
 }
 
 SUREFOOT_ONCE std::vector<Effect> sensor_effects() {
-  return {effects::sensor_bias(),    effects::sensor_scale(),
-          effects::sensor_delay(),   effects::sensor_delay_in_motion(),
-          effects::sensor_drift(),   effects::sensor_drift_settling(),
-          effects::quantization(),   effects::quantization_floor(),
+  return {effects::sensor_bias(),
+          effects::sensor_scale(),
+          effects::sensor_delay(),
+          effects::sensor_delay_in_motion(),
+          effects::sensor_drift(),
+          effects::sensor_drift_settling(),
+          effects::quantization(),
+          effects::quantization_floor(),
+          effects::sharpened(effects::quantization()),
+          effects::sharpened(effects::quantization_floor()),
           effects::backlash_sensor()};
 }
 
