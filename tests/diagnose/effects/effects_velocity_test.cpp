@@ -178,6 +178,24 @@ TEST_CASE("a friction with presliding has all of its level after some travel, an
   CHECK(effect.force(m, p, hidden) == doctest::Approx(1).epsilon(1e-3));
 }
 
+TEST_CASE("damped bristles add to a friction while they bend, and nothing once it slides") {
+  const Effect effect = effects::coulomb_friction_damped();
+  CHECK(effect.form == "presliding, damped");
+  CHECK(effect.extends == std::vector<std::string>{"presliding"});
+  CHECK_NOTHROW(check(effect));
+  const std::vector<double> p = {3, 0.01, 0.02};
+  EffectContext m;
+  std::vector<double> hidden(2);
+  effect.start(m, p, hidden);
+  m.value = 0.1;
+  CHECK(effect.force(m, p, hidden) == doctest::Approx(-3 * 0.02 * 0.1 / 0.01));  // straight bristles
+  m.position = 0.2;
+  CHECK(effect.force(m, p, hidden) == doctest::Approx(-3));
+  effect.advance(m, p, hidden);
+  m.value = -0.1;  // a reversal bends them twice as fast
+  CHECK(effect.force(m, p, hidden) == doctest::Approx(-3 * (1 - 2 * 0.02 * 0.1 / 0.01)));
+}
+
 TEST_CASE("a smooth friction has three quarters of its level at its onset, and all of it above") {
   const Effect effect = effects::smoothed(effects::coulomb_friction());
   CHECK(effect.form == "smooth");

@@ -82,6 +82,16 @@ TEST_CASE("a force that was there before the first row is found with its hystere
   CHECK(found.noise_ratio < 1.1);
 }
 
+TEST_CASE("a friction of damped bristles is found with the time of its damping") {
+  const Diagnosis found = diagnosed({"coulomb_friction", "v", "presliding, damped", {}, {4, 0.03, 0.06}}, 0);
+  INFO(found.sentence);
+  REQUIRE(found.effects.size() == 1);
+  CHECK(found.effects[0].name == "coulomb_friction");
+  CHECK(found.effects[0].form == "presliding, damped");
+  CHECK(found.effects[0].parameters[2].value == doctest::Approx(0.06).epsilon(0.1));
+  CHECK(found.noise_ratio < 1.1);
+}
+
 TEST_CASE("the edges of a coarse sensor are as sharp as its readings say") {
   for (const std::string form : {"sharp", ""}) {
     const Diagnosis found = diagnosed({"quantization", "x_m", form, {}, {0.03}}, 0);

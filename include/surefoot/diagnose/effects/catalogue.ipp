@@ -51,6 +51,7 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
   std::vector<Effect> all = {effects::viscous_friction(),
                              effects::coulomb_friction(),
                              effects::coulomb_friction_presliding(),
+                             effects::coulomb_friction_damped(),
                              effects::stribeck_friction(),
                              effects::stribeck_friction_tailed(),
                              effects::load_dependent_friction(),
@@ -78,10 +79,14 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
   for (std::size_t i = 0, count = all.size(); i < count; ++i) {
     if (!all[i].dry || all[i].form == "tailed") continue;
     if (all[i].needs_drive) all.push_back(effects::with_presliding(all[i]));
+    if (all[i].needs_drive && all[i].extends.empty())
+      all.push_back(effects::damped(effects::with_presliding(all[i]), all[i].dry));
     all.push_back(effects::smoothed(all[i]));
   }
   all.push_back(effects::with_presliding(effects::stribeck_friction()));
   all.back().extends = {"", "smooth"};
+  all.push_back(
+      effects::damped(effects::with_presliding(effects::stribeck_friction()), effects::stribeck_friction().dry));
   return all;
 }
 

@@ -13,6 +13,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -159,6 +161,34 @@ inline Effect with_presliding(Effect friction) {
     hidden[1] = m.position;
   };
   return friction;
+}
+
+/// A friction with presliding whose bristles are damped, where the plain one was found: the model of C. Canudas de Wit,
+/// H. Olsson, K. J. Astrom, P. Lischinsky, "A new model for control of systems with friction", IEEE Trans. Automatic
+/// Control 40(3), 1995, with the quotient of its damping and stiffness as a time.
+inline Effect damped(Effect effect, std::function<double(const EffectContext&, Values p)> level) {
+  effect.sentence += ", damped over {damping_time}";
+  effect.extends = {effect.form};
+  effect.form += ", damped";
+  const std::size_t width = effect.parameters.size() - 1;
+  effect.parameters.push_back(
+      {.name = "damping_time", .measure = {.time = 1}, .low = 0, .high = 0.05, .starts = {0.001, 0.005}});
+  effect.force = [level = std::move(level), width](const EffectContext& m, Values p, Values hidden) {
+    const double share = bouc_wen_1(hidden[0], m.position - hidden[1], p[width]) / p[width];
+    const double rate = (m.value - std::abs(m.value) * share) / p[width];
+    return -level(m, p) * (share + p[width + 1] * rate);
+  };
+  effect.limit_start = [width](Values p, HiddenStates hidden) { keep_between_levels(hidden, p[width]); };
+  effect.advance = [width](const EffectContext& m, Values p, HiddenStates hidden) {
+    hidden[0] = bouc_wen_1(hidden[0], m.position - hidden[1], p[width]);
+    hidden[1] = m.position;
+  };
+  return effect;
+}
+
+inline Effect coulomb_friction_damped() {
+  return damped(
+      coulomb_friction_presliding(), +[](const EffectContext&, Values p) { return p[0]; });
 }
 
 inline Effect hysteresis_asymmetric() {
