@@ -67,6 +67,14 @@ TEST_CASE("what overflows is lost, or arrives elsewhere by its share") {
   CHECK(spilled[1] == doctest::Approx(1 + 0.6 * (14 - 7)));
 }
 
+TEST_CASE("over a weir flows what comes in once the level is high enough") {
+  const double edge = 5, outflow = 20;
+  const Eigen::Vector2d end = end_of(effects::overflow_weir(), "upper", {edge, outflow}, 1);
+  CHECK(end[0] == doctest::Approx(edge * (1 + std::pow(1 / outflow, 2.0 / 3))).epsilon(1e-6));
+  CHECK(end[1] == 1);
+  CHECK(end_of(effects::overflow_weir(), "upper", {20, outflow}, 1)[0] == doctest::Approx(14));
+}
+
 TEST_CASE("a parameter that drifts acts by its mean over time") {
   // The inflow is constant within each row of 0.1 s.
   CHECK(end_of(effects::parameter_drift(), "inflow", {0.02}, 1)[0] ==

@@ -104,6 +104,27 @@ TEST_CASE("the edges of a coarse sensor are as sharp as its readings say") {
   }
 }
 
+TEST_CASE("a tank that overflows as over a weir is told from one that is cut off") {
+  for (const NamedEffect& effect :
+       {NamedEffect{"overflow", "level", "weir", {}, {0.2, 10}}, NamedEffect{"overflow", "level", "", {}, {0.3}}}) {
+    std::vector<Recording> logs;
+    Rng rng(5);
+    for (int r = 0; r < 6; ++r) {
+      Recording log = toys::tank_recording(r, 200);
+      log.outputs = simulate_augmented(toys::LeakyTank{}, toys::machine({1.1, 0.9}, {effect}), log).outputs;
+      for (double& level : log.outputs.reshaped()) level += 0.002 * rng.normal();
+      logs.push_back(std::move(log));
+    }
+    const Diagnosis found = diagnose(toys::LeakyTank{}, std::move(logs), DiagnoseOptions{}, Threads{}, 1);
+    INFO(found.sentence);
+    REQUIRE(found.effects.size() == 1);
+    CHECK(found.effects[0].name == "overflow");
+    CHECK(found.effects[0].form == effect.form);
+    CHECK(found.effects[0].parameters[0].value == doctest::Approx(effect.values[0]).epsilon(0.05));
+    CHECK(found.noise_ratio < 1.1);
+  }
+}
+
 TEST_CASE("a hysteresis between two forms is found in the one that holds both, a plain one in its own") {
   const Diagnosis between = diagnosed({"hysteresis", "v", "any exponent", {}, {4, 0.2, 0, 1.5}}, 0);
   INFO(between.sentence);

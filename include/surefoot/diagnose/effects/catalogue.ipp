@@ -139,8 +139,8 @@ SUREFOOT_ONCE std::vector<Effect> all_effects() {
 }
 
 SUREFOOT_ONCE std::vector<Effect> state_effects() {
-  return {effects::leak(), effects::leak_hole(), effects::constant_rate(), effects::overflow(),
-          effects::overflow_spill()};
+  return {effects::leak(),     effects::leak_hole(),      effects::constant_rate(),
+          effects::overflow(), effects::overflow_spill(), effects::overflow_weir()};
 }
 
 SUREFOOT_ONCE std::vector<Effect> sensor_effects() {

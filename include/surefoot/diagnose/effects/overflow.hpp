@@ -1,6 +1,11 @@
-// A level limit: what rises above `level` is lost. Form "spill": `share` of it arrives in another state.
+// A level limit: what rises above `level` is lost. Form "spill": `share` of it arrives in another state. Form "weir":
+// it rises above its edge, over which flows outflow ((x - level) / level)^(3/2) (H. Chanson: "The hydraulics of open
+// channel flow", 2004, chapter 19).
 // Confusable with a clipped sensor or a limited input, which also cut the top off.
 #pragma once
+
+#include <algorithm>
+#include <cmath>
 
 #include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/detail/extremes.hpp"
@@ -49,6 +54,23 @@ inline Effect overflow_spill() {
             other += p[1] * (value - p[0]);
             value = p[0];
           }};
+}
+
+inline Effect overflow_weir() {
+  Effect effect = overflow();
+  effect.sentence = "{at} overflows at {level} as over a weir, by {outflow} at twice that height";
+  effect.parameters[0].low = 0.01;
+  effect.parameters.push_back(
+      {.name = "outflow", .measure = {.effort = 1}, .low = 0.3, .high = 3e4, .starts = {30, 300}});
+  effect.form = "weir";
+  effect.extends = {""};
+  effect.suggest = {};
+  effect.limit = {};
+  effect.force = +[](const EffectContext& m, Values p, Values) {
+    const double above = std::max(m.value / p[0] - 1, 0.0);
+    return -p[1] * above * std::sqrt(above);
+  };
+  return effect;
 }
 
 }  // namespace surefoot::effects
