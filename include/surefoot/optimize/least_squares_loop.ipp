@@ -104,36 +104,14 @@ class LeastSquaresFit {
       direction[j] = hessian_(j, j) * last_step_[j];
       length += direction[j] * last_step_[j];
     }
-    const Eigen::VectorXd weights = weights_at_x();
-    if (length > 0) add_to_jacobian(weights, product(jacobian_at_x_, last_step_), times(1 / length, direction));
-    take_gradient(weights);
-  }
-
-  // J + (change - expected) shares^T, and what that makes of the Gauss-Newton matrix: a square of the number of
-  // parameters less work than from J anew.
-  void add_to_jacobian(const Eigen::VectorXd& weights, const Eigen::VectorXd& expected, const Eigen::VectorXd& shares) {
-    Eigen::VectorXd missed = last_change_, weighted = last_change_;
-    for (Eigen::Index i = 0; i < missed.size(); ++i) {
-      missed[i] -= expected[i];
-      weighted[i] = weights[i] * missed[i];
-    }
-    const Eigen::VectorXd along = transposed_product(jacobian_at_x_, weighted);
-    const double squares = dot(missed.data(), weighted.data(), missed.size());
-    for (Eigen::Index j = 0; j < x_.size(); ++j) {
-      for (Eigen::Index k = 0; k < x_.size(); ++k) {
-        hessian_(j, k) += along[j] * shares[k] + shares[j] * along[k] + squares * shares[j] * shares[k];
+    const Eigen::VectorXd expected = product(jacobian_at_x_, last_step_);
+    for (Eigen::Index j = 0; length > 0 && j < x_.size(); ++j) {
+      const double share = direction[j] / length;
+      for (Eigen::Index i = 0; i < residuals_.size(); ++i) {
+        jacobian_at_x_(i, j) += (last_change_[i] - expected[i]) * share;
       }
-      for (Eigen::Index i = 0; i < missed.size(); ++i) jacobian_at_x_(i, j) += missed[i] * shares[j];
     }
-  }
-
-  // Of the residuals at x_, by the loss.
-  Eigen::VectorXd weights_at_x() const {
-    Eigen::VectorXd weights(residuals_.size());
-    for (Eigen::Index i = 0; i < weights.size(); ++i) {
-      weights[i] = loss_terms(options_.loss, residuals_[i] / options_.loss_scale).weight;
-    }
-    return weights;
+    take_jacobian();
   }
 
   void linearise() {
@@ -142,24 +120,21 @@ class LeastSquaresFit {
     take_jacobian();
   }
 
-  // Gradient and Gauss-Newton matrix of the cost at x_.
+  // Gradient and Gauss-Newton matrix of the cost at x_, and which parameters are at an active bound.
   void take_jacobian() {
+    linearised_ = true;
     if (jacobian_at_x_.rows() != residuals_.size() || jacobian_at_x_.cols() != x_.size() ||
         !all_finite(jacobian_at_x_)) {
       throw OptimizeError(
           "least_squares: the Jacobian must be finite with one row per residual and one column per parameter");
     }
-    const Eigen::VectorXd weights = weights_at_x();
-    hessian_ = weighted_square(jacobian_at_x_, weights);
-    take_gradient(weights);
-  }
-
-  // Gradient of the cost at x_, and which parameters are at an active bound.
-  void take_gradient(const Eigen::VectorXd& weights) {
-    linearised_ = true;
-    Eigen::VectorXd weighted = residuals_;
-    for (Eigen::Index i = 0; i < weighted.size(); ++i) weighted[i] *= weights[i];
+    Eigen::VectorXd weights(residuals_.size()), weighted = residuals_;
+    for (Eigen::Index i = 0; i < weighted.size(); ++i) {
+      weights[i] = loss_terms(options_.loss, residuals_[i] / options_.loss_scale).weight;
+      weighted[i] *= weights[i];
+    }
     gradient_ = transposed_product(jacobian_at_x_, weighted);
+    hessian_ = weighted_square(jacobian_at_x_, weights);
     weighted_norm_ = norm(weighted);
     active_bound_.assign(static_cast<std::size_t>(x_.size()), false);
     if (!options_.box) return;
