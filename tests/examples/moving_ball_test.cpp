@@ -85,7 +85,7 @@ TEST_CASE("a short RFPI solves the eight dimensions far better than standing sti
   const MovingBall problem;
   surefoot::RfpiOptions options;
   options.first_states = 1500;
-  options.max_iterations = 10;
+  options.max_iterations = 20;
   const auto result = surefoot::rfpi(problem, options, surefoot::Threads{}, 1);
   const surefoot::RolloutOptions trials{.runs = 500, .horizon = MovingBall::horizon};
   const auto still = [](const MovingBall::State&) -> MovingBall::Action { return MovingBall::Action::Zero(); };
@@ -93,6 +93,6 @@ TEST_CASE("a short RFPI solves the eight dimensions far better than standing sti
   const auto gain_on = [&](const auto& other) {
     return surefoot::compare(problem, result.policy, other, trials, surefoot::Threads{}, 2);
   };
-  CHECK(gain_on(still).low() > 10);
+  CHECK(gain_on(still).low() > 30);
   CHECK(gain_on(random).low() > 10);
 }
