@@ -60,6 +60,16 @@ struct FollowingArm {
 
 }  // namespace
 
+TEST_CASE("a replay that runs away ends, without a reading from there on") {
+  FollowingArm arm;
+  arm.start.speed[0] = 1e12;  // MuJoCo takes no more than 1e10
+  const RobotPhysics physics(2);
+  const Eigen::MatrixXd readings = arm.replayed(physics);
+  CHECK(readings.row(0).allFinite());
+  CHECK_FALSE(readings.row(1).allFinite());
+  CHECK_FALSE(readings.bottomRows(1).allFinite());
+}
+
 TEST_CASE("a model that MuJoCo cannot load is refused in one sentence") {
   const ScratchFolder folder;
   for (const std::string text :

@@ -24,7 +24,8 @@ struct AugmentedModel {
 AugmentedModel augmented_model(const Robot& robot, const RobotPhysics& physics, double step,
                                const std::filesystem::path& folder, int integrator = mjINT_RK4);
 
-/// Angles from MuJoCo's own step over the recording: row x joint. Contacts are switched off.
+/// Angles from MuJoCo's own step over the recording: row x joint, infinite from where it runs away. Contacts are
+/// switched off.
 Eigen::MatrixXd replay(const Robot& robot, const AugmentedModel& augmented, const RobotPhysics& physics,
                        const RobotRecording& recording, const StartState& start);
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "augmented_xml.hpp"
 #include "robot_step.hpp"
@@ -59,6 +60,13 @@ struct Replay {
   }
 };
 
+// MuJoCo begins anew where a position, speed or acceleration is no number or too large.
+bool ran_away(const mjData& data) {
+  return data.warning[mjWARN_BADQPOS].number + data.warning[mjWARN_BADQVEL].number +
+             data.warning[mjWARN_BADQACC].number >
+         0;
+}
+
 }  // namespace
 
 Eigen::MatrixXd replay(const Robot& robot, const AugmentedModel& augmented, const RobotPhysics& physics,
@@ -88,6 +96,10 @@ Eigen::MatrixXd replay(const Robot& robot, const AugmentedModel& augmented, cons
     while (begin + r.data->time < recording.time[k] - m->opt.timestep / 2) {
       r.before_step(begin + r.data->time);
       mj_step(m, r.data.get());
+      if (ran_away(*r.data)) {
+        readings.bottomRows(readings.rows() - k).setConstant(std::numeric_limits<double>::infinity());
+        return readings;
+      }
     }
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
       readings(k, static_cast<Eigen::Index>(j)) = r.data->qpos[r.position[j]] + physics[j][Property::sensor_bias];
