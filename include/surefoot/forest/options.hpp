@@ -21,7 +21,7 @@ struct ExtraTreesOptions {
   bool bootstrap = false;  // each tree draws its samples with replacement; train_with_report then tells the error
   ThresholdRule threshold_rule = ThresholdRule::uniform;
   bool model_score = true;  // linear leaves: score splits by affine fits, not by variance
-  int split_samples = 0;  // so many samples of a node, evenly picked, or up to twice as many, score affine fits; 0: all
+  int split_samples = 0;    // linear leaves: so many samples of a node, or up to twice as many, score splits; 0: all
   double ridge = 1;         // linear leaves: see LeafOptions
   bool clamp = true;        // linear leaves: see LeafOptions
 };

@@ -36,10 +36,11 @@ Eigen::VectorXd add_lower_product(Eigen::VectorXd a, const Eigen::MatrixXd& lowe
 /// a^T, a^T b (each element a dot(); Eigen's bits as above) and a^T x.
 Eigen::MatrixXd transposed(const Eigen::MatrixXd& a);
 Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+Eigen::VectorXd transposed_product(const Eigen::MatrixXd& a, const Eigen::VectorXd& x);
+
 /// a^T diag(weights) a: half of the products, and none of the rows at the ends of a column that are 0, as in
 /// derivatives by what only one recording depends on.
 Eigen::MatrixXd weighted_square(const Eigen::MatrixXd& a, const Eigen::VectorXd& weights);
-Eigen::VectorXd transposed_product(const Eigen::MatrixXd& a, const Eigen::VectorXd& x);
 
 /// diagonal a diagonal, for a diagonal matrix.
 Eigen::MatrixXd scaled(const Eigen::VectorXd& diagonal, const Eigen::MatrixXd& a);

@@ -104,7 +104,7 @@ std::vector<typename P::State> choose_states(const P& problem, const RfpiOptions
 }
 
 /// Puts states that share leaves next to each other: large forests are then read from the cache that the states before
-/// have filled, and not from memory, more than a time for every state and tree.
+/// have filled, and not from memory again for every state.
 template <Problem P, class F>
 void sort_by_leaves(const P& problem, const F& forest, std::vector<typename P::State>& states) {
   if (forest.empty()) return;

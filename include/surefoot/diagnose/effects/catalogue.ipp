@@ -78,9 +78,11 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
                              effects::elastic_end_stop(false)};
   for (std::size_t i = 0, count = all.size(); i < count; ++i) {
     if (!all[i].dry || all[i].form == "tailed") continue;
-    if (all[i].needs_drive) all.push_back(effects::with_presliding(all[i]));
-    if (all[i].needs_drive && all[i].extends.empty())
-      all.push_back(effects::damped(effects::with_presliding(all[i]), all[i].dry));
+    if (all[i].needs_drive) {
+      const Effect presliding = effects::with_presliding(all[i]);
+      all.push_back(presliding);
+      if (all[i].extends.empty()) all.push_back(effects::damped(presliding, all[i].dry));
+    }
     all.push_back(effects::smoothed(all[i]));
   }
   all.push_back(effects::with_presliding(effects::stribeck_friction()));

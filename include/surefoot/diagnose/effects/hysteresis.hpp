@@ -146,18 +146,19 @@ inline Effect coulomb_friction_presliding() {
 inline Effect with_presliding(Effect friction) {
   friction.sentence += ", reached after {width} of presliding";
   friction.parameters[0].starts = {0.1};
+  const std::size_t width = friction.parameters.size();
   friction.parameters.push_back(presliding_width_parameter({0.01}));
   friction.form += friction.form.empty() ? "presliding" : ", presliding";
   for (std::string& form : friction.extends) form += ", presliding";
   friction.hidden_states = 2;
   friction.start_measure = Measure{.position = 1};
-  friction.force = [level = std::exchange(friction.dry, {})](const EffectContext& m, Values p, Values hidden) {
-    return -level(m, p) * bouc_wen_1(hidden[0], m.position - hidden[1], p.back()) / p.back();
+  friction.force = [level = std::exchange(friction.dry, {}), width](const EffectContext& m, Values p, Values hidden) {
+    return -level(m, p) * bouc_wen_1(hidden[0], m.position - hidden[1], p[width]) / p[width];
   };
   friction.start = start_of_path;
-  friction.limit_start = +[](Values p, HiddenStates hidden) { keep_between_levels(hidden, p.back()); };
-  friction.advance = +[](const EffectContext& m, Values p, HiddenStates hidden) {
-    hidden[0] = bouc_wen_1(hidden[0], m.position - hidden[1], p.back());
+  friction.limit_start = [width](Values p, HiddenStates hidden) { keep_between_levels(hidden, p[width]); };
+  friction.advance = [width](const EffectContext& m, Values p, HiddenStates hidden) {
+    hidden[0] = bouc_wen_1(hidden[0], m.position - hidden[1], p[width]);
     hidden[1] = m.position;
   };
   return friction;
@@ -177,11 +178,6 @@ inline Effect damped(Effect effect, std::function<double(const EffectContext&, V
     const double share = bouc_wen_1(hidden[0], m.position - hidden[1], p[width]) / p[width];
     const double rate = (m.value - std::abs(m.value) * share) / p[width];
     return -level(m, p) * (share + p[width + 1] * rate);
-  };
-  effect.limit_start = [width](Values p, HiddenStates hidden) { keep_between_levels(hidden, p[width]); };
-  effect.advance = [width](const EffectContext& m, Values p, HiddenStates hidden) {
-    hidden[0] = bouc_wen_1(hidden[0], m.position - hidden[1], p[width]);
-    hidden[1] = m.position;
   };
   return effect;
 }

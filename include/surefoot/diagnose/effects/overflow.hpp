@@ -59,7 +59,7 @@ inline Effect overflow_spill() {
 inline Effect overflow_weir() {
   Effect effect = overflow();
   effect.sentence = "{at} overflows at {level} as over a weir, by {outflow} at twice that height";
-  effect.parameters[0].low = 0.01;
+  effect.parameters[0].low = 0.01;  // the edge may be far below the level that is reached above it
   effect.parameters.push_back(
       {.name = "outflow", .measure = {.effort = 1}, .low = 0.3, .high = 3e4, .starts = {30, 300}});
   effect.form = "weir";
