@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <string>
 
 #include "apps/diagnose/robot/augmented_xml.hpp"
@@ -29,6 +30,8 @@ bool contains(const std::string& text, const std::string& words) {
   CAPTURE(text);
   return text.find(words) != std::string::npos && text.find('\n') == std::string::npos;
 }
+
+double root_mean_square(const Eigen::MatrixXd& one) { return one.norm() / std::sqrt(static_cast<double>(one.size())); }
 
 Robot small_robot(const ScratchFolder& folder) {
   robot_test::write_files(folder, robot_test::small_arm(), 2, 1);
@@ -182,6 +185,16 @@ TEST_CASE("goals that arrive late are replayed as nearly as goals that do not") 
   CHECK(distance() < 5 * in_time);
 }
 
+TEST_CASE("what hangs on the state within a step is replayed as it is simulated") {
+  const FollowingArm arm;
+  RobotPhysics physics = arm.robot.nominal;
+  physics[0][Property::backlash] = 0.02;
+  physics[0][Property::load_friction] = 0.2;
+  physics[1][Property::drag] = 1;
+  const Eigen::MatrixXd ours = arm.simulated(physics), theirs = arm.replayed(physics);
+  CHECK(root_mean_square(ours - theirs) < 1.5e-5);  // [rad]
+}
+
 TEST_CASE("readings that drives act on are as old in the replay as in the simulation") {
   const FollowingArm arm;
   RobotPhysics physics = arm.robot.nominal;
@@ -212,6 +225,20 @@ TEST_CASE("friction by load under strong damping is simulated as shorter steps s
   CHECK((usual - fine).norm() < 0.0006);
 }
 
+TEST_CASE("a drive that reaches its torque limit is simulated as shorter steps say") {
+  for (const double limit : {2.0, 0.5}) {
+    const ScratchFolder folder;
+    Robot robot = robot_test::arm_with_limit(folder, limit);
+    Evidence evidence(robot);
+    robot_test::add_recording(evidence, folder.file("rec_1.csv"));
+    const StartState start = start_of(evidence.motions[0]);
+    const auto simulated = [&] { return simulate_robot(robot, evidence.recordings[0], start, robot.nominal); };
+    const Eigen::MatrixXd usual = simulated();
+    robot.setup.step = 0.0001;
+    CHECK(root_mean_square(usual - simulated()) < 1e-5);  // [rad]
+  }
+}
+
 TEST_CASE("a drive that damps its joint within a step is simulated as shorter steps say") {
   const ScratchFolder folder;
   auto arm = robot_test::small_arm();
@@ -225,9 +252,8 @@ TEST_CASE("a drive that damps its joint within a step is simulated as shorter st
   const auto simulated = [&] { return simulate_robot(robot, evidence.recordings[0], start, robot.nominal); };
   const Eigen::MatrixXd usual = simulated();
   robot.setup.step = 0.0001;
-  const Eigen::MatrixXd difference = usual - simulated();
   constexpr double encoder = 1.5e-5;  // [rad], a part of a step of 14 bits
-  CHECK(difference.norm() / std::sqrt(static_cast<double>(difference.size())) < encoder);
+  CHECK(root_mean_square(usual - simulated()) < encoder);
 }
 
 TEST_CASE("torques lag by as much as they should at any step, and lags below a step count") {

@@ -63,7 +63,8 @@ class Extras {
     const double h = m->opt.timestep;
     for (std::size_t j = 0; j < joints.size(); ++j) {
       const JointExtras& joint = joints[j].joint;
-      const double q = d->qpos[position_[j]], v = d->qvel[dof_[j]];
+      // In mid-step, where MuJoCo's stages are on average.
+      const double q = d->qpos[position_[j]] + h / 2 * d->qvel[dof_[j]], v = d->qvel[dof_[j]] + h / 2 * d->qacc[dof_[j]];
       past_[j].push_front(goals[j]);
       const double back = joint.delay / h;
       const auto whole = static_cast<std::size_t>(back);

@@ -33,7 +33,9 @@ struct Replay {
     mjData* d = data.get();
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
       const JointPhysics& p = physics[j];
-      const double q = d->qpos[position[j]], v = d->qvel[dof[j]];
+      // In mid-step, where MuJoCo's stages are on average.
+      const double half = m->opt.timestep / 2, q = d->qpos[position[j]] + half * d->qvel[dof[j]];
+      const double v = d->qvel[dof[j]] + half * d->qacc[dof[j]];
       const int a = static_cast<int>(j);
       if (!begun) seen[j] = q;
       seen[j] = std::clamp(seen[j], q - p[Property::backlash], q + p[Property::backlash]);

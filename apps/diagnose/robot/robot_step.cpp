@@ -14,6 +14,8 @@ namespace {
 constexpr double runaway = 1e3;          // [rad]
 constexpr double shortest = 1e-12;       // [s]: rounding
 constexpr double smallest_share = 1e-6;  // of a step, that a substep takes
+// The same where a torque meets its limit: it does not jump there, so that less of a step makes no difference.
+constexpr double shortest_share_at_limit = 0.02;
 
 // Share of damping that acts on the speed at the end of a step, the rest on that at its beginning: half of it, which is
 // of second order, or as much more as it takes lest speeds ring, where `damped` = step * damping / mass is beyond 2.
@@ -95,16 +97,17 @@ DriveTorque RobotStep::drive(Eigen::Index i, Eigen::Index row, double t, double 
   torque.goal = late == 0 ? recording.goal(row, i) : mean_goal(recording, i, row, t - late, h);
   // Positions are those of mid-step.
   seen[i] = std::clamp(seen[i], q[i] - p[Property::backlash], q[i] + p[Property::backlash]);
-  const double gain = 1 + p[Property::torque_gain];
-  torque.constant = gain * stated.kp * (1 + p[Property::kp_error]) * (torque.goal - seen[i] - p[Property::sensor_bias]);
-  const double age = p[Property::reading_age], kd = gain * stated.kd * (1 + p[Property::kd_error]);
-  torque.damping = kd - gain * stated.kp * (1 + p[Property::kp_error]) * age;
+  const double gain = 1 + p[Property::torque_gain], kd = gain * stated.kd * (1 + p[Property::kd_error]);
+  const double age = p[Property::reading_age];
+  torque.stiffness = gain * stated.kp * (1 + p[Property::kp_error]);
+  torque.told_damping = torque.damping = kd - torque.stiffness * age;
   torque.inertia = -kd * (age + p[Property::speed_age]);
-  const double limit = stated.limit * (1 - p[Property::torque_limit]);
+  torque.limit = stated.limit * (1 - p[Property::torque_limit]);
+  torque.constant = torque.stiffness * (torque.goal - seen[i] - p[Property::sensor_bias]);
   torque.told = torque.constant - torque.damping * middle[i];
-  torque.saturated = limit > 0 && std::abs(torque.told) > limit;
+  torque.saturated = torque.limit > 0 && std::abs(torque.told) > torque.limit;
   if (torque.saturated) {
-    torque.constant = torque.told = std::copysign(limit, torque.told);
+    torque.constant = torque.told = std::copysign(torque.limit, torque.told);
     torque.damping = torque.inertia = 0;
   }
   if (p[Property::lag] > 0) {
@@ -136,6 +139,13 @@ double RobotStep::substep(Eigen::Index row, double t, double h) {
   stopped = -1;
   advance(row, t, h);
   const double share = share_until_rest();
+  const double until_limit = share_until_limit();
+  if (until_limit < share) {
+    restore(start_);
+    stopped = -1;
+    advance(row, t, until_limit * h);
+    return until_limit * h;
+  }
   if (stopped < 0) return h;
   const int joint = stopped;
   if (share < smallest_share) {  // it is at rest already, within rounding
@@ -150,6 +160,29 @@ double RobotStep::substep(Eigen::Index row, double t, double h) {
   v[joint] = 0;
   passed_ = 0;  // speeds do not go on as they did
   return share * h;
+}
+
+// What the drive of a joint is told with its goal of the step that was just made.
+double RobotStep::told(Eigen::Index i, double angle, double speed) const {
+  const JointPhysics& p = joint(i);
+  const DriveTorque& torque = drives[static_cast<std::size_t>(i)];
+  const double reads = std::clamp(seen[i], angle - p[Property::backlash], angle + p[Property::backlash]);
+  return torque.stiffness * (torque.goal - reads - p[Property::sensor_bias]) - torque.told_damping * speed;
+}
+
+// Of the step that was just made, until the first torque reaches its limit or leaves it; 1: none does.
+double RobotStep::share_until_limit() const {
+  double first = 1;
+  for (Eigen::Index i = 0; i < v.size(); ++i) {
+    const double limit = drives[static_cast<std::size_t>(i)].limit;
+    if (!(limit > 0)) continue;
+    const double begin = told(i, start_.q[i], start_.v[i]), end = told(i, q[i], v[i]);
+    for (const double at : {-limit, limit}) {
+      const double share = (at - begin) / (end - begin);
+      if (share > shortest_share_at_limit && share < 1 - shortest_share_at_limit) first = std::min(first, share);
+    }
+  }
+  return first;
 }
 
 // Of the step that was just made, until the first joint that slips comes to rest; `stopped` is that joint.

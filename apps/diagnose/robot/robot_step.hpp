@@ -12,6 +12,8 @@ namespace diagnose_robot {
 /// are those of now less tau times their rate: damping kd - kp tau, inertia -kd tau.
 struct DriveTorque {
   double goal = 0, constant = 0, damping = 0, inertia = 0;
+  double stiffness = 0, told_damping = 0;  // of what it is told, also at its limit
+  double limit = 0;                        // [N m]; 0: none
   double told = 0;         // before limit and lag, at the speed of mid-step
   bool saturated = false;  // at its limit: what it is told does not matter
 };
@@ -47,8 +49,9 @@ struct RobotStep {
   /// From time t, which is in this row, by h.
   void step(Eigen::Index row, double t, double h);
 
-  /// The same, but only until a joint with dry friction comes to rest, where its friction turns: without that, each
-  /// reversal would cost the second order. Returns the time that has passed, `stopped` says which joint.
+  /// The same, but only until a joint with dry friction comes to rest, where its friction turns, or until a torque
+  /// reaches its limit or leaves it: with one law for all of a step, each of these would cost the second order. Returns
+  /// the time that has passed, `stopped` says which joint came to rest.
   double substep(Eigen::Index row, double t, double h);
 
   /// What sensors say now.
@@ -69,6 +72,8 @@ struct RobotStep {
   void restore(const State& state);
   void advance(Eigen::Index row, double t, double h);
   double share_until_rest();
+  double told(Eigen::Index i, double angle, double speed) const;
+  double share_until_limit() const;
   void solve_friction();
 
   void rigid_bodies();
