@@ -128,8 +128,8 @@ template <class Problem>
 surefoot::ForestPolicy<Problem> shrink(const surefoot::ForestPolicy<Problem>& policy, const ExportOptions& options,
                                        const surefoot::Threads& threads) {
   const DistillOptions distill{.runs = options.runs};
-  const auto data = demonstrations(policy, distill, threads, options.seed);
   int leaves = static_cast<int>(1000 * options.max_kb / 143);  // about what a leaf takes in the file [bytes]
+  const auto data = demonstrations_to_imitators(policy, leaves, distill, threads, options.seed);
   for (;;) {
     const auto exact = imitate(policy.problem(), data, leaves, distill, threads, options.seed);
     const surefoot::ForestPolicy<Problem> small{policy.problem(), surefoot::with_short_floats(exact.forest())};
@@ -181,7 +181,9 @@ void add_export(example::Command& program) {
           "price is told; 0: no limit")
       ->check(example::between(0, 1'000'000))
       ->capture_default_str();
-  command->add_option("--runs", options->runs, "runs of the policy that the smaller one learns from")
+  command
+      ->add_option("--runs", options->runs,
+                   "runs that the smaller policy learns from: of the policy, and twice of smaller ones")
       ->check(example::between(1, 1'000'000))
       ->capture_default_str();
   command->add_option("--trials", options->trials, "independent runs that tell its price")
