@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "../wording.hpp"
+#include "fewer_terms.hpp"
 #include "findings.hpp"
 #include "numerical_error.hpp"
 #include "other_starts.hpp"
@@ -119,6 +120,7 @@ SearchResult search_terms(const Evidence& given, const Progress& progress, const
   RigidCache cache;
   OtherStarts starts;
   TermSet simulated = point.set;  // of which numerical errors are known
+  TermSet fitted = point.set;     // that fewer terms were tried instead of
   for (int round = 0; round < criteria.most_rounds; ++round) {
     if (evidence.stop.stop_requested()) {
       result.complete = false;
@@ -137,6 +139,10 @@ SearchResult search_terms(const Evidence& given, const Progress& progress, const
                   "or less than simulations of one model differ by, or only few blocks speak for it", point,
                   result.dropped)) {
       if (starts.try_next(evidence, model, point)) continue;
+      if (fitted != point.set) {
+        fitted = point.set;
+        if (do_with_fewer(evidence, model, point)) continue;
+      }
       if (simulated != point.set) {
         simulated = point.set;
         const RobotPhysics physics = physics_of(evidence.terms, point.theta, evidence.base);
