@@ -60,6 +60,23 @@ TEST_CASE("dry friction in one joint of an arm is found with its size, and nothi
     CHECK(std::filesystem::file_size(folder.file(std::string("out/") + file)) > 100);
 }
 
+TEST_CASE("fast drives are replayed to the stated error, with steps that are short enough") {
+  const ScratchFolder folder;
+  auto arm = robot_test::small_arm();
+  for (auto& joint : arm.joints) {
+    joint.kp *= 8;
+    joint.kd *= 8;
+    joint.limit *= 8;
+  }
+  robot_test::write_files(folder, arm, 11);
+  const Outcome outcome = diagnose(folder);
+  CAPTURE(outcome.output);
+  REQUIRE(outcome.code == 0);
+  const json result = result_of(folder);
+  CHECK(double(result["robot"]["rmse_replayed"]) ==
+        doctest::Approx(double(result["robot"]["rmse_after"])).epsilon(0.02));
+}
+
 TEST_CASE("an arm that is as its model says gets no effect") {
   const ScratchFolder folder;
   robot_test::write_files(folder, robot_test::small_arm(), 12);

@@ -54,7 +54,7 @@ struct FollowingArm {
     return simulate_robot(robot, recording(), start, physics);
   }
   AugmentedModel augmented(const RobotPhysics& physics) const {
-    return augmented_model(robot, physics, simulation_step(robot, recording()) / steps_of_ours, folder.path());
+    return augmented_model(robot, physics, simulation_step(robot, recording()) / steps_of_ours.front(), folder.path());
   }
   Eigen::MatrixXd replayed(const RobotPhysics& physics) const {
     return replay(robot, augmented(physics), physics, recording(), start);

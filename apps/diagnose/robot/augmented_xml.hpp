@@ -1,6 +1,7 @@
 // The corrected model: MJCF with what was found in it, a C++ header for what MJCF cannot say, and a replay of both.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -11,8 +12,9 @@
 
 namespace diagnose_robot {
 
-/// Steps of MuJoCo (Runge-Kutta of fourth order, but drives and friction change at whole steps) for one of ours.
-inline constexpr double steps_of_ours = 4;
+/// Steps of MuJoCo (Runge-Kutta of fourth order, but drives and friction change at whole steps) for one of ours: as few
+/// as replay what was simulated.
+inline constexpr std::array<double, 2> steps_of_ours{4, 16};
 
 struct AugmentedModel {
   std::string xml, header;
