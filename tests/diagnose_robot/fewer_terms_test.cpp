@@ -4,7 +4,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cmath>
+#include <initializer_list>
+#include <utility>
+#include <vector>
 
 #include "tests/diagnose_robot/small_robots.hpp"
 

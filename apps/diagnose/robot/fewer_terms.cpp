@@ -22,8 +22,7 @@ bool shares_joint(const Evidence& evidence, const TermSet& set, std::size_t term
 }  // namespace
 
 bool do_with_fewer(const Evidence& evidence, const LinearModel& model, Point& point, const FewerCriteria& criteria) {
-  const auto cost = [&](const Point& at) { return misfit(evidence, model, at) + cost_of(model, at.set); };
-  double least = cost(point);
+  double least = misfit_and_cost(evidence, model, point);
   bool found = false;
   Point best;
   for (std::size_t t = 0; t < point.set.size(); ++t) {
@@ -35,7 +34,7 @@ bool do_with_fewer(const Evidence& evidence, const LinearModel& model, Point& po
     without.theta[static_cast<Eigen::Index>(t)] = 0;
     without.errors = errors_at(evidence, without.theta, without.starts);
     settle(evidence, model, criteria.fits, without);
-    const double here = cost(without);
+    const double here = misfit_and_cost(evidence, model, without);
     if (here > least) continue;
     least = here;
     best = std::move(without);

@@ -106,8 +106,7 @@ std::vector<int> OtherStarts::worst_joints(const Evidence& evidence, const Point
 
 bool OtherStarts::try_next(const Evidence& evidence, const LinearModel& model, Point& point) {
   if (evidence.robot.setup.drive == DriveKind::torque) return false;
-  const auto cost = [&](const Point& at) { return misfit(evidence, model, at) + cost_of(model, at.set); };
-  double least = cost(point) - ChoiceCriteria().needed;
+  double least = misfit_and_cost(evidence, model, point) - ChoiceCriteria().needed;
   while (tries_ < criteria_.most_tries) {
     const std::vector<int> joints = worst_joints(evidence, point);
     if (joints.empty()) return false;
@@ -125,7 +124,7 @@ bool OtherStarts::try_next(const Evidence& evidence, const LinearModel& model, P
         seen.push_back(one);
         others += start.read ? 0 : 1;
         settle(evidence, model, criteria_.fits, start.point);
-        const double here = cost(start.point);
+        const double here = misfit_and_cost(evidence, model, start.point);
         if (!(here < least) || is_at_bound(model, start)) continue;
         least = here;
         best = start.point;

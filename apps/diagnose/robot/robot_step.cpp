@@ -162,8 +162,8 @@ double RobotStep::substep(Eigen::Index row, double t, double h) {
   return share * h;
 }
 
-// What the drive of a joint is told with its goal of the step that was just made.
-double RobotStep::told(Eigen::Index i, double angle, double speed) const {
+// What the drive of a joint is told at this angle and speed, with its goal of the step that was just made.
+double RobotStep::told_at(Eigen::Index i, double angle, double speed) const {
   const JointPhysics& p = joint(i);
   const DriveTorque& torque = drives[static_cast<std::size_t>(i)];
   const double reads = std::clamp(seen[i], angle - p[Property::backlash], angle + p[Property::backlash]);
@@ -176,7 +176,7 @@ double RobotStep::share_until_limit() const {
   for (Eigen::Index i = 0; i < v.size(); ++i) {
     const double limit = drives[static_cast<std::size_t>(i)].limit;
     if (!(limit > 0)) continue;
-    const double begin = told(i, start_.q[i], start_.v[i]), end = told(i, q[i], v[i]);
+    const double begin = told_at(i, start_.q[i], start_.v[i]), end = told_at(i, q[i], v[i]);
     for (const double at : {-limit, limit}) {
       const double share = (at - begin) / (end - begin);
       if (share > shortest_share_at_limit && share < 1 - shortest_share_at_limit) first = std::min(first, share);

@@ -72,7 +72,7 @@ struct RobotStep {
   void restore(const State& state);
   void advance(Eigen::Index row, double t, double h);
   double share_until_rest();
-  double told(Eigen::Index i, double angle, double speed) const;
+  double told_at(Eigen::Index i, double angle, double speed) const;
   double share_until_limit() const;
   void solve_friction();
 

@@ -38,6 +38,10 @@ double cost_of(const LinearModel& model, const TermSet& set) {
   return sum;
 }
 
+double misfit_and_cost(const Evidence& evidence, const LinearModel& model, const Point& point) {
+  return misfit(evidence, model, point) + cost_of(model, point.set);
+}
+
 bool move(const Evidence& evidence, const LinearModel& model, const TermSet& set, const MoveCriteria& criteria,
           Point& point) {
   const Eigen::VectorXd change = fit_linear(model, set).change;

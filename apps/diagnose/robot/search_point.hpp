@@ -27,6 +27,9 @@ double misfit(const Evidence& evidence, const LinearModel& model, const Point& p
 /// Cost of having the terms.
 double cost_of(const LinearModel& model, const TermSet& set);
 
+/// The two together: what a search lowers.
+double misfit_and_cost(const Evidence& evidence, const LinearModel& model, const Point& point);
+
 /// Along the linear model's change to this set, as far as errors fall. False if they do not.
 bool move(const Evidence& evidence, const LinearModel& model, const TermSet& set, const MoveCriteria& criteria,
           Point& point);

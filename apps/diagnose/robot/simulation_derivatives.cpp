@@ -119,7 +119,7 @@ struct Tangent {
     const double side = sign_of(then.seen[i] - angle);
     const bool touches = std::abs(then.seen[i] - angle) > p[Property::backlash];
     if (touches) tree.seen.row(r) = tree.angle.row(r);
-    const double gain = 1 + p[Property::torque_gain], kp = gain * stated.kp * (1 + p[Property::kp_error]);
+    const double gain = 1 + p[Property::torque_gain], kp = drive.stiffness;
     const double kd = gain * stated.kd * (1 + p[Property::kd_error]), age = p[Property::reading_age],
                  of_speed = age + p[Property::speed_age];
     const double error = drive.goal - now.seen[i] - p[Property::sensor_bias];

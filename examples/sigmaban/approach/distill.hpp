@@ -76,8 +76,8 @@ surefoot::ForestPolicy<P> imitate(const P& problem, const Demonstrations<P>& dem
   return {problem, surefoot::train_extra_trees<surefoot::LinearLeaf>(demonstrations, tree, executor, seed)};
 }
 
-/// The same along runs of the larger policy and, round after round, of the imitation of what was shown so far, with so
-/// many leaves.
+/// What the larger policy does along its own runs and, round after round, along those of the imitation of what was
+/// shown so far, with so many leaves.
 template <surefoot::Problem P, surefoot::Executor E>
 Demonstrations<P> demonstrations_to_imitators(const surefoot::ForestPolicy<P>& policy, int leaves,
                                               const DistillOptions& options, const E& executor, std::uint64_t seed) {
