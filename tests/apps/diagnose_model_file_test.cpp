@@ -175,6 +175,9 @@ TEST_CASE("a unit may be written as the column's name ends") {
   CHECK(diagnose_program::unit_fits("flow_L_s", "L/s"));
   CHECK(diagnose_program::unit_fits("heater_degC", "C"));
   CHECK_FALSE(diagnose_program::unit_fits("heater_degC", "K"));
+  CHECK(diagnose_program::unit_fits("conc_g_l", "g/l"));
+  CHECK(diagnose_program::unit_fits("conc_kg_m3", "kg/m^3"));
+  CHECK_FALSE(diagnose_program::unit_fits("conc_kg_m3", "g/l"));
   CHECK_FALSE(diagnose_program::unit_fits("speed_m_s", "rad"));
 }
 

@@ -73,6 +73,17 @@ TEST_CASE("what a model says shows outliers among readings that move fast by the
   CHECK(std::isnan(lively.outputs(0, 200)));
 }
 
+TEST_CASE("where only the simulation jumps no reading is an outlier") {
+  Recording smooth = tank();
+  Eigen::MatrixXd simulated = smooth.outputs;
+  for (Eigen::Index i = 0; i < 400; ++i)
+    smooth.outputs(0, i) = simulated(0, i) = 0.3 * std::sin(0.1 * static_cast<double>(i));
+  simulated(0, 200) += 0.5;
+  CHECK(remove_outliers(info, smooth, simulated).empty());
+  smooth.outputs(0, 100) += 0.5;
+  CHECK(remove_outliers(info, smooth, simulated).size() == 1);
+}
+
 TEST_CASE("steps, slow swings, noise and short pulses of two rows are no outliers") {
   Recording plain = tank();
   CHECK(remove_outliers(info, plain).empty());

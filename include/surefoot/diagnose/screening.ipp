@@ -95,6 +95,8 @@ SUREFOOT_ONCE std::vector<Remark> remove_outliers(const SimulatorInfo& info, Rec
     for (Eigen::Index i = 1; i + 1 < y.size(); ++i) {
       const double bend = std::abs(y[i] - 0.5 * (y[i - 1] + y[i + 1]));
       if (!(bend > limit) || std::abs(y[i + 1] - y[i - 1]) > 0.5 * bend) continue;
+      const double of_readings = std::abs(readings[i] - 0.5 * (readings[i - 1] + readings[i + 1]));
+      if (of_readings < 0.5 * bend) continue;  // it is the simulation that jumps
       recording.outputs(k, i) = std::numeric_limits<double>::quiet_NaN();
       char text[200];
       std::snprintf(text, sizeof text, "one outlier of %s at time %.4g (%.4g between %.4g and %.4g) was taken out",

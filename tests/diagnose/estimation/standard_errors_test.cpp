@@ -72,6 +72,23 @@ TEST_CASE("parameters that only matter together are said to be unknown, however 
   }
 }
 
+/// The same, of which the simulation jumps by a thousandth of the noise, as where friction sticks a little sooner.
+struct JumpyTank : TwiceUnknownTank {
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& p) const {
+    constexpr double jump = 2e-5;
+    return Output(jump * std::round(x[0] / jump + 1e4 * p[0]) - 1e4 * jump * p[0]);
+  }
+};
+
+TEST_CASE("what jumps in a simulation is no knowledge of parameters that only matter together") {
+  const BoundSimulator bound = bind_simulator(JumpyTank{}, tanks(4, 200, 1.5, 0.7, 0.02));
+  const FitProblem problem = problem_of(4, 0.02);
+  const Fit fitted = fit(bound, nominal_hypothesis(bound), problem, serially());
+  const StandardErrors errors = standard_errors(bound, fitted.hypothesis, problem, serially());
+  for (const int k : {0, 1}) CHECK(errors.deviation[k] > 0.3 * fitted.hypothesis.parameters[k]);
+  CHECK(errors.deviation[2] < 0.1);
+}
+
 TEST_CASE("parameters that trade off are correlated, and a hypothesis without parameters has no errors") {
   const BoundSimulator bound = bind_simulator(LeakyTank{}, tanks(2, 200, 1.5, 0.7, 0.02));
   const StandardErrors errors = standard_errors(bound, nominal_hypothesis(bound), problem_of(2, 0.02), serially());

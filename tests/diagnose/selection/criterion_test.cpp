@@ -11,9 +11,19 @@
 #include <string>
 #include <vector>
 
+#include "surefoot/diagnose/effects/cogging.hpp"
+#include "surefoot/diagnose/effects/constant_force.hpp"
+#include "surefoot/diagnose/effects/coulomb_friction.hpp"
+#include "surefoot/diagnose/effects/cubic_stiffness.hpp"
 #include "surefoot/diagnose/effects/first_order_lag.hpp"
 #include "surefoot/diagnose/effects/hysteresis.hpp"
 #include "surefoot/diagnose/effects/not_settled.hpp"
+#include "surefoot/diagnose/effects/quadratic_drag.hpp"
+#include "surefoot/diagnose/effects/sensor_bias.hpp"
+#include "surefoot/diagnose/effects/sensor_delay.hpp"
+#include "surefoot/diagnose/effects/sensor_drift.hpp"
+#include "surefoot/diagnose/effects/stribeck_friction.hpp"
+#include "surefoot/diagnose/effects/viscous_friction.hpp"
 #include "tests/diagnose/verdict/tank_setup.hpp"
 
 namespace surefoot::diagnosis {
@@ -79,18 +89,49 @@ TEST_CASE("beside what leaves only noise, errors of form are as small as a diagn
   CHECK(negligible(1) == 0.1);
 }
 
+AttachedEffect attached(const Effect& effect, int at = 0, const std::string& place = "here") {
+  return {std::make_shared<const Effect>(effect), at, -1, place, 0};
+}
+
 TEST_CASE("a further effect may mend the form of another, and is no better for that; an effect in its place is") {
   EvaluatedHypothesis one = evaluated({3}), two = evaluated({1});
   two.errors.least = Eigen::VectorXd::Constant(1, 9.0);
   two.errors.least_of_as_many = Eigen::VectorXd::Constant(1, 0.4);
-  const auto effects = [](std::size_t count) { return std::vector<AttachedEffect>(count); };
-  one.hypothesis.effects = effects(1);
-  two.hypothesis.effects = effects(2);
+  one.hypothesis.effects = {attached(effects::coulomb_friction())};
+  two.hypothesis.effects = {attached(effects::coulomb_friction()), attached(effects::viscous_friction())};
   const double against_fewer = log_odds(two, one, selection_criteria);
-  one.hypothesis.effects = effects(2);
+  one.hypothesis.effects = {attached(effects::coulomb_friction()), attached(effects::quadratic_drag())};
   CHECK(log_odds(two, one, selection_criteria) > 10 * std::max(1.0, against_fewer));
   const std::vector<double> share = probabilities({one, two}, selection_criteria);
   CHECK(share[1] > 0.99);
+}
+
+TEST_CASE("a further effect elsewhere that leaves only noise counts in full, however large the first one is") {
+  EvaluatedHypothesis one = evaluated({3}), two = evaluated({1});
+  two.errors.least = Eigen::VectorXd::Constant(1, 9.0);
+  two.errors.least_of_as_many = Eigen::VectorXd::Constant(1, 0.4);
+  one.hypothesis.effects = {attached(effects::coulomb_friction())};
+  two.hypothesis.effects = {attached(effects::coulomb_friction()), attached(effects::sensor_delay(), 0, "elsewhere")};
+  CHECK(log_odds(two, one, selection_criteria) > 20);
+}
+
+TEST_CASE("what acts on the same, along a coupling, or is like another effect may mend its form") {
+  const auto may_mend = [](const AttachedEffect& extra, const AttachedEffect& first) {
+    Hypothesis smaller, larger;
+    smaller.effects = {first};
+    larger.effects = {first, extra};
+    return may_mend_form(larger, smaller);
+  };
+  const AttachedEffect friction = attached(effects::coulomb_friction(), 1, "w");
+  CHECK(may_mend(attached(effects::viscous_friction(), 1, "w"), friction));
+  CHECK(may_mend(attached(effects::cogging(), 1, "w"), friction));  // unlike, but at the same velocity
+  CHECK_FALSE(may_mend(attached(effects::cogging(), 2, "v"), friction));
+  CHECK(may_mend(attached(effects::stribeck_friction(), 2, "v"), friction));  // like it
+  CHECK_FALSE(may_mend(attached(effects::sensor_delay(), 1, "w"), friction));
+  CHECK(may_mend(attached(effects::viscous_friction(), 1, "w"),
+                 attached(effects::cubic_stiffness_coupling(), 4, "belt")));
+  CHECK_FALSE(may_mend(friction, attached(effects::constant_force(), 1, "w")));  // a constant has no form
+  CHECK_FALSE(may_mend(attached(effects::sensor_drift(), 0, "y"), attached(effects::sensor_bias(), 0, "y")));
 }
 
 TEST_CASE("the scale of a recording is its own in part: errors that differ from one to the next are no worse for it") {

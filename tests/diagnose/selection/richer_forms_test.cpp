@@ -92,6 +92,42 @@ TEST_CASE("a friction of damped bristles is found with the time of its damping")
   CHECK(found.noise_ratio < 1.1);
 }
 
+TEST_CASE("other forms of an effect are tried from the fit that was found, the best first") {
+  using namespace diagnosis;
+  BoundSimulator bound =
+      bind_simulator(SprungBlock{}, block_logs({"coulomb_friction", "v", "smooth", {}, {4, 0.08}}, 0));
+  std::vector<Effect> forms = all_effects();
+  std::erase_if(forms, [](const Effect& one) { return one.name != "coulomb_friction"; });
+  const std::vector<AttachedEffect> candidates = attachments(bound, forms, std::vector<bool>(1, true));
+  SearchProblem problem;
+  for (std::size_t r = 0; r < bound.recordings.size(); ++r) problem.fit.recordings.push_back(r);
+  problem.screened = problem.fit.recordings;
+  const Hypothesis nominal = nominal_hypothesis(bound);
+  const auto runs = simulate_all(bound, nominal, problem.fit.recordings, {}, serially());
+  bound.sizes = measure_sizes(bound, nominal, problem.fit.recordings, runs);
+  problem.fit.weighting.sigma.setConstant(2, 0.001);
+  problem.scale.sigma = error_scale(bound);
+  problem.candidates = candidates.size();
+  const Parallel alone = serially();
+  const Search search{bound, problem, candidates, alone};
+  Hypothesis plain = nominal;
+  const auto one = std::find_if(candidates.begin(), candidates.end(),
+                                [](const AttachedEffect& form) { return form.effect->form.empty(); });
+  plain.effects.push_back(*one);
+  plain.values.emplace_back(Eigen::VectorXd::Constant(1, 3.8));
+  const EvaluatedHypothesis found = evaluate_fit(bound, fit(bound, plain, problem.fit, alone), problem, alone);
+  const auto others = in_other_forms(search, found, 0, 3);
+  REQUIRE_FALSE(others.empty());
+  CHECK(others[0].hypothesis.effects[0].effect->form == "smooth");
+  CHECK(others[0].hypothesis.values[0][1] == doctest::Approx(0.08).epsilon(0.05));
+  CHECK(others[0].errors.rms() < 0.5 * found.errors.rms());
+  for (const EvaluatedHypothesis& other : others) {
+    CHECK(other.hypothesis.effects.size() == 1);
+    CHECK_FALSE(other.hypothesis.effects[0].effect->form.empty());  // not itself
+    CHECK(other.hypothesis.effects[0].effect->extends.empty());
+  }
+}
+
 TEST_CASE("the edges of a coarse sensor are as sharp as its readings say") {
   for (const std::string form : {"sharp", ""}) {
     const Diagnosis found = diagnosed({"quantization", "x_m", form, {}, {0.03}}, 0);

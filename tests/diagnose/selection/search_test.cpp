@@ -4,11 +4,16 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "surefoot/core/rng.hpp"
+#include "surefoot/core/vec.hpp"
+#include "surefoot/diagnose/diagnose.hpp"
 #include "tests/diagnose/selection/tank_bench.hpp"
 
 namespace surefoot::diagnosis {
@@ -35,6 +40,57 @@ TEST_CASE("the search ends with the two effects that act") {
   };
   CHECK(value("constant_rate") == doctest::Approx(0.2).epsilon(0.1));
   CHECK(value("sensor_drift") == doctest::Approx(0.05).epsilon(0.2));
+}
+
+/// Two tanks, the upper one of which no sensor sees, so that its unit is free: Bernoulli's law.
+struct TwoTanks {
+  using State = Vec<2>;
+  using Input = Vec<1>;
+  using Output = Vec<1>;
+  SimulatorInfo info() const {
+    return {.name = "two_tanks",
+            .states = {{"upper", "V"}, {"lower", "V"}},
+            .inputs = {{"pump", "V"}},
+            .outputs = {{"lower_V", "V"}},
+            .parameters = {{"k1", "1", 0.05, 0.005, 0.5},
+                           {"k2", "1", 0.05, 0.005, 0.5},
+                           {"k3", "1", 0.05, 0.005, 0.5},
+                           {"k4", "1", 0.04, 0.004, 0.4}}};
+  }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& p) const {
+    const double out = std::sqrt(std::max(x[0], 0.0));
+    return {p[3] * u[0] - p[0] * out, p[1] * out - p[2] * std::sqrt(std::max(x[1], 0.0))};
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return Output(x[1]); }
+};
+
+TEST_CASE("two tanks that both overflow are found, though neither overflow explains much without the other") {
+  std::vector<Recording> logs;
+  Rng rng(5);
+  for (int r = 0; r < 4; ++r) {
+    Recording log = toys::blank_recording(TwoTanks{}.info(), 200, 4);
+    log.name = "tanks " + std::to_string(r);
+    log.initial = Vec<2>(5, 5);
+    log.initial_scale = Vec<2>(5, 5);  // not known
+    double pump = 3;
+    for (Eigen::Index i = 0; i < log.rows(); ++i) {
+      if (i % 20 == 0) pump = 1.5 + 4 * rng.uniform();
+      log.inputs(0, i) = pump;
+    }
+    const std::vector<NamedEffect> both{{"overflow", "upper", "spill", "lower", {8, 0.5}},
+                                        {"overflow", "lower", {}, {}, {9}}};
+    log.outputs = simulate_augmented(TwoTanks{}, toys::machine({0.06, 0.055, 0.05, 0.05}, both), log).outputs;
+    for (double& level : log.outputs.reshaped()) level += 0.03 * rng.normal();
+    logs.push_back(std::move(log));
+  }
+  const Diagnosis found = diagnose(TwoTanks{}, logs, DiagnoseOptions{}, Threads{}, 1);
+  INFO(found.sentence);
+  CHECK(found.verdict == Verdict::missing_physics);
+  std::vector<std::string> labels;
+  for (const FoundEffect& one : found.effects) labels.push_back(one.name + " at " + one.attached_to);
+  std::sort(labels.begin(), labels.end());
+  CHECK(labels == std::vector<std::string>{"overflow at lower", "overflow at upper"});
+  CHECK(found.noise_ratio < 1.2);
 }
 
 TEST_CASE("probabilities of the choice and of its alternatives add up to 1, the most probable first") {

@@ -99,6 +99,41 @@ TEST_CASE("states between the inputs and what moves are those of an actuator") {
   CHECK(block.actuator == std::vector<bool>{false, false});
 }
 
+// Two bodies, driven by a current; a spring between them whose stretch is a state; a mass as a signal.
+struct StretchedPair {
+  using State = Vec<4>;
+  using Input = Vec<1>;
+  using Output = Vec<1>;
+  SimulatorInfo info() const {
+    return {.name = "stretched_pair",
+            .states = {{"current", "A"}, {"first", "m/s"}, {"second", "m/s"}, {"stretch", "m"}},
+            .inputs = {{"voltage", "V"}},
+            .outputs = {{"second_m_s", "m/s"}},
+            .parameters = {},
+            .signals = {"pull", "spring", "mass", "heat"}};
+  }
+  template <class Tap>
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& /*p*/, Tap&& tap) const {
+    tap(3, 2 * x[0] * x[0]);  // driven by the current, and moves nothing
+    const double pull = tap(0, 3 * x[0]), spring = tap(1, 40 * x[3]), mass = tap(2, 2 + 0.1 * x[3]);
+    return {5 * (u[0] - x[0]), (pull - spring) / mass, spring / mass, x[1] - x[2]};
+  }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& p) const {
+    return derivative(x, u, p, NoTap{});
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return Output(x[2]); }
+};
+
+TEST_CASE("a force that comes of the state of an actuator is driven; what does not move anything is not") {
+  const auto structure = facts_of(StretchedPair{}, toys::blank_recording(StretchedPair{}.info(), 5, 0.1));
+  CHECK(structure.driven_signal == std::vector<bool>{true, false, false, false});
+}
+
+TEST_CASE("a coupling is a force on several speeds, whatever their positions are called; a mass is none") {
+  const auto structure = facts_of(StretchedPair{}, toys::blank_recording(StretchedPair{}.info(), 5, 0.1));
+  CHECK(structure.coupling == std::vector<bool>{false, true, false, false});
+}
+
 // A speed in degrees; a force that no input drives; an output that shows the speed times ten.
 struct Odd {
   using State = Vec<2>;

@@ -13,12 +13,13 @@ inline Effect constant_force() {
           .place = Place::velocity,
           .parameters = parameters_of({{.name = "force",
                                         .measure = {.effort = 1},
-                                        .low = -3,
-                                        .high = 3,
+                                        .low = -10,  // what holds a weight may be many times what moves it
+                                        .high = 10,
                                         .starts = {0.003, 0.1},
                                         .strength = true}}),
           .confusable_with = names_of({"gravity_offset", "sensor_bias", "input_asymmetry"}),
           .experiment = "hold several positions far apart, each reached from both sides",
+          .is_constant = true,
           .force = +[](const EffectContext&, Values p, Values) { return p[0]; }};
 }
 

@@ -16,6 +16,7 @@ inline Effect constant_rate() {
           {{.name = "rate", .measure = {.effort = 1}, .low = -3, .high = 3, .starts = {0.003, 0.1}, .strength = true}}),
       .confusable_with = names_of({"leak", "sensor_drift", "input_gain"}),
       .experiment = "stop every input at a low and at a high level and wait",
+      .is_constant = true,
       .force = +[](const EffectContext&, Values p, Values) { return p[0]; }};
 }
 

@@ -16,6 +16,7 @@ inline Effect sensor_bias() {
           .confusable_with = names_of({"constant_force", "gravity_offset", "sensor_drift"}),
           .experiment = "rest in a pose that is known from elsewhere (a tape, a plumb line)",
           .at_start = true,
+          .is_constant = true,
           .sensor = +[](const Series& series, Values p) {
             for (double& reading : series.readings) reading += p[0];
           }};

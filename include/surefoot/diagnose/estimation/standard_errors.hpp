@@ -19,8 +19,9 @@ struct StandardErrors {
   Eigen::MatrixXd correlation;  // of the searched coordinates
 };
 
-/// What recordings do not determine has the width of its prior (prior_width). Cost: a central Jacobian (see
-/// FitFunctions), and the cube of the number of variables.
+/// What recordings do not determine has the width of its prior (prior_width), also where a simulation is not quite
+/// smooth: differences along such directions are as wide as what is not known. Cost: a central Jacobian (see
+/// FitFunctions), some ten simulations of all recordings, and the cube of the number of variables.
 StandardErrors standard_errors(const BoundSimulator& bound, const Hypothesis& hypothesis, const FitProblem& problem,
                                const Parallel& parallel);
 

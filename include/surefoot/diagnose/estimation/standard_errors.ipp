@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
 #include "surefoot/diagnose/estimation/marginal_likelihood.hpp"
 #include "surefoot/diagnose/estimation/standard_errors.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
+#include "surefoot/optimize/symmetric_eigen.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -41,6 +44,78 @@ SUREFOOT_ONCE Eigen::MatrixXd products_of_gradients(const FitFunctions& function
   return sum;
 }
 
+/// Of a residual, with its memory: what gradients scatter by, against the curvature.
+SUREFOOT_ONCE double variance_of_residuals(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& gradients) {
+  double slopes = 0;
+  for (Eigen::Index k = 0; k < gradients.cols(); ++k) slopes += gradients(k, k);
+  const double curvature = surefoot::detail::dot(jacobian.data(), jacobian.data(), jacobian.size());
+  return curvature > 0 && slopes > 0 ? slopes / curvature : 1;
+}
+
+/// Half the change of the residuals between both ends of a step to both sides; empty where one of them cannot be
+/// simulated.
+SUREFOOT_ONCE Eigen::VectorXd change_along(const FitFunctions& functions, const Eigen::VectorXd& z,
+                                           const Eigen::VectorXd& step) {
+  Eigen::VectorXd forth = z, back = z;
+  for (Eigen::Index k = 0; k < z.size(); ++k) {
+    forth[k] += step[k];
+    back[k] -= step[k];
+  }
+  Eigen::VectorXd change = functions.residuals(forth);
+  const Eigen::VectorXd other = functions.residuals(back);
+  for (Eigen::Index i = 0; i < change.size(); ++i) change[i] = 0.5 * (change[i] - other[i]);
+  return surefoot::all_finite(change) ? change : Eigen::VectorXd();
+}
+
+/// The share of a step by which both of its sides stay within the box.
+SUREFOOT_ONCE double share_within(const Box<Eigen::Dynamic>& box, const Eigen::VectorXd& z,
+                                  const Eigen::VectorXd& step) {
+  double share = 1;
+  for (Eigen::Index k = 0; k < z.size(); ++k) {
+    const double room = std::min(z[k] - box.low()[k], box.high()[k] - z[k]);
+    if (step[k] != 0) share = std::min(share, room / std::abs(step[k]));
+  }
+  return share;
+}
+
+/// Derivatives in units of the prior, along the directions that the recordings determine least by differences as wide
+/// as what is not known there: where friction sticks a simulation jumps a little, and small differences make knowledge
+/// of that.
+SUREFOOT_ONCE Eigen::MatrixXd with_wide_differences(const FitFunctions& functions, const Eigen::VectorXd& z,
+                                                    const Eigen::VectorXd& width, Eigen::MatrixXd jacobian,
+                                                    double variance) {
+  constexpr Eigen::Index most_directions = 8;  // the least determined ones
+  constexpr int most_rounds = 4;               // each many times as wide as the one before, up to the prior's width
+  constexpr double much_less = 0.5;            // of the information, below which the small differences misled
+  constexpr double least_share = 0.1;          // of a step: at a bound there is no room to both sides
+  const Box<Eigen::Dynamic> box = functions.box();
+  const auto directions =
+      surefoot::detail::eigen_of_symmetric(surefoot::detail::transposed_product(jacobian, jacobian));
+  for (Eigen::Index j = 0; j < std::min(most_directions, z.size()); ++j) {
+    const Eigen::VectorXd direction = surefoot::detail::column_of(directions.vectors, j);
+    const Eigen::VectorXd before = surefoot::detail::product(jacobian, direction);
+    Eigen::VectorXd along = before;
+    for (int round = 0; round < most_rounds; ++round) {
+      const double information = surefoot::detail::sum_of_squares(along);
+      const double deviation = std::sqrt(variance / (information + variance));
+      Eigen::VectorXd step(z.size());
+      for (Eigen::Index k = 0; k < z.size(); ++k) step[k] = deviation * direction[k] * width[k];
+      const double share = share_within(box, z, step);
+      if (share < least_share) break;
+      for (double& one : step) one *= share;
+      Eigen::VectorXd change = change_along(functions, z, step);
+      if (change.size() == 0) break;
+      for (double& one : change) one /= share * deviation;
+      if (!(surefoot::detail::sum_of_squares(change) < much_less * information)) break;
+      along = change;
+    }
+    for (Eigen::Index k = 0; k < z.size(); ++k) {
+      for (Eigen::Index i = 0; i < along.size(); ++i) jacobian(i, k) += (along[i] - before[i]) * direction[k];
+    }
+  }
+  return jacobian;
+}
+
 SUREFOOT_ONCE StandardErrors standard_errors(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                              const FitProblem& problem, const Parallel& parallel) {
   using surefoot::detail::product, surefoot::detail::scaled, surefoot::detail::transposed_product;
@@ -50,21 +125,18 @@ SUREFOOT_ONCE StandardErrors standard_errors(const BoundSimulator& bound, const 
   const auto count = static_cast<Eigen::Index>(result.variables.size());
   if (count == 0) return result;
   const Eigen::VectorXd residuals = functions.residuals(z);
-  const Eigen::MatrixXd jacobian = functions.central_jacobian(z, residuals);
+  Eigen::MatrixXd jacobian = functions.central_jacobian(z, residuals);
   Hypothesis copy = hypothesis;
   Eigen::VectorXd width(count);  // of the prior: units in which what is not known at all has the variance 1
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Variable& variable = result.variables[static_cast<std::size_t>(i)];
-    width[i] = prior_width(variable, value_of(copy, variable));
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Variable& variable = result.variables[static_cast<std::size_t>(k)];
+    width[k] = prior_width(variable, value_of(copy, variable));
+    for (Eigen::Index i = 0; i < jacobian.rows(); ++i) jacobian(i, k) *= width[k];
   }
-  Eigen::MatrixXd hessian = scaled(width, transposed_product(jacobian, jacobian));
-  Eigen::MatrixXd gradients = scaled(width, products_of_gradients(functions, residuals, jacobian));
-  double curvature = 0, slopes = 0;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    curvature += hessian(i, i);
-    slopes += gradients(i, i);
-  }
-  const double variance = curvature > 0 && slopes > 0 ? slopes / curvature : 1;  // of a residual, with its memory
+  const double variance = variance_of_residuals(jacobian, products_of_gradients(functions, residuals, jacobian));
+  jacobian = with_wide_differences(functions, z, width, std::move(jacobian), variance);
+  Eigen::MatrixXd hessian = transposed_product(jacobian, jacobian);
+  Eigen::MatrixXd gradients = products_of_gradients(functions, residuals, jacobian);
 
   // Posterior covariance, the prior being one more recording of which the variance is known.
   for (Eigen::Index i = 0; i < count; ++i) {

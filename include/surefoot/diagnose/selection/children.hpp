@@ -61,9 +61,9 @@ std::vector<EvaluatedHypothesis> next_effects(const Search& search, const Evalua
 std::vector<EvaluatedHypothesis> next_pairs(const Search& search, const EvaluatedHypothesis& parent,
                                             const std::vector<Proposal>& proposals, double needed);
 
-/// The same effect, in one form, at two places.
+/// The same effect, in one form, at two places: `most` of these get a fit.
 std::vector<EvaluatedHypothesis> next_tied_pairs(const Search& search, const EvaluatedHypothesis& parent,
-                                                 const std::vector<Proposal>& proposals);
+                                                 const std::vector<Proposal>& proposals, std::size_t most);
 
 /// The most plausible ones, best first, and none that is `hopeless` behind the best [nat].
 std::vector<EvaluatedHypothesis> best_structures(std::vector<EvaluatedHypothesis> pool, std::size_t count,

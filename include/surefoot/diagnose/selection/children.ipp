@@ -191,10 +191,9 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> next_pairs(const Search& search, 
 }
 
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> next_tied_pairs(const Search& search, const EvaluatedHypothesis& parent,
-                                                               const std::vector<Proposal>& proposals) {
-  // few are left out by their gains, which say little: what has no strength promises nothing before all else is settled
-  std::vector<ProposedPair> tied = propose_tied_pairs(proposals, search.problem.effort.max_shortlist);
-  return evaluate_pairs(search, parent, std::move(tied));
+                                                               const std::vector<Proposal>& proposals,
+                                                               std::size_t most) {
+  return evaluate_pairs(search, parent, propose_tied_pairs(proposals, most));
 }
 
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> best_structures(std::vector<EvaluatedHypothesis> pool, std::size_t count,

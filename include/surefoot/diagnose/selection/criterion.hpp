@@ -129,6 +129,16 @@ Eigen::VectorXd pooled(const ErrorSquares& errors);
 /// Variance of weighted errors that are as small as those of the integration.
 double least_variance(const SearchProblem& problem);
 
+/// Whether the catalogue says that one of two effects may be taken for the other.
+bool may_be_confused(const Effect& a, const Effect& b);
+
+/// Whether two effects have one name, or may be taken for each other.
+bool is_like(const Effect& a, const Effect& b);
+
+/// Whether all that a structure has beyond a smaller one may only mend the form of what that has: it acts at the same
+/// place as some effect of it, along a coupling, or is like it. A constant has no form to be mended.
+bool may_mend_form(const Hypothesis& larger, const Hypothesis& smaller);
+
 /// Differences to a hypothesis, from one with no fewer effects, that mean nothing. What leaves only noise is of the
 /// right form: beside that, errors of form are as small as a diagnosis tolerates them. Not so from one with fewer, for
 /// a further effect may mend the form of another.
@@ -144,6 +154,9 @@ EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, const Fit& fitted,
 
 /// Differences of the mean square, by output, that mean nothing: they may come of the form of effects.
 Eigen::VectorXd negligible_differences(const ErrorSquares& without_effects, const SelectionCriteria& criteria);
+
+/// Whether a parameter of an effect is at a bound, which no size that makes sense is; a strength of zero is none.
+bool is_at_bound(const Hypothesis& hypothesis, const Variable& variable, const SelectionCriteria& criteria);
 
 /// Log of the prior probability of the effects beyond the first `known` [nat], but for a constant.
 double log_prior(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t known, std::size_t candidates,

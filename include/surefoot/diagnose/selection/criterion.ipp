@@ -88,9 +88,24 @@ SUREFOOT_ONCE bool is_spare_strength(const Hypothesis& hypothesis, const Variabl
   return own->strength && std::any_of(parameters.begin(), own, [](const EffectParameter& one) { return one.strength; });
 }
 
+/// Where in its range a variable is, from 0 to 1.
+SUREFOOT_ONCE double share_of_range(Hypothesis hypothesis, const Variable& variable) {
+  const double low = to_search(variable, variable.low), high = to_search(variable, variable.high);
+  return (to_search(variable, value_of(hypothesis, variable)) - low) / (high - low);
+}
+
+SUREFOOT_INLINE bool is_at_bound(const Hypothesis& hypothesis, const Variable& variable,
+                                 const SelectionCriteria& criteria) {
+  constexpr double middle = 0.5;  // of a range
+  const double share = share_of_range(hypothesis, variable);
+  // a strength near zero is told by the densities, unless it still says how its input began
+  const bool natural = variable.low == 0 && share < middle && !hypothesis.effects[variable.index].effect->from_rest;
+  return !natural && (share < criteria.bound_share || share > 1 - criteria.bound_share);
+}
+
 SUREFOOT_INLINE double log_prior(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t known,
                                  std::size_t candidates, const SelectionCriteria& criteria) {
-  constexpr double middle = 0.5, nothing = 1e-3;  // of a range
+  constexpr double nothing = 1e-3;  // of a range
   double sum = 0;
   for (std::size_t e = known; e < hypothesis.effects.size(); ++e) {
     const Effect& effect = *hypothesis.effects[e].effect;
@@ -100,14 +115,10 @@ SUREFOOT_INLINE double log_prior(const BoundSimulator& bound, const Hypothesis& 
   }
   for (const Variable& variable : variables_of(bound, hypothesis, {})) {
     if (variable.kind != Variable::Kind::effect || variable.index < known) continue;
-    Hypothesis copy = hypothesis;
-    const double low = to_search(variable, variable.low), high = to_search(variable, variable.high);
-    const double share = (to_search(variable, value_of(copy, variable)) - low) / (high - low);
+    const double share = share_of_range(hypothesis, variable);
     const bool idle = is_spare_strength(hypothesis, variable) && share < nothing;  // a simpler effect does as well
     if (idle) sum -= criteria.bound_cost;
-    // a strength near zero is told by the densities, unless it still says how its input began
-    const bool natural = variable.low == 0 && share < middle && !hypothesis.effects[variable.index].effect->from_rest;
-    if (!natural && (share < criteria.bound_share || share > 1 - criteria.bound_share)) sum -= criteria.bound_cost;
+    if (is_at_bound(hypothesis, variable, criteria)) sum -= criteria.bound_cost;
   }
   return sum;
 }
@@ -154,11 +165,52 @@ SUREFOOT_INLINE std::vector<double> log_densities(const ErrorSquares& errors, co
   return result;
 }
 
+/// An effect with its place.
+SUREFOOT_ONCE std::string label_at(const AttachedEffect& effect) {
+  return effect.label() + "/" + std::to_string(static_cast<int>(effect.effect->place));
+}
+
+SUREFOOT_INLINE std::multiset<std::string> structure_of(const Hypothesis& hypothesis) {
+  std::multiset<std::string> labels;
+  for (const AttachedEffect& effect : hypothesis.effects) labels.insert(label_at(effect));
+  return labels;
+}
+
+SUREFOOT_INLINE bool may_be_confused(const Effect& a, const Effect& b) {
+  const auto says = [](const Effect& one, const std::string& name) {
+    return std::find(one.confusable_with.begin(), one.confusable_with.end(), name) != one.confusable_with.end();
+  };
+  return says(a, b.name) || says(b, a.name);
+}
+
+SUREFOOT_INLINE bool is_like(const Effect& a, const Effect& b) { return a.name == b.name || may_be_confused(a, b); }
+
+/// Whether an effect may make up for the form of another one that the machine has otherwise.
+SUREFOOT_ONCE bool may_mend_form_of(const AttachedEffect& one, const AttachedEffect& other) {
+  const Effect &a = *one.effect, &b = *other.effect;
+  const auto forces = [](const Effect& effect) { return effect.place == Place::velocity || effect.needs_coupling; };
+  const bool on_same = a.place == b.place && one.at == other.at;
+  const bool along_coupling = (a.needs_coupling || b.needs_coupling) && forces(a) && forces(b);
+  return !b.is_constant && (on_same || along_coupling || is_like(a, b));
+}
+
+SUREFOOT_ONCE bool may_mend_form(const Hypothesis& larger, const Hypothesis& smaller) {
+  const std::multiset<std::string> known = structure_of(smaller);
+  for (const AttachedEffect& extra : larger.effects) {
+    if (known.count(label_at(extra)) > 0) continue;
+    const bool mends = std::any_of(smaller.effects.begin(), smaller.effects.end(),
+                                   [&](const AttachedEffect& one) { return may_mend_form_of(extra, one); });
+    if (!mends) return false;
+  }
+  return true;
+}
+
 SUREFOOT_ONCE std::vector<double> log_densities_beside(const EvaluatedHypothesis& one,
                                                        const EvaluatedHypothesis& reference,
                                                        const SelectionCriteria& criteria) {
   const bool fewer = one.hypothesis.effects.size() < reference.hypothesis.effects.size();
-  return log_densities(one.errors, reference.errors, criteria, fewer);
+  const bool of_form = fewer && may_mend_form(reference.hypothesis, one.hypothesis);
+  return log_densities(one.errors, reference.errors, criteria, of_form);
 }
 
 SUREFOOT_INLINE std::size_t best_of(const std::vector<EvaluatedHypothesis>& evaluated,
@@ -215,14 +267,6 @@ SUREFOOT_ONCE std::vector<double> probabilities(const std::vector<EvaluatedHypot
     for (std::size_t h = 0; h < evaluated.size(); ++h) result[h] += score[h] / total / criteria.rounds;
   }
   return result;
-}
-
-SUREFOOT_INLINE std::multiset<std::string> structure_of(const Hypothesis& hypothesis) {
-  std::multiset<std::string> labels;
-  for (const AttachedEffect& effect : hypothesis.effects) {
-    labels.insert(effect.label() + "/" + std::to_string(static_cast<int>(effect.effect->place)));
-  }
-  return labels;
 }
 
 SUREFOOT_INLINE bool same_structure(const Hypothesis& a, const Hypothesis& b) {

@@ -1,7 +1,9 @@
-// Forms of an effect of which others are special cases: they are tried where one of these was found, from its fit.
+// Forms of an effect beside the one that was found, tried from its fit: those that extend it, and any others.
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "surefoot/diagnose/selection/children.hpp"
 
@@ -11,6 +13,11 @@ namespace surefoot::diagnosis {
 /// show it to be better at the odds that name an effect; none where nothing is. Cost: by such form a fit of where
 /// recordings begin, if it has that free, and a whole one if that helps.
 std::optional<EvaluatedHypothesis> in_richer_forms(const Search& search, const EvaluatedHypothesis& found);
+
+/// A structure with its effect number `e` in its other forms that extend none, all else as it was found: the best
+/// `keep`, fitted and evaluated.
+std::vector<EvaluatedHypothesis> in_other_forms(const Search& search, const EvaluatedHypothesis& found, std::size_t e,
+                                                std::size_t keep);
 
 }  // namespace surefoot::diagnosis
 

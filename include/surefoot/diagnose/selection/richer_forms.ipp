@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/estimation/starting_values.hpp"
 #include "surefoot/diagnose/selection/richer_forms.hpp"
 
@@ -33,24 +34,34 @@ SUREFOOT_ONCE std::optional<double> value_named(const std::string& name, const E
   return std::nullopt;
 }
 
-/// The same with one effect in a richer form: with the starts of its further parameters that come nearest to the
-/// special case.
-SUREFOOT_ONCE Hypothesis with_form(const Search& search, const Hypothesis& found, std::size_t e,
-                                   const AttachedEffect& richer) {
-  const FitProblem& problem = search.problem.fit;
+/// The same with one effect in another form, once for each of the starts of its further parameters; none of a form that
+/// only readings suggest.
+SUREFOOT_ONCE std::vector<Hypothesis> starts_in_form(const Search& search, const Hypothesis& found, std::size_t e,
+                                                     const AttachedEffect& form) {
   const std::size_t recordings = search.bound.recordings.size();
-  Hypothesis best;
-  double least = std::numeric_limits<double>::infinity();
+  std::vector<Hypothesis> starts;
   std::set<std::vector<double>> tried;
-  for (Eigen::VectorXd values : starting_values(search.bound, richer, {})) {
+  for (Eigen::VectorXd values : starting_values(search.bound, form, {})) {
     for (Eigen::Index k = 0; k < values.size(); ++k) {
-      const std::string& name = richer.effect->parameters[static_cast<std::size_t>(k)].name;
+      const std::string& name = form.effect->parameters[static_cast<std::size_t>(k)].name;
       values[k] = value_named(name, *found.effects[e].effect, found.values[e]).value_or(values[k]);
     }
     if (!tried.insert({values.begin(), values.end()}).second) continue;  // starts of the known ones do not count
     Hypothesis one = found;
-    one.effects[e] = richer;
-    one.values[e] = values_before_starts(*richer.effect, values, recordings);
+    one.effects[e] = form;
+    one.values[e] = values_before_starts(*form.effect, values, recordings);
+    starts.push_back(std::move(one));
+  }
+  return starts;
+}
+
+/// The start in a richer form that comes nearest to its special case.
+SUREFOOT_ONCE Hypothesis with_form(const Search& search, const Hypothesis& found, std::size_t e,
+                                   const AttachedEffect& richer) {
+  const FitProblem& problem = search.problem.fit;
+  Hypothesis best;
+  double least = std::numeric_limits<double>::infinity();
+  for (Hypothesis& one : starts_in_form(search, found, e, richer)) {
     const FitFunctions functions(search.bound, one, problem, search.parallel);
     const double loss = mean_loss(functions.residuals(functions.start()), problem.weighting.robust);
     if (!best.effects.empty() && !(loss < least)) continue;
@@ -60,11 +71,39 @@ SUREFOOT_ONCE Hypothesis with_form(const Search& search, const Hypothesis& found
   return best;
 }
 
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> in_other_forms(const Search& search, const EvaluatedHypothesis& found,
+                                                              std::size_t e, std::size_t keep) {
+  FitProblem quick = search.problem.fit;
+  quick.recordings = search.problem.screened;
+  quick.max_iterations = search.problem.effort.first_iterations;
+  const AttachedEffect& present = found.hypothesis.effects[e];
+  std::vector<Hypothesis> starts;
+  for (const AttachedEffect& one : search.candidates) {
+    const bool other = same_but_for_form(one, present) && !same_effect(one, present);
+    if (!other || !one.effect->extends.empty()) continue;
+    for (Hypothesis& start : starts_in_form(search, found.hypothesis, e, one)) starts.push_back(std::move(start));
+  }
+  std::vector<Fit> fits(starts.size());
+  search.parallel(starts.size(), [&](std::size_t i) {
+    if (!search.problem.stopped()) fits[i] = fit(search.bound, starts[i], quick, serially());
+  });
+  std::vector<Fit> best;  // of each form
+  sort_items(fits, [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
+  for (Fit& one : fits) {
+    const bool there = std::any_of(best.begin(), best.end(), [&](const Fit& other) {
+      return same_effect(other.hypothesis.effects[e], one.hypothesis.effects[e]);
+    });
+    if (one.ok && !there) best.push_back(std::move(one));
+  }
+  return finished(search, std::move(best), keep);
+}
+
 /// Not ok where it cannot help.
 SUREFOOT_ONCE Fit fit_richer(const Search& search, const EvaluatedHypothesis& found, std::size_t e,
                              const AttachedEffect& richer) {
   const FitProblem& problem = search.problem.fit;
   Hypothesis start = with_form(search, found.hypothesis, e, richer);
+  if (start.effects.empty()) return {};
   if (richer.effect->starts_anywhere) {
     FitProblem beginnings = problem;
     beginnings.free = Free::initial_only;

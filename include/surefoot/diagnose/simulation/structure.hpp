@@ -22,8 +22,8 @@ struct SimulatorStructure {
   std::vector<bool> affects_rates;  // by state: some rate depends on it (maps are not asked: always)
   std::vector<bool> remembers;      // by state of a map: only keeps inputs, of this step or of earlier ones
   std::vector<int> output_of;       // by state: the output that reads it directly, or -1
-  std::vector<bool> driven_signal;  // by signal: changes with the inputs
-  std::vector<bool> coupling;       // by signal: not driven, and moves several bodies: what holds them together
+  std::vector<bool> driven_signal;  // by signal: changes with the inputs, at once or by way of an actuator's states
+  std::vector<bool> coupling;       // by signal: not driven, and a force on several bodies: what holds them together
   bool all_states_measured = false;  // but for those that only keep inputs, and are known with them
   std::vector<bool> actuator;        // by state: what inputs lead to, and neither a position nor a speed (a current)
 };
@@ -120,20 +120,22 @@ struct SimulatorAnswers {
   std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::vector<double>* signals)>
       rates;
   std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u)> outputs;
-  /// Rates where one of the signals is a little larger.
-  std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::size_t signal)> rates_beside;
+  /// Rates where one of the signals is larger by so many small steps.
+  std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::size_t signal, int steps)>
+      rates_beside;
   /// What generalized forces add to the rates; empty: the simulator has no response to them.
   std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u, const Eigen::VectorXd& forces)>
       response;
 };
 
-/// Notes the values of signals, where given, and makes one a little larger, if any (-1: none).
+/// Notes the values of signals, where given, and makes one larger by some small steps, if any (-1: none).
 struct ProbingTap {
   std::vector<double>* signals;
   int larger;
+  int steps = 1;
   double operator()(int i, double value) const {
     if (signals != nullptr) (*signals)[static_cast<std::size_t>(i)] = value;
-    return i == larger ? value + 1e-3 * (1 + std::abs(value)) : value;
+    return i == larger ? value + steps * 1e-3 * (1 + std::abs(value)) : value;
   }
 };
 
@@ -158,8 +160,8 @@ SimulatorStructure find_structure(const S& simulator, const SimulatorInfo& info,
     if (signals == nullptr) return converted<Eigen::VectorXd>(State(evaluate(s, at, input, parameters, NoTap{})));
     return converted<Eigen::VectorXd>(State(evaluate(s, at, input, parameters, ProbingTap{signals, -1})));
   };
-  answers.rates_beside = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::size_t signal) {
-    const ProbingTap larger{nullptr, static_cast<int>(signal)};
+  answers.rates_beside = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::size_t signal, int steps) {
+    const ProbingTap larger{nullptr, static_cast<int>(signal), steps};
     return converted<Eigen::VectorXd>(State(evaluate(s, converted<State>(x), converted<Input>(u), parameters, larger)));
   };
   answers.outputs = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& u) {

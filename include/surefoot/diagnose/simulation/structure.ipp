@@ -205,20 +205,52 @@ SUREFOOT_ONCE std::vector<int> moved_together(const SimulatorAnswers& answers, c
   return result;
 }
 
-/// Signals that do not depend on the inputs and change the speeds of several positions.
+/// The speeds that a signal is a force on: their rates grow in proportion to it, as they would not with a mass.
+SUREFOOT_ONCE std::vector<bool> pushed_by(const SimulatorAnswers& answers, const SimulatorStructure& structure,
+                                          const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::size_t signal) {
+  constexpr double proportional = 1e-6;  // of the change: rounding bends no more
+  const Eigen::VectorXd none = answers.rates(x, u, nullptr), once = answers.rates_beside(x, u, signal, 1),
+                        twice = answers.rates_beside(x, u, signal, 2);
+  std::vector<bool> result(structure.velocity.size(), false);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const double change = once[row] - none[row], bend = twice[row] - once[row] - change;
+    const double rounding = 1e-12 * (std::abs(none[row]) + std::abs(twice[row]));
+    result[i] = structure.velocity[i] && !nearly_equal(none[row], once[row]) &&
+                std::abs(bend) <= proportional * std::abs(change) + rounding;
+  }
+  return result;
+}
+
+/// Signals that the inputs reach through states of an actuator alone and that move something, as the torque of a
+/// current does.
+SUREFOOT_ONCE std::vector<bool> forces_of_actuators(const SimulatorAnswers& answers,
+                                                    const SimulatorStructure& structure, const Eigen::VectorXd& x,
+                                                    const Eigen::VectorXd& u) {
+  std::vector<double> before(structure.driven_signal.size()), after = before;
+  answers.rates(x, u, &before);
+  Eigen::VectorXd moved = x;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    if (structure.actuator[static_cast<std::size_t>(i)]) moved[i] += 0.1 * (1 + std::abs(x[i]));
+  }
+  answers.rates(moved, u, &after);
+  std::vector<bool> result(structure.driven_signal.size(), false);
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    if (structure.driven_signal[k] || nearly_equal(before[k], after[k])) continue;
+    const std::vector<bool> pushed = pushed_by(answers, structure, x, u, k);
+    result[k] = std::find(pushed.begin(), pushed.end(), true) != pushed.end();
+  }
+  return result;
+}
+
+/// Signals that do not depend on the inputs and are a force on several speeds.
 SUREFOOT_ONCE std::vector<bool> couplings(const SimulatorAnswers& answers, const SimulatorStructure& structure,
                                           const Eigen::VectorXd& x, const Eigen::VectorXd& u) {
   std::vector<bool> result(structure.driven_signal.size(), false);
-  const Eigen::VectorXd rate = answers.rates(x, u, nullptr);
   for (std::size_t k = 0; k < result.size(); ++k) {
     if (structure.driven_signal[k]) continue;
-    const Eigen::VectorXd beside = answers.rates_beside(x, u, k);
-    int moved = 0;
-    for (std::size_t i = 0; i < structure.position_of.size(); ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      if (structure.position_of[i] >= 0 && !nearly_equal(rate[row], beside[row])) ++moved;
-    }
-    result[k] = moved > 1;
+    const std::vector<bool> pushed = pushed_by(answers, structure, x, u, k);
+    result[k] = std::count(pushed.begin(), pushed.end(), true) > 1;
   }
   return result;
 }
@@ -264,6 +296,10 @@ SUREFOOT_ONCE SimulatorStructure find_structure(const SimulatorAnswers& answers,
                                     : Eigen::VectorXd::Zero(static_cast<Eigen::Index>(m));
   Eigen::VectorXd beside = example.initial;  // where nothing is 0 by chance
   for (double& value : beside) value += 0.1 + rng.uniform();
+  const std::vector<bool> reached = forces_of_actuators(answers, structure, beside, first);
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    if (reached[i]) structure.driven_signal[i] = true;
+  }
   structure.coupling = couplings(answers, structure, beside, first);
   if (structure.pushed.empty()) {
     structure.moved_together = moved_together(answers, structure.velocity, example.initial, first);

@@ -53,11 +53,15 @@ double noise_floor(const std::vector<ChannelMismatch>& outputs, const Eigen::Vec
 /// does not hide what a fine one shows. NaN if the noise of any output cannot be told.
 double noise_ratio(const std::vector<ChannelMismatch>& outputs);
 
+/// Noise that was estimated is no more than the `least` error on held-out recordings that any other structure or a
+/// forest left, all outputs in proportion: what these predict is none.
+void cap_noise(Diagnosis& diagnosis, double least, const Eigen::VectorXd& scale);
+
 /// Fills in errors and curves.
 void evaluate_errors(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis, std::uint64_t seed,
                      const EvaluationCriteria& criteria = {});
 
-/// Fills in what forests do, of a diagnosis that has its verdict.
+/// Fills in what a forest beside the effects does, of a diagnosis that has its verdict.
 void offer_forests(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
                    const Parallel& parallel, std::uint64_t seed, const EvaluationCriteria& criteria = {});
 

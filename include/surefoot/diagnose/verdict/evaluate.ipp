@@ -169,6 +169,24 @@ SUREFOOT_ONCE double noise_ratio(const std::vector<ChannelMismatch>& outputs) {
   return std::sqrt(squares);
 }
 
+SUREFOOT_ONCE void cap_noise(Diagnosis& diagnosis, double least, const Eigen::VectorXd& scale) {
+  if (!(least < diagnosis.noise_floor) || !std::isfinite(diagnosis.noise_ratio)) return;
+  double stated = 0, estimated = 0;
+  const auto outputs = static_cast<double>(diagnosis.channels.size());
+  for (std::size_t k = 0; k < diagnosis.channels.size(); ++k) {
+    const ChannelMismatch& one = diagnosis.channels[k];
+    const double noise = one.noise / scale[static_cast<Eigen::Index>(k)];
+    (one.noise_stated ? stated : estimated) += noise * noise / outputs;
+  }
+  const double left = least * least - stated;
+  if (!(estimated > 0 && left > 0)) return;
+  for (ChannelMismatch& one : diagnosis.channels) {
+    if (!one.noise_stated) one.noise *= std::sqrt(left / estimated);
+  }
+  diagnosis.noise_floor = noise_floor(diagnosis.channels, scale);
+  diagnosis.noise_ratio = noise_ratio(diagnosis.channels);
+}
+
 /// Values of the held-out errors of a recording that are independent of each other.
 SUREFOOT_ONCE double independent_errors(const BoundSimulator& bound, std::size_t r, const SimulatedRun& run) {
   double count = 0;
@@ -224,9 +242,7 @@ SUREFOOT_ONCE void evaluate_errors(const EstimationSetup& setup, const FittedMod
 
 SUREFOOT_ONCE void offer_forests(const EstimationSetup& setup, const FittedModels& models, Diagnosis& diagnosis,
                                  const Parallel& parallel, std::uint64_t seed, const EvaluationCriteria& criteria) {
-  if (setup.noise == NoiseKind::final_pose) return;
-  diagnosis.held_out_forest = corrected_error(setup, models.calibrated, parallel, seed);
-  if (diagnosis.verdict != Verdict::unexplained) return;
+  if (setup.noise == NoiseKind::final_pose || diagnosis.verdict != Verdict::unexplained) return;
   diagnosis.forest_residual = offer_forest(setup, models.chosen, diagnosis.held_out_after, parallel, seed, criteria);
 }
 

@@ -3,8 +3,10 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <stop_token>
 #include <string>
 #include <tuple>
@@ -162,6 +164,13 @@ SUREFOOT_ONCE void name_recordings(const EstimationSetup& setup, Diagnosis& diag
   for (const std::size_t r : setup.split.held_out) diagnosis.held_out.push_back(setup.bound.recordings[r].name);
 }
 
+/// The least error on recordings that were not seen, of other structures and of a forest.
+SUREFOOT_ONCE double least_of_others(const Selection& selection, const Diagnosis& diagnosis) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const EvaluatedHypothesis& other : selection.alternatives) least = std::fmin(least, other.predicted);
+  return std::fmin(least, diagnosis.held_out_forest);
+}
+
 SUREFOOT_ONCE void evaluate_selection(const EstimationSetup& setup, const Calibration& calibration,
                                       const SearchProblem& problem, const Selection& selection,
                                       const std::vector<AttachedEffect>& candidates, const RunContext& run,
@@ -178,6 +187,10 @@ SUREFOOT_ONCE void evaluate_selection(const EstimationSetup& setup, const Calibr
       error_squares(setup.bound, calibration.nominal, training, setup.bound.integration, problem.scale, run.parallel);
   const Comparison calibration_gain = gain_of(nominal, selection.nominal.errors, 0);
   evaluate_errors(setup, models, diagnosis, run.seed);
+  if (setup.noise != NoiseKind::final_pose) {
+    diagnosis.held_out_forest = corrected_error(setup, calibrated, run.parallel, run.seed);
+  }
+  cap_noise(diagnosis, least_of_others(choice.selection, diagnosis), error_scale(setup.bound));
   mark_beyond_noise(diagnosis, verdict);
   const std::string overstated = overstated_noise_sentence(diagnosis.channels);
   if (!overstated.empty()) diagnosis.remarks.push_back({"", overstated});

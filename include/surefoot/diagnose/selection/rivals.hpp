@@ -1,0 +1,31 @@
+// Rivals of the best structure: what may stand in the place of its effects.
+#pragma once
+
+#include <vector>
+
+#include "surefoot/diagnose/selection/children.hpp"
+#include "surefoot/diagnose/selection/criterion.hpp"
+
+namespace surefoot::diagnosis {
+
+/// Takes each effect of the best structure away, and puts others in its place.
+void swap_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool);
+
+/// The same of two effects on inputs or signals at once, by one that is like them and acts on two inputs: two wheels
+/// that are limited are no limited speed and turn, but neither one of them is better alone.
+void swap_pairs_of_inputs(const Search& search, std::vector<EvaluatedHypothesis>& pool);
+
+/// Puts other effects in the place of each of the best structure, beside the parameters that were found with it: those
+/// it may be confused with, its other forms, and itself elsewhere. Where the search began the parameters were so far
+/// off that a right effect may have looked like the wrong one.
+void try_confusable(Search& search, std::vector<EvaluatedHypothesis>& pool);
+
+/// Single effects and pairs once more, from the parameters of the best structure on: these are nearest to the truth,
+/// whatever effects led there, and an early choice that only led there is left behind.
+void begin_anew(const Search& search, std::vector<EvaluatedHypothesis>& pool);
+
+}  // namespace surefoot::diagnosis
+
+#ifndef SUREFOOT_COMPILED
+#include "surefoot/diagnose/selection/rivals.ipp"
+#endif

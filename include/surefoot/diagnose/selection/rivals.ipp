@@ -1,0 +1,124 @@
+// Definitions of surefoot/diagnose/selection/rivals.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/selection/criterion.hpp"
+#include "surefoot/diagnose/selection/grow.hpp"
+#include "surefoot/diagnose/selection/richer_forms.hpp"
+#include "surefoot/diagnose/selection/rivals.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_ONCE void swap_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
+  constexpr double progress = 0.8;  // of the search
+  const SearchProblem& problem = search.problem;
+  const EvaluatedHypothesis best = pool[best_of(pool, problem.criteria)];
+  for (std::size_t e = problem.known; e < best.hypothesis.effects.size() && !problem.stopped(); ++e) {
+    problem.on_progress("comparing alternatives", progress);
+    const EvaluatedHypothesis rest = search.without(best, e);
+    keep_best_form(pool, rest, problem.criteria);
+    if (search.effects(best) == 1) continue;  // its rivals were evaluated when it was chosen
+    std::vector<Proposal> proposals = proposals_for(search, rest);
+    drop_what_cannot_pay(proposals, needed_gain(search, rest, best, 1), problem.effort);
+    const std::string& name = best.hypothesis.effects[e].effect->name;  // the right name may be at a wrong place
+    std::stable_partition(proposals.begin(), proposals.end(),
+                          [&](const Proposal& one) { return one.effect.effect->name == name; });
+    for (const EvaluatedHypothesis& other :
+         next_effects(search, rest, std::move(proposals),
+                      std::min(problem.effort.compared_shortlist, problem.effort.further_shortlist),
+                      problem.effort.compared_finalists)) {
+      keep_best_form(pool, other, problem.criteria);
+    }
+  }
+}
+
+SUREFOOT_ONCE void swap_pairs_of_inputs(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
+  const SearchProblem& problem = search.problem;
+  const EvaluatedHypothesis best = pool[best_of(pool, problem.criteria)];
+  const auto acts_on_input = [](const AttachedEffect& one) { return one.effect->place == Place::input; };
+  const auto& effects = best.hypothesis.effects;
+  for (std::size_t e = problem.known; e < effects.size(); ++e) {
+    for (std::size_t f = e + 1; f < effects.size() && !problem.stopped(); ++f) {
+      if (!acts_on_input(effects[e]) || !acts_on_input(effects[f]) || !leaves_structure(search, best)) continue;
+      const Hypothesis rest = without_effect(without_effect(best.hypothesis, f), e);
+      const EvaluatedHypothesis parent =
+          evaluate_fit(search.bound, fit(search.bound, rest, problem.fit, search.parallel), problem, search.parallel);
+      std::vector<Proposal> proposals = proposals_for(search, parent);
+      std::erase_if(proposals, [&](const Proposal& one) {
+        const bool signal = one.effect.at >= static_cast<int>(search.bound.info.inputs.size());
+        return !acts_on_input(one.effect) || signal ||
+               (!is_like(*one.effect.effect, *effects[e].effect) && !is_like(*one.effect.effect, *effects[f].effect));
+      });
+      // few are left out by their gains: what has no strength promises nothing before all else is settled
+      for (const EvaluatedHypothesis& other :
+           next_tied_pairs(search, parent, proposals, problem.effort.max_shortlist)) {
+        keep_best_form(pool, other, problem.criteria);
+      }
+    }
+  }
+}
+
+/// The other forms of an effect of the best structure, some of which may need finer steps than that one to show what
+/// they are worth: where they do, all of the pool is simulated with these.
+SUREFOOT_ONCE void try_other_forms(Search& search, const EvaluatedHypothesis& best, std::size_t e,
+                                   std::vector<EvaluatedHypothesis>& pool) {
+  const SearchProblem& problem = search.problem;
+  const bool structured = leaves_structure(search, best);
+  std::vector<EvaluatedHypothesis> others = in_other_forms(search, best, e, problem.effort.compared_finalists);
+  enrich(search, others, std::numeric_limits<double>::infinity());
+  for (const EvaluatedHypothesis& one : others) {
+    keep_best_form(pool, one, problem.criteria);
+    Search fine = search;
+    if (!structured || problem.stopped() || !refine_integration(fine, one)) continue;
+    const EvaluatedHypothesis again = refitted(fine, one.hypothesis), before = refitted(fine, best.hypothesis);
+    if (!(log_odds_of_forms(again, before, problem.criteria) > 0)) continue;
+    search.problem.fit.integration = fine.problem.fit.integration;
+    pool = fitted_again(search, pool);
+    keep_best_form(pool, again, problem.criteria);
+  }
+}
+
+SUREFOOT_ONCE void try_confusable(Search& search, std::vector<EvaluatedHypothesis>& pool) {
+  const EvaluatedHypothesis chosen = pool[best_of(pool, search.problem.criteria)];
+  for (std::size_t e = search.problem.known; e < chosen.hypothesis.effects.size() && !search.problem.stopped(); ++e) {
+    try_other_forms(search, chosen, e, pool);
+  }
+  SearchProblem problem = search.problem;
+  problem.scatter = false;  // the parameters are near enough
+  const EvaluatedHypothesis best = pool[best_of(pool, problem.criteria)];
+  for (std::size_t e = problem.known; e < best.hypothesis.effects.size() && !problem.stopped(); ++e) {
+    const AttachedEffect& found = best.hypothesis.effects[e];
+    std::vector<AttachedEffect> others, elsewhere;  // each get their own finalists: forms would crowd the others out
+    for (const AttachedEffect& one : search.candidates) {
+      if (may_be_confused(*one.effect, *found.effect)) others.push_back(one);
+      if (one.effect->name == found.effect->name && !same_but_for_form(one, found)) elsewhere.push_back(one);
+    }
+    const Fit without{without_effect(best.hypothesis, e), 0, true};
+    const EvaluatedHypothesis rest = evaluate_fit(search.bound, without, problem, search.parallel);
+    for (const std::vector<AttachedEffect>& rivals : {others, elsewhere}) {
+      const Search among{search.bound, problem, rivals, search.parallel};
+      std::vector<EvaluatedHypothesis> fitted =
+          next_effects(among, rest, proposals_for(among, rest), rivals.size(), problem.effort.compared_finalists);
+      enrich(search, fitted, std::numeric_limits<double>::infinity());
+      for (const EvaluatedHypothesis& one : fitted) keep_best_form(pool, one, problem.criteria);
+    }
+  }
+}
+
+SUREFOOT_ONCE void begin_anew(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
+  const SelectionCriteria& criteria = search.problem.criteria;
+  const EvaluatedHypothesis best = pool[best_of(pool, criteria)];
+  if (search.effects(best) < 2) return;  // the search began with single effects
+  for (const EvaluatedHypothesis& child : extended_from(search, best.hypothesis, &best)) {
+    keep_best_form(pool, child, criteria);
+  }
+}
+
+}  // namespace surefoot::diagnosis

@@ -1,0 +1,60 @@
+// What may stand in the place of effects of the best structure.
+#include "surefoot/diagnose/selection/rivals.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "tests/diagnose/selection/tank_bench.hpp"
+
+namespace surefoot::diagnosis {
+namespace {
+
+TEST_CASE("from the parameters of two effects that stand in for one, that one is found") {
+  const TankBench bench({rate_in_tank});
+  const SelectionCriteria& criteria = bench.problem.criteria;
+  const Search search = bench.search();
+  std::vector<EvaluatedHypothesis> pool{bench.with({}), bench.with({"sensor_drift", "sensor_bias"})};
+  REQUIRE(search.effects(pool[best_of(pool, criteria)]) == 2);
+  begin_anew(search, pool);
+  CHECK(names_in(pool[best_of(pool, criteria)]) == "constant_rate");
+
+  std::vector<EvaluatedHypothesis> single{bench.with({}), bench.with({"sensor_drift"})};
+  begin_anew(search, single);
+  CHECK(single.size() == 2);  // the search began with single effects
+}
+
+TEST_CASE("effects of the best structure are taken away and replaced in turn") {
+  const TankBench bench({rate_in_tank, drift_in_tank});
+  const SelectionCriteria& criteria = bench.problem.criteria;
+  std::vector<EvaluatedHypothesis> pool{bench.with({}), bench.with({"sensor_drift", "sensor_bias"})};
+  swap_effects(bench.search(), pool);
+  CHECK(names_in(pool[best_of(pool, criteria)]) == "constant_rate, sensor_drift");
+  const auto has = [&](const std::string& names) {
+    return std::ranges::any_of(pool, [&](const EvaluatedHypothesis& one) { return names_in(one) == names; });
+  };
+  CHECK(has("sensor_drift"));
+  CHECK(has("sensor_bias"));
+}
+
+TEST_CASE("what an effect may be confused with is tried in its place, beside the parameters found with it") {
+  const TankBench bench({rate_in_tank});
+  const SelectionCriteria& criteria = bench.problem.criteria;
+  std::vector<EvaluatedHypothesis> pool{bench.with({"sensor_drift"})};
+  REQUIRE(names_in(pool[best_of(pool, criteria)]) == "sensor_drift");
+  Search search = bench.search();
+  try_confusable(search, pool);
+  CHECK(names_in(pool[best_of(pool, criteria)]) == "constant_rate");
+  for (const EvaluatedHypothesis& one : pool) CHECK(one.hypothesis.effects.size() <= 1);  // in its place, not beside it
+
+  Search stopped = bench.search();
+  stopped.problem.stopped = [] { return true; };
+  std::vector<EvaluatedHypothesis> same{bench.with({"sensor_drift"})};
+  try_confusable(stopped, same);
+  CHECK(same.size() == 1);
+}
+
+}  // namespace
+}  // namespace surefoot::diagnosis
