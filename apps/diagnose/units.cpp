@@ -99,7 +99,7 @@ std::string bare(std::string_view unit) {
   return result;
 }
 
-// Whether the last words of a name are a unit as it is written with '_': "conc_g_l" and g/l.
+// Whether the last words of a name are a unit as it is written with '_': "conc_g_l" and g/l, "heater_degC" and degC.
 bool ends_in_words_of(std::string_view column, std::string_view unit) {
   for (std::size_t at = column.find('_'); at != std::string_view::npos; at = column.find('_', at + 1)) {
     if (bare(column.substr(at)) == bare(unit)) return true;
@@ -126,10 +126,9 @@ bool unit_fits(std::string_view column, std::string_view unit) {
   const std::string known = unit_of_column(column);
   if (known.empty() || known == "1" || unit == "1" || bare(known) == bare(unit)) return true;
   if (ends_in_words_of(column, unit)) return true;
-  // A shorter ending may be the one that is meant: "order_m_s" in seconds. A unit may be written as in the name: degC.
+  // A shorter ending may be the one that is meant: "order_m_s" in seconds.
   return std::ranges::any_of(units, [&](const auto& entry) {
-    const bool named = bare(entry.second) == bare(unit) || bare(entry.first) == bare(unit);
-    return column.ends_with("_" + std::string(entry.first)) && named;
+    return column.ends_with("_" + std::string(entry.first)) && bare(entry.second) == bare(unit);
   });
 }
 

@@ -126,6 +126,10 @@ TEST_CASE("other forms of an effect are tried from the fit that was found, the b
     CHECK_FALSE(other.hypothesis.effects[0].effect->form.empty());  // not itself
     CHECK(other.hypothesis.effects[0].effect->extends.empty());
   }
+
+  int asked = 0;
+  problem.stopped = [&asked] { return ++asked > 2; };  // some fits have not begun
+  CHECK(in_other_forms({bound, problem, candidates, alone}, found, 0, 3).size() <= 3);
 }
 
 TEST_CASE("the edges of a coarse sensor are as sharp as its readings say") {

@@ -87,13 +87,14 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> in_other_forms(const Search& sear
   search.parallel(starts.size(), [&](std::size_t i) {
     if (!search.problem.stopped()) fits[i] = fit(search.bound, starts[i], quick, serially());
   });
-  std::vector<Fit> best;  // of each form
+  std::erase_if(fits, [](const Fit& one) { return !one.ok; });  // or not begun, where the search was stopped
   sort_items(fits, [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
+  std::vector<Fit> best;  // of each form
   for (Fit& one : fits) {
     const bool there = std::any_of(best.begin(), best.end(), [&](const Fit& other) {
       return same_effect(other.hypothesis.effects[e], one.hypothesis.effects[e]);
     });
-    if (one.ok && !there) best.push_back(std::move(one));
+    if (!there) best.push_back(std::move(one));
   }
   return finished(search, std::move(best), keep);
 }
