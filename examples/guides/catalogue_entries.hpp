@@ -138,6 +138,7 @@ inline std::vector<Form> forms() {
        "F = sine sin(2 pi q / period) + cosine cos(2 pi q / period)",
        {0.03, 0, 0.2},
        "ripples at fixed positions, whichever way it moves"},
+      {"cogging", "per turn", "the same of an angle that turns round, with a period of 2 pi / per_turn"},
       {"cogging", "two harmonics", "the same, and sine_2 and cosine_2 of half the period beside it"},
       {"gravity_offset",
        "",

@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstddef>
+
 #include "tests/diagnose/log_doctor/servo_log.hpp"
 
 namespace {
@@ -13,13 +16,33 @@ TEST_SUITE("log_doctor") {
     const Parallel parallel = serially();
     const LogDoctorInputs inputs = toys::servo_doctor(parallel);
     auto log = toys::servo_log(toys::dry_friction());
-    CHECK_FALSE(find_fault_of_one(fit_log(inputs, log), inputs.criteria, parallel));
+    CHECK_FALSE(find_fault_of_one(inputs, fit_log(inputs, log)));
     log[1].outputs.row(1) *= -1;
-    const auto found = find_fault_of_one(fit_log(inputs, log), inputs.criteria, parallel);
+    const auto found = find_fault_of_one(inputs, fit_log(inputs, log));
     REQUIRE(found);
     CHECK(*found->recording == 1);
     CHECK(found->repairs[0].kind == LogFaultKind::sign);
     CHECK(found->repairs[0].channel.index == 1);
+  }
+
+  TEST_CASE("a fault is found where missing physics leaves more of its recording than of any other") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    auto log = toys::servo_log({}, 5);
+    surefoot::Augmented sticky;
+    sticky.parameters = {90, 8};
+    sticky.effects = {{"coulomb_friction", "omega", {}, {}, {3.0}}};
+    log[2].outputs = simulate_augmented(toys::Servo{}, sticky, log[2]).outputs;  // it alone shows it
+    const double before = fit_log(inputs, log).error[2];
+    log[2].outputs.row(0).swap(log[2].outputs.row(1));
+    const LogFit swapped = fit_log(inputs, log);
+    const auto found = find_fault_of_one(inputs, swapped);
+    REQUIRE(found);
+    CHECK(*found->recording == 2);
+    CHECK(found->repairs[0].kind == LogFaultKind::swap);
+    double others = 0;
+    for (const std::size_t r : {0, 1, 3, 4}) others = std::max(others, swapped.error[r]);
+    CHECK(before > inputs.criteria.decisive * others);  // still unlike the others once it is repaired
   }
 
   TEST_CASE("what a model misses by less than in most recordings is not odd, whatever mends it") {

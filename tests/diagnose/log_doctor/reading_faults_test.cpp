@@ -37,6 +37,27 @@ TEST_SUITE("log_doctor") {
     CHECK(lost_rows(without(every_third)) == 0);  // its clock is not regular
   }
 
+  TEST_CASE("where all sensors stand still in the same rows, samples were dropped") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    const auto kinds = [&](bool all) {
+      auto log = toys::servo_log();
+      for (Eigen::Index row = 112; row < 140; ++row) {
+        log[0].outputs(0, row) = log[0].outputs(0, 111);
+        if (all) log[0].outputs(1, row) = log[0].outputs(1, 111);
+      }
+      std::vector<LogFaultKind> found;
+      for (const FoundFault& fault : find_reading_faults(fit_log(inputs, log), inputs.criteria)) {
+        CHECK(*fault.recording == 0);
+        found.push_back(fault.repairs.front().kind);
+        if (all) CHECK(fault.repairs.front().rows.size() == 28);
+      }
+      return found;
+    };
+    CHECK(kinds(false) == std::vector{LogFaultKind::stuck});
+    CHECK(kinds(true) == std::vector{LogFaultKind::repeated, LogFaultKind::repeated});
+  }
+
   TEST_CASE("equal readings are a stretch if the model moves on by more than the resolution") {
     const Parallel parallel = serially();
     const LogDoctorInputs inputs = toys::servo_doctor(parallel);

@@ -193,6 +193,22 @@ TEST_CASE("the best one has the best of both: errors and prior") {
   CHECK(best_of({evaluated({1})}, selection_criteria) == 0);
 }
 
+TEST_CASE("which structure is best does not depend on the order, though pairs of them may be weighed in a circle") {
+  // two effects that leave 2 and 1.5 beside one that leaves 2.5: differences that may be errors of form
+  std::vector<EvaluatedHypothesis> pool{evaluated({2.5, 2.5, 2.5}, 0), evaluated({2, 2, 2}, -6),
+                                        evaluated({1.5, 1.5, 1.5}, -30), evaluated({1, 1, 1}, -70)};
+  for (std::size_t i = 0; i < pool.size(); ++i) {
+    pool[i].errors.least = Eigen::VectorXd::Constant(1, 0.2 + 0.4 * static_cast<double>(i));
+  }
+  std::vector<std::size_t> order{0, 1, 2, 3};
+  const double best = pool[best_of(pool, selection_criteria)].log_prior;
+  do {
+    std::vector<EvaluatedHypothesis> other;
+    for (const std::size_t i : order) other.push_back(pool[i]);
+    CHECK(other[best_of(other, selection_criteria)].log_prior == best);
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
 TEST_CASE("probabilities add up to 1; a clearly better structure has nearly all, and two equal ones share") {
   const std::vector<double> good(8, 1.0), bad(8, 2.0);
   const auto clear = probabilities({evaluated(bad), evaluated(good), evaluated(bad)}, selection_criteria);

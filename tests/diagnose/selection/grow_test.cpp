@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "surefoot/diagnose/effects/constant_force.hpp"
+#include "surefoot/diagnose/effects/quadratic_drag.hpp"
 #include "tests/diagnose/selection/tank_bench.hpp"
 
 namespace surefoot::diagnosis {
@@ -253,6 +255,81 @@ TEST_CASE("the best structures are fitted again, always with the model without e
   same[0].loss = 7;
   refit_best(stopped, same);
   CHECK(same[0].loss == 7);
+}
+
+TEST_CASE("what comes nearest is extended without what it holds idle as well") {
+  const TankBench bench({rate_in_tank});
+  const Search search = bench.search();
+  std::vector<EvaluatedHypothesis> beam;
+  add_with_smaller(search, bench.with({"constant_rate", "sensor_drift"}), beam);
+  REQUIRE(beam.size() == 2);
+  CHECK(names_in(beam[0]) == "constant_rate, sensor_drift");
+  CHECK(names_in(beam[1]) == "constant_rate");
+}
+
+TEST_CASE("what does not pay beside the model without effects does not pay") {
+  const TankBench sloped({rate_in_tank}), nothing({});
+  const std::vector<EvaluatedHypothesis> pool{sloped.with({})}, clean{nothing.with({})};
+  CHECK(pays(sloped.search(), sloped.with({"constant_rate"}), pool));
+  CHECK_FALSE(pays(sloped.search(), pool[0], pool));
+  CHECK_FALSE(pays(nothing.search(), nothing.with({"constant_rate"}), clean));
+}
+
+/// A pendulum let go, without any loss.
+struct LooseSwing {
+  using State = Vec<2>;
+  using Input = Vec<0>;
+  using Output = Vec<1>;
+
+  SimulatorInfo info() const {
+    return {.name = "loose swing",
+            .states = {{"angle", "rad"}, {"speed", "rad/s"}},
+            .inputs = {},
+            .outputs = {{"angle_rad", "rad"}},
+            .parameters = {{"gravity", "1/s^2", 64, 20, 150}, {"zero", "rad", 0, -0.1, 0.1}}};
+  }
+  State derivative(const State& x, const Input& /*u*/, const Eigen::VectorXd& p) const {
+    return {x[1], -p[0] * std::sin(x[0] + p[1])};
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return Output(x[0]); }
+};
+
+TEST_CASE("under guidance first effects are found along the readings, wherever the model has run to") {
+  std::vector<Recording> recordings;
+  Rng rng(8);
+  for (int r = 0; r < 4; ++r) {
+    Recording one = toys::blank_recording(LooseSwing{}.info(), 1200, 0.01);
+    one.initial[0] = 1.7 - 0.3 * r;
+    const auto machine = toys::machine({64, 0}, {{"quadratic_drag", "speed", {}, {}, {0.03}}}, {.step = 0.002});
+    one.outputs = simulate_augmented(LooseSwing{}, machine, one).outputs;
+    for (double& angle : one.outputs.reshaped()) angle += 0.002 * rng.normal();
+    recordings.push_back(std::move(one));
+  }
+  BoundSimulator bound = bind_simulator(LooseSwing{}, std::move(recordings));
+  SearchProblem problem;
+  problem.fit.recordings = problem.screened = {0, 1, 2, 3};
+  problem.scale.sigma = error_scale(bound);
+  for (const double gravity : {32.0, 120.0}) {
+    CAPTURE(gravity);
+    problem.nominal = nominal_hypothesis(bound);
+    problem.nominal.parameters[0] = gravity;
+    problem.fit.weighting.sigma = Eigen::VectorXd::Constant(1, 1);
+    const Parallel parallel = serially();
+    const Fit trapped = fit(bound, problem.nominal, problem.fit, parallel);
+    const auto runs = simulate_all(bound, trapped.hypothesis, problem.fit.recordings, {}, parallel);
+    bound.sizes = measure_sizes(bound, trapped.hypothesis, problem.fit.recordings, runs);
+    const auto candidates = attachments(bound, {effects::quadratic_drag(), effects::constant_force()}, {});
+    problem.candidates = candidates.size();
+    const auto children = extended_under_guidance({bound, problem, candidates, parallel});
+    REQUIRE_FALSE(children.empty());
+    const EvaluatedHypothesis& best = children[best_of(children, problem.criteria)];
+    CHECK(names_in(best) == "quadratic_drag");
+    CHECK(best.hypothesis.parameters[0] == doctest::Approx(64).epsilon(0.01));
+    CHECK(best.hypothesis.values[0][0] / 0.03 == doctest::Approx(1).epsilon(0.05));
+    CHECK(trapped.loss > 100 * best.loss);
+  }
+  bound.structure.output_of = {-1, -1};
+  CHECK(extended_under_guidance({bound, problem, {}, serially()}).empty());
 }
 
 }  // namespace

@@ -27,8 +27,9 @@ struct SprungBlock : toys::SlidingBlock {
   }
 };
 
-/// Six logs of 4 s, with noise of 1 mm and 1 mm/s, of which the first `cut` rows were not kept.
-std::vector<Recording> block_logs(const NamedEffect& effect, Eigen::Index cut) {
+/// Six logs of 4 s, with noise of 1 mm and 1 mm/s, of which the first `cut` rows were not kept; simulated with steps of
+/// so many seconds, or of a row.
+std::vector<Recording> block_logs(const NamedEffect& effect, Eigen::Index cut, double step = 0) {
   std::vector<Recording> logs;
   Rng rng(11);
   for (std::size_t r = 0; r < 6; ++r) {
@@ -37,7 +38,8 @@ std::vector<Recording> block_logs(const NamedEffect& effect, Eigen::Index cut) {
       const double t = whole.time[i] - 0.3 * static_cast<double>(r);
       whole.inputs(0, i) = (std::fmod(t + 9, 2.2) < 1 ? 9 : -7) + 2 * std::sin(2.1 * t);
     }
-    const SimulatedRun run = simulate_augmented(SprungBlock{}, toys::machine({2, 2, 20}, {effect}), whole);
+    const SimulatedRun run =
+        simulate_augmented(SprungBlock{}, toys::machine({2, 2, 20}, {effect}, {.step = step}), whole);
     whole.outputs = run.outputs;
     Recording log = part_of(whole, cut, whole.rows(), run.states.col(cut), Eigen::VectorXd::Zero(2));
     for (Eigen::Index i = 0; i < log.rows(); ++i) log.time[i] = 0.02 * static_cast<double>(i);
@@ -48,8 +50,8 @@ std::vector<Recording> block_logs(const NamedEffect& effect, Eigen::Index cut) {
   return logs;
 }
 
-Diagnosis diagnosed(const NamedEffect& effect, Eigen::Index cut) {
-  return diagnose(SprungBlock{}, block_logs(effect, cut), DiagnoseOptions{}, Threads{}, 1);
+Diagnosis diagnosed(const NamedEffect& effect, Eigen::Index cut, double step = 0) {
+  return diagnose(SprungBlock{}, block_logs(effect, cut, step), DiagnoseOptions{}, Threads{}, 1);
 }
 
 TEST_CASE("what an actuator was at when a recording begins is found, and its name with it") {
@@ -116,7 +118,7 @@ TEST_CASE("other forms of an effect are tried from the fit that was found, the b
   plain.effects.push_back(*one);
   plain.values.emplace_back(Eigen::VectorXd::Constant(1, 3.8));
   const EvaluatedHypothesis found = evaluate_fit(bound, fit(bound, plain, problem.fit, alone), problem, alone);
-  const auto others = in_other_forms(search, found, 0, 3);
+  const auto others = in_other_forms(search, found, 0, 3, false);
   REQUIRE_FALSE(others.empty());
   CHECK(others[0].hypothesis.effects[0].effect->form == "smooth");
   CHECK(others[0].hypothesis.values[0][1] == doctest::Approx(0.08).epsilon(0.05));
@@ -129,7 +131,18 @@ TEST_CASE("other forms of an effect are tried from the fit that was found, the b
 
   int asked = 0;
   problem.stopped = [&asked] { return ++asked > 2; };  // some fits have not begun
-  CHECK(in_other_forms({bound, problem, candidates, alone}, found, 0, 3).size() <= 3);
+  CHECK(in_other_forms({bound, problem, candidates, alone}, found, 0, 3, false).size() <= 3);
+}
+
+TEST_CASE("friction that grows within a hundredth of the speed is found, though rows are too long to simulate it") {
+  constexpr double onset = 0.003, step = 0.0005;
+  const Diagnosis found = diagnosed({"coulomb_friction", "v", "smooth", {}, {4, onset}}, 0, step);
+  INFO(found.sentence);
+  REQUIRE(found.effects.size() == 1);
+  CHECK(found.effects[0].name == "coulomb_friction");
+  CHECK(found.effects[0].form == "smooth");
+  CHECK(found.effects[0].parameters[1].value / onset == doctest::Approx(1).epsilon(0.2));
+  CHECK(found.noise_ratio < 1.1);
 }
 
 TEST_CASE("the edges of a coarse sensor are as sharp as its readings say") {

@@ -46,5 +46,33 @@ TEST_CASE("a calibration finds parameters, and inputs as they are between rows")
   }
 }
 
+TEST_CASE("parameters that only fine steps can simulate are not lost to others that coarse ones can") {
+  constexpr double truth = 0.002;  // onset of a friction that rows of 50 ms are far too long for
+  const NamedEffect friction{"coulomb_friction", "v", "smooth", {}, {1.0, truth}};
+  std::vector<Recording> recordings;
+  Rng rng(2);
+  for (int r = 0; r < 5; ++r) {
+    Recording recording = toys::blank_recording(toys::SlidingBlock{}.info(), 120, 0.05);
+    for (Eigen::Index i = 0; i < recording.rows(); ++i) {
+      recording.inputs(0, i) = (2 + 0.3 * r) * std::sin((1 + 0.4 * r) * recording.time[i]);
+    }
+    auto machine = toys::machine({2, 0, 0}, {friction});
+    machine.integration.step = 0.0002;
+    recording.outputs = simulate_augmented(toys::SlidingBlock{}, machine, recording).outputs;
+    for (double& x : recording.outputs.reshaped()) x += 0.001 * rng.normal();
+    recordings.push_back(std::move(recording));
+  }
+  DiagnoseOptions options;
+  options.starts = 2;
+  options.known = {friction};
+  const Parallel parallel = serially();
+  const RunContext run{options, parallel};
+  const auto bind = [](std::vector<Recording> some) { return bind_simulator(toys::SlidingBlock{}, std::move(some)); };
+  EstimationSetup setup = hold_out_recordings(bind, std::move(recordings), run);
+  const Hypothesis found = calibrate_model(setup, run).calibrated.hypothesis;
+  CHECK(found.values[0][1] / truth == doctest::Approx(1).epsilon(0.2));
+  CHECK(found.parameters[0] == doctest::Approx(2).epsilon(0.02));
+}
+
 }  // namespace
 }  // namespace surefoot::diagnosis

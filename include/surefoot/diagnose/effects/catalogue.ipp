@@ -71,6 +71,7 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
                              effects::joint_elasticity(),
                              effects::cogging(),
                              effects::cogging_harmonics(),
+                             effects::cogging_per_turn(),
                              effects::gravity_offset(),
                              effects::end_stop_upper(),
                              effects::end_stop_lower(),

@@ -1,9 +1,9 @@
 // Cogging or torque ripple: a force that repeats along the way,
 //   sine * sin(2 pi q/period) + cosine * cos(2 pi q/period),
-// and in the form "two harmonics" the same of half the period beside it.
-// J. Holtz, L. Springob: "Identification and compensation of torque ripple in high-precision permanent magnet motor
-// drives", IEEE Trans. Ind. Electron. 43(2), 1996.
-// Confusable with gravity when the period is about a turn, and with stick-slip of Stribeck friction at slow speeds.
+// and in the form "two harmonics" the same of half the period beside it; in the form "per turn" the period is a share
+// of a turn. J. Holtz, L. Springob: "Identification and compensation of torque ripple in high-precision permanent
+// magnet motor drives", IEEE Trans. Ind. Electron. 43(2), 1996. Confusable with gravity when the period is about a
+// turn, and with stick-slip of Stribeck friction at slow speeds.
 #pragma once
 
 #include <cmath>
@@ -38,6 +38,23 @@ inline Effect cogging() {
             const double phase = 2 * std::numbers::pi * m.position / p[2];
             return p[0] * std::sin(phase) + p[1] * std::cos(phase);
           }};
+}
+
+/// The same by its number per turn, for an angle that turns round: whole numbers are where it is looked for.
+inline Effect cogging_per_turn() {
+  Effect effect = cogging();
+  effect.sentence = "cogging of {per_turn} a turn, amplitudes {sine} and {cosine}, at {at}";
+  effect.form = "per turn";
+  effect.needs_turns = true;
+  // slots, poles, teeth, and their common multiples
+  effect.parameters[2] = {
+      .name = "per_turn", .low = 0.5, .high = 500, .starts = {1,  2,  3,  4,  5,  6,  7,  8,  9,  10,
+                                                              11, 12, 13, 14, 15, 16, 18, 20, 21, 22,
+                                                              24, 28, 30, 36, 40, 42, 48, 60, 72, 84}};
+  effect.force = +[](const EffectContext& m, Values p, Values) {
+    return p[0] * std::sin(p[2] * m.position) + p[1] * std::cos(p[2] * m.position);
+  };
+  return effect;
 }
 
 /// Slots and poles repeat with more than one period: the same with half the period beside it.

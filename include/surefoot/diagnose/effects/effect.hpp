@@ -90,6 +90,7 @@ struct Effect {
   bool is_impulsive =
       false;              // its signature does not grow in proportion: starts are ranked as they are, and not scaled
   bool needs_angle = false;  // says nothing of a velocity that is not the speed of an angle
+  bool needs_turns = false;  // says something only of an angle [rad] that goes further than half a turn to a side
   bool needs_both_signs = false;  // of an input or signal that never changes its sign it says no more than others do
   bool needs_small_values =
       false;                    // of an input or signal that is large or 0 its soft edge would tell, and nothing else

@@ -27,6 +27,9 @@ std::optional<Integration> finer_integration(const BoundSimulator& bound, const 
                                              const Eigen::VectorXd& residual_size, const Integration& now,
                                              const std::vector<std::size_t>& recordings, const Parallel& parallel);
 
+/// The median interval [s] of the recording that has the shortest.
+double shortest_interval(const BoundSimulator& bound, const std::vector<std::size_t>& recordings);
+
 /// Share of the residuals that the way of simulating may add: lost in them.
 inline constexpr double lost_in_residuals = 0.05;
 

@@ -21,7 +21,6 @@ namespace surefoot::diagnosis {
 /// that.
 inline constexpr double reference_steps = 8, most_steps = 128;
 
-/// The median interval of the recording that has the shortest.
 SUREFOOT_ONCE double shortest_interval(const BoundSimulator& bound, const std::vector<std::size_t>& recordings) {
   double shortest = std::numeric_limits<double>::infinity();
   for (const std::size_t r : recordings) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -18,24 +19,42 @@ SUREFOOT_ONCE double mean_rows(const BoundSimulator& bound, const std::vector<st
   return rows / static_cast<double>(std::max<std::size_t>(1, recordings.size()));
 }
 
-SUREFOOT_ONCE Fit guided_fit(const BoundSimulator& bound, Fit best, const Hypothesis& start,
-                             const FitProblem& problem, const Parallel& parallel) {
+SUREFOOT_ONCE bool can_follow(const BoundSimulator& bound) {
+  const auto& output_of = bound.structure.output_of;
+  return std::any_of(output_of.begin(), output_of.end(), [](int output) { return output >= 0; });
+}
+
+SUREFOOT_ONCE bool can_be_guided(const BoundSimulator& bound, const FitProblem& problem) {
+  return problem.integration.restart == 0 && can_follow(bound);
+}
+
+SUREFOOT_ONCE double guided_follow(const BoundSimulator& bound, const FitProblem& problem, double horizon) {
+  return std::clamp(1 / (horizon * mean_rows(bound, problem.recordings)), problem.integration.follow, 1.0);
+}
+
+SUREFOOT_ONCE Hypothesis guided(const BoundSimulator& bound, const Hypothesis& start, const FitProblem& problem,
+                                std::span<const double> horizons, const Parallel& parallel) {
   constexpr int iterations = 8;  // of each fit on the way: only a place to begin the next one from
-  const bool measured = std::any_of(bound.structure.output_of.begin(), bound.structure.output_of.end(),
-                                    [](int output) { return output >= 0; });
-  if (!measured || problem.integration.restart > 0) return best;
-  const double rows = mean_rows(bound, problem.recordings);
-  Fit guided{.hypothesis = start};
-  for (const double horizon : {1.0 / 64, 1.0 / 16, 1.0 / 4}) {  // shares of a recording
-    if (problem.stopped()) return best;
+  if (!can_be_guided(bound, problem)) return start;
+  Hypothesis reached = start;
+  for (const double horizon : horizons) {
+    if (problem.stopped()) break;
     FitProblem near = problem;
-    near.integration.follow = std::min(1.0, 1 / (horizon * rows));
+    near.integration.follow = guided_follow(bound, problem, horizon);
     near.max_iterations = std::min(iterations, problem.max_iterations);
-    const Fit one = fit(bound, guided.hypothesis, near, parallel);
-    if (one.ok) guided = one;
+    const Fit one = fit(bound, reached, near, parallel);
+    if (one.ok) reached = one.hypothesis;
   }
-  guided = fit(bound, guided.hypothesis, problem, parallel);
-  return guided.ok && guided.loss < clearly_less * best.loss ? guided : best;
+  return reached;
+}
+
+SUREFOOT_ONCE Fit guided_fit(const BoundSimulator& bound, Fit best, const Hypothesis& start, const FitProblem& problem,
+                             const Parallel& parallel) {
+  if (!can_be_guided(bound, problem)) return best;
+  const Hypothesis reached = guided(bound, start, problem, guided_horizons, parallel);
+  if (problem.stopped()) return best;
+  const Fit one = fit(bound, reached, problem, parallel);
+  return one.ok && one.loss < clearly_less * best.loss ? one : best;
 }
 
 }  // namespace surefoot::diagnosis

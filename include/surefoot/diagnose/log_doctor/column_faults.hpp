@@ -44,8 +44,7 @@ bool is_odd(const LogFit& fit, std::size_t r, const Repairs& repairs);
 std::vector<Repairs> repairs_to_try(const SimulatorInfo& info);
 
 /// The most likely fault of a single recording, which others do not have.
-std::optional<FoundFault> find_fault_of_one(const LogFit& fit, const LogDoctorCriteria& criteria,
-                                            const Parallel& parallel);
+std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs& inputs, const LogFit& fit);
 
 /// Share of its variance that is left of the output that fits worst, in the median recording.
 double worst_output_error(const LogFit& fit);

@@ -183,8 +183,25 @@ SUREFOOT_ONCE bool is_odd(const LogFit& fit, std::size_t r, const Repairs& repai
   return !(missed(r) < median_of(others));
 }
 
-SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogFit& fit, const LogDoctorCriteria& criteria,
-                                                          const Parallel& parallel) {
+/// The worst error of all recordings but one.
+SUREFOOT_ONCE double worst_of_others(const LogFit& fit, std::size_t r) {
+  double worst = 0;
+  for (std::size_t o = 0; o < fit.error.size(); ++o) worst = std::max(worst, o == r ? 0 : fit.error[o]);
+  return worst;
+}
+
+/// Whether a repaired recording is nearer to the others than to what it was, in decades, once the model is calibrated
+/// to it as well: before, it may have pulled the parameters away, and physics that is missing makes recordings differ.
+SUREFOOT_ONCE bool becomes_like_others(const LogDoctorInputs& inputs, const LogFit& fit, const FoundFault& found) {
+  const std::size_t r = *found.recording;
+  std::vector<Recording> recordings = fit.bound.recordings;
+  recordings[r] = repaired(fit.bound, recordings[r], found.repairs);
+  const LogFit again = fit_log(inputs, std::move(recordings), fit.hypothesis.parameters);
+  return again.error[r] * again.error[r] <= fit.error[r] * worst_of_others(again, r);
+}
+
+SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs& inputs, const LogFit& fit) {
+  const LogDoctorCriteria& criteria = inputs.criteria;
   const std::size_t count = fit.bound.recordings.size();
   if (count < 2) return std::nullopt;
   const std::vector<Repairs> columns = repairs_to_try(fit.bound.info);
@@ -195,7 +212,7 @@ SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogFit& fit, con
     tried[r].insert(tried[r].end(), times.begin(), times.end());
     effects[r].resize(tried[r].size());
   }
-  parallel(count, [&](std::size_t r) {
+  inputs.parallel(count, [&](std::size_t r) {
     for (std::size_t t = 0; t < tried[r].size(); ++t) {
       const Recording version = repaired(fit.bound, fit.bound.recordings[r], tried[r][t]);
       effects[r][t] = effect_of(fit, r, tried[r][t], resimulate(fit, r, version).residuals);
@@ -203,26 +220,28 @@ SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogFit& fit, con
   });
   const double tests = static_cast<double>(count * columns.size());
   const double least_odds = std::log(tests / criteria.significance);
-  std::optional<FoundFault> found;
-  RepairEffect best;
+  std::optional<FoundFault> found, unlike;  // the others, as they are calibrated now
+  RepairEffect best, best_unlike;
   for (std::size_t r = 0; r < count; ++r) {
-    double others_worst = 0;
-    for (std::size_t o = 0; o < count; ++o) others_worst = std::max(others_worst, o == r ? 0 : fit.error[o]);
+    const double others_worst = worst_of_others(fit, r);
     for (std::size_t t = 0; t < tried[r].size(); ++t) {
       const RepairEffect& effect = effects[r][t];
       if (!(effect.log_odds > least_odds && effect.log_ratio > std::log(criteria.decisive))) continue;
-      if (effect.after > criteria.decisive * others_worst) continue;  // still unlike the others
       if (!is_odd(fit, r, tried[r][t])) continue;
       std::vector<double> of_others;
       for (std::size_t o = 0; o < count; ++o) {
         if (o != r && t < columns.size()) of_others.push_back(effects[o][t].log_ratio);
       }
       if (median_of(of_others) > 0) continue;  // physics that all have in common
-      if (found && !more_likely(effect, best)) continue;
-      best = effect;
-      found = FoundFault{tried[r][t], r, as_good(tried[r], effects[r], t, criteria)};
+      const bool alike = effect.after <= criteria.decisive * others_worst;
+      std::optional<FoundFault>& one = alike ? found : unlike;
+      RepairEffect& so_far = alike ? best : best_unlike;
+      if (one && !more_likely(effect, so_far)) continue;
+      so_far = effect;
+      one = FoundFault{tried[r][t], r, as_good(tried[r], effects[r], t, criteria)};
     }
   }
+  if (!found && unlike && becomes_like_others(inputs, fit, *unlike)) return unlike;
   return found;
 }
 

@@ -33,6 +33,7 @@ struct LogDoctorCriteria {
   std::size_t constant_rows = 5;   // equal readings in a row that are a stretch
   double repeats = 0.05;           // share of rows that repeat the one before while the model moves on
   double odd = 0.5;                // least share of its variance unexplained: physics that is missing leaves less
+  double far_off = 5;              // times as far off as any other, where parameters of its own explain it
 };
 
 }  // namespace surefoot::diagnosis

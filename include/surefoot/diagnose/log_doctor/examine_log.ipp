@@ -55,7 +55,7 @@ SUREFOOT_ONCE void examine_columns(LogUnderExamination& log) {
     log.fit = first_fit(log.inputs, recordings);
   }
   for (std::size_t round = 0; 2 * round < log.fit.bound.recordings.size() && !log.inputs.stopped(); ++round) {
-    const auto found = find_fault_of_one(log.fit, log.inputs.criteria, log.inputs.parallel);
+    const auto found = find_fault_of_one(log.inputs, log.fit);
     if (!found || log.inputs.stopped()) break;
     log.add(describe_fault(log.fit.bound, *found), true);
     std::vector<Recording> recordings = log.fit.bound.recordings;

@@ -143,6 +143,33 @@ SUREFOOT_ONCE LogFit predicted_without(const LogDoctorInputs& inputs, const LogF
   return all;
 }
 
+/// How many times as far off a recording is as the worst of the others.
+SUREFOOT_ONCE double times_the_others(const std::vector<double>& errors, std::size_t r) {
+  double next = 0;
+  for (std::size_t o = 0; o < errors.size(); ++o) next = std::max(next, o == r ? 0 : errors[o]);
+  return std::sqrt(errors[r] / next);
+}
+
+/// A recording that the model explains as well as the others, but only with parameters of its own: another payload.
+/// Physics that it alone shows would rarely be a matter of parameters.
+SUREFOOT_ONCE std::optional<OddRecording> with_own_parameters(const LogDoctorInputs& inputs, const LogFit& fit) {
+  const LogDoctorCriteria& criteria = inputs.criteria;
+  const auto r = static_cast<std::size_t>(std::max_element(fit.error.begin(), fit.error.end()) - fit.error.begin());
+  const Recording& recording = fit.bound.recordings[r];
+  if (fit.noise != NoiseKind::measurement || recording.rows() < static_cast<Eigen::Index>(criteria.fewest_rows) ||
+      !(times_the_others(fit.error, r) > criteria.far_off)) {
+    return std::nullopt;
+  }
+  const LogFit predicted = predicted_without(inputs, fit, r);
+  const double times = times_the_others(predicted.error, r);
+  if (!(times > criteria.far_off) || !beyond_scatter(predicted.error, r, criteria)) return std::nullopt;
+  const LogFit own = fit_log(inputs, {recording}, predicted.hypothesis.parameters);
+  std::vector<double> errors = predicted.error;
+  errors[r] = mean_square(own.residuals.front(), fit.size);
+  if (!(times_the_others(errors, r) < std::sqrt(criteria.decisive))) return std::nullopt;
+  return OddRecording{r, times};
+}
+
 SUREFOOT_ONCE std::optional<OddRecording> find_odd_recording(const LogDoctorInputs& inputs, const LogFit& logged) {
   constexpr std::size_t fewest = 4;  // recordings, to say what most of them are like
   if (logged.error.size() < fewest) return std::nullopt;
@@ -154,11 +181,9 @@ SUREFOOT_ONCE std::optional<OddRecording> find_odd_recording(const LogDoctorInpu
     const std::vector<double> errors = errors_of(predicted, fit, relative);
     if (outstanding(errors, inputs.criteria) != odd) continue;
     if (!beyond_scatter(errors, *odd, inputs.criteria) && !is_unrelated(inputs, fit, predicted, *odd)) continue;
-    double next = 0;
-    for (std::size_t o = 0; o < errors.size(); ++o) next = std::max(next, o == *odd ? 0 : errors[o]);
-    return OddRecording{*odd, std::sqrt(errors[*odd] / next)};
+    return OddRecording{*odd, times_the_others(errors, *odd)};
   }
-  return std::nullopt;
+  return with_own_parameters(inputs, logged);
 }
 
 }  // namespace surefoot::diagnosis

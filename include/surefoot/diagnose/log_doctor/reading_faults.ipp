@@ -239,6 +239,42 @@ SUREFOOT_ONCE std::vector<FoundFault> repeated_row_faults(const LogFit& fit, Eig
   return found;
 }
 
+/// Whether no reading of any output changes within these rows.
+SUREFOOT_ONCE bool all_stand_still(const Recording& recording, const std::vector<RowRange>& rows) {
+  for (const RowRange& one : rows) {
+    for (Eigen::Index row = one.first + 1; row < one.second; ++row) {
+      for (Eigen::Index k = 0; k < recording.outputs.rows(); ++k) {
+        if (recording.outputs(k, row) != recording.outputs(k, row - 1)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// Sensors do not stick all at once, in the same rows: where one of several does and all others stand still, samples
+/// were dropped, of all of them.
+SUREFOOT_ONCE void take_for_repeated_where_all_stick(const BoundSimulator& bound, std::vector<FoundFault>& found) {
+  const auto outputs = static_cast<Eigen::Index>(bound.info.outputs.size());
+  if (outputs < 2) return;
+  for (const FoundFault& one : std::vector<FoundFault>(found)) {
+    const LogRepair& stuck = one.repairs.front();
+    const std::size_t r = *one.recording;
+    if (stuck.kind != LogFaultKind::stuck || !all_stand_still(bound.recordings[r], stuck.rows)) continue;
+    const auto replaced = std::erase_if(found, [&](const FoundFault& other) {
+      return other.recording == r && other.repairs.front().kind == LogFaultKind::stuck &&
+             other.repairs.front().rows == stuck.rows;
+    });
+    if (replaced == 0) continue;  // with those of another output
+    LogRepair repeated{.kind = LogFaultKind::repeated};
+    for (const RowRange& rows : stuck.rows) {
+      for (Eigen::Index row = rows.first + 1; row < rows.second; ++row) repeated.rows.emplace_back(row, row + 1);
+    }
+    for (repeated.channel.index = 0; repeated.channel.index < outputs; ++repeated.channel.index) {
+      found.push_back({{repeated}, r});
+    }
+  }
+}
+
 SUREFOOT_ONCE std::vector<FoundFault> find_reading_faults(const LogFit& fit, const LogDoctorCriteria& criteria) {
   std::vector<FoundFault> found;
   const std::size_t count = fit.bound.recordings.size();
@@ -267,6 +303,7 @@ SUREFOOT_ONCE std::vector<FoundFault> find_reading_faults(const LogFit& fit, con
       if (const auto fault = constant_fault(fit, r, output, stretches[r])) found.push_back(*fault);
     }
   }
+  take_for_repeated_where_all_stick(fit.bound, found);
   return found;
 }
 

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -122,11 +123,19 @@ SUREFOOT_ONCE bool may_be_angle(const std::string& unit) {
   return std::find(units.begin(), units.end(), unit) != units.end();
 }
 
+/// Whether a velocity is the speed of an angle that turns round.
+SUREFOOT_ONCE bool turns_round(const BoundSimulator& bound, int position) {
+  if (position < 0) return false;
+  const auto state = static_cast<std::size_t>(position);
+  return bound.info.states[state].unit == "rad" && bound.sizes.state_peak[state] > std::numbers::pi;
+}
+
 SUREFOOT_ONCE bool fits_velocity(const BoundSimulator& bound, const Effect& effect, std::size_t state) {
   const int position = bound.structure.position_of[state];
   if (effect.needs_angle && (position < 0 || !may_be_angle(bound.info.states[static_cast<std::size_t>(position)].unit))) {
     return false;
   }
+  if (effect.needs_turns && !turns_round(bound, position)) return false;
   if (!effect.needs_unit.empty() && bound.info.states[state].unit != effect.needs_unit) return false;
   bool needs_position = effect.seen_position || effect.limit;
   for (const EffectParameter& parameter : effect.parameters) {

@@ -144,6 +144,10 @@ bool may_mend_form(const Hypothesis& larger, const Hypothesis& smaller);
 /// a further effect may mend the form of another.
 Eigen::VectorXd negligible_beside(const ErrorSquares& errors, const SearchProblem& problem);
 
+/// Whether a structure leaves no more of any output than the noise, as far as that is known, and what a diagnosis
+/// tolerates: its effects are of the right form.
+bool leaves_only_noise(const EvaluatedHypothesis& one, const SearchProblem& problem);
+
 /// What a number that each recording has for itself costs, such as where a state begins [nat]: half the log of its
 /// independent errors, summed over recordings (BIC).
 double cost_of_own_numbers(const ErrorSquares& errors);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -54,6 +55,15 @@ SUREFOOT_ONCE Eigen::VectorXd negligible_beside(const ErrorSquares& errors, cons
     if (noise > 0 && left[k] <= (1 + tolerated) * noise) least[k] = std::min(least[k], tolerated * noise);
   }
   return least;
+}
+
+SUREFOOT_ONCE bool leaves_only_noise(const EvaluatedHypothesis& one, const SearchProblem& problem) {
+  const Eigen::VectorXd left = pooled(one.errors);
+  for (Eigen::Index k = 0; k < left.size(); ++k) {
+    const double noise = k < problem.noise.size() ? problem.noise[k] : 0;
+    if (!(left[k] <= (1 + problem.criteria.tolerated_form) * noise)) return false;
+  }
+  return true;
 }
 
 SUREFOOT_ONCE double cost_of_own_numbers(const ErrorSquares& errors) {
@@ -213,11 +223,24 @@ SUREFOOT_ONCE std::vector<double> log_densities_beside(const EvaluatedHypothesis
   return log_densities(one.errors, reference.errors, criteria, of_form);
 }
 
+/// The one that leaves least, beside which all others are weighed.
+SUREFOOT_ONCE const EvaluatedHypothesis& closest(const std::vector<EvaluatedHypothesis>& evaluated) {
+  return *std::min_element(evaluated.begin(), evaluated.end(),
+                           [](const auto& a, const auto& b) { return a.errors.rms() < b.errors.rms(); });
+}
+
 SUREFOOT_INLINE std::size_t best_of(const std::vector<EvaluatedHypothesis>& evaluated,
                                     const SelectionCriteria& criteria) {
+  if (evaluated.empty()) return 0;
+  const EvaluatedHypothesis& reference = closest(evaluated);
   std::size_t best = 0;
-  for (std::size_t i = 1; i < evaluated.size(); ++i) {
-    if (log_odds(evaluated[i], evaluated[best], criteria) > 0) best = i;
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < evaluated.size(); ++i) {
+    const std::vector<double> densities = log_densities_beside(evaluated[i], reference, criteria);
+    const double score = std::accumulate(densities.begin(), densities.end(), evaluated[i].log_prior);
+    if (!(score > most)) continue;
+    most = score;
+    best = i;
   }
   return best;
 }
@@ -242,9 +265,7 @@ SUREFOOT_ONCE std::vector<double> probabilities(const std::vector<EvaluatedHypot
                                                 const SelectionCriteria& criteria) {
   std::vector<double> result(evaluated.size(), 0.0);
   if (evaluated.empty()) return result;
-  const EvaluatedHypothesis& reference = *std::min_element(
-      evaluated.begin(), evaluated.end(),
-      [](const EvaluatedHypothesis& a, const EvaluatedHypothesis& b) { return a.errors.rms() < b.errors.rms(); });
+  const EvaluatedHypothesis& reference = closest(evaluated);
   std::vector<std::vector<double>> densities;
   for (const EvaluatedHypothesis& one : evaluated) {
     densities.push_back(log_densities_beside(one, reference, criteria));

@@ -40,8 +40,12 @@ void extend(const Search& search, const EvaluatedHypothesis& parent, const Evalu
 /// structure so far, only what could come near it.
 std::vector<EvaluatedHypothesis> extended_from(Search search, Hypothesis start, const EvaluatedHypothesis* best);
 
-/// Where first effects leave more than noise: the best from places around, first effects from the nominal parameters
-/// on, and pairs of the best.
+/// The same under guidance (guided_fit.hpp): signatures and first fits along the readings, wherever the calibrated
+/// model has run to, and at the end fits of whole recordings.
+std::vector<EvaluatedHypothesis> extended_under_guidance(const Search& search);
+
+/// Where first effects leave more than noise: the best from places around, first effects under guidance and from the
+/// nominal parameters on, and pairs of the best.
 void begin_elsewhere(Search search, std::vector<EvaluatedHypothesis>& children);
 
 /// Whether the rival explanation of the problem does better than the best of a pool of first effects.
@@ -51,12 +55,19 @@ bool yields(const Search& search, const std::vector<EvaluatedHypothesis>& pool);
 /// where a scale is free, as of a tank that no sensor sees, nothing but chance puts them there.
 void draw_inside(const Search& search, const EvaluatedHypothesis& best, std::vector<EvaluatedHypothesis>& children);
 
+/// Whether a structure has effects and is more probable than the model without any, these two alone compared: beside a
+/// third one that comes nearer it may look so and not be.
+bool pays(const Search& search, const EvaluatedHypothesis& one, const std::vector<EvaluatedHypothesis>& pool);
+
+/// Adds a structure, and what it is without any one of its effects if that leaves hardly more: room for others.
+void add_with_smaller(const Search& search, const EvaluatedHypothesis& one, std::vector<EvaluatedHypothesis>& beam);
+
 /// Extends the best structures of a pool, as long as that makes the best one better; once more where no first effect
 /// does and something is left, and on as long as the closest structure comes much nearer each time: that one is then
-/// extended whatever its odds. What the best one can do without is taken away at once (floating search; P. Pudil, J.
-/// Novovicova, J. Kittler, Pattern Recognition Letters 15, 1994). Structures with an effect that does nothing, and
-/// those far behind, are not extended, nor is what was before, which `done` keeps, with the same recordings and
-/// integration.
+/// extended whatever its odds, and without what it holds idle. What the best one can do without is taken away at once
+/// (floating search; P. Pudil, J. Novovicova, J. Kittler, Pattern Recognition Letters 15, 1994). Structures with an
+/// effect that does nothing, and those far behind, are not extended, nor is what was before, which `done` keeps, with
+/// the same recordings and integration.
 void grow(Search& search, std::vector<EvaluatedHypothesis>& pool, std::vector<Hypothesis>& done);
 
 /// The best structures, and the model without effects, fitted and evaluated with the present weights and recordings.

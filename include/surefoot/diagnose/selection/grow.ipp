@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -128,6 +129,23 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> extended_from(Search search, Hypo
   return children;
 }
 
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> extended_under_guidance(const Search& search) {
+  constexpr std::size_t reached = 2;  // of the horizons: short, but longer than one row
+  const auto near = std::span(guided_horizons).first(reached), far = std::span(guided_horizons).subspan(reached);
+  const FitProblem& problem = search.problem.fit;
+  if (!can_be_guided(search.bound, problem)) return {};
+  const Hypothesis start = guided(search.bound, search.problem.nominal, problem, near, search.parallel);
+  Search followed = search;
+  followed.problem.fit.integration.follow = guided_follow(search.bound, problem, near.back());
+  std::vector<EvaluatedHypothesis> children = extended_from(followed, start, nullptr);
+  search.parallel(children.size(), [&](std::size_t i) {
+    if (problem.stopped()) return;
+    children[i] = refitted(search, guided(search.bound, children[i].hypothesis, problem, far, serially()));
+  });
+  if (problem.stopped()) children.clear();  // errors of some are still those under guidance
+  return children;
+}
+
 SUREFOOT_ONCE EvaluatedHypothesis refitted(const Search& search, const Hypothesis& one) {
   return evaluate_fit(search.bound, fit(search.bound, one, search.problem.fit, serially()), search.problem, serially());
 }
@@ -146,6 +164,8 @@ SUREFOOT_ONCE void begin_elsewhere(Search search, std::vector<EvaluatedHypothesi
     best = refitted(search, best.hypothesis);
     if (done()) return;
   }
+  for (const EvaluatedHypothesis& child : extended_under_guidance(search)) keep_best_form(children, child, criteria);
+  if (done()) return;
   for (const EvaluatedHypothesis& child : extended_from(search, search.problem.nominal, nullptr)) {
     keep_best_form(children, child, criteria);
   }
@@ -236,6 +256,22 @@ SUREFOOT_ONCE void add_structure(std::vector<EvaluatedHypothesis>& some, const E
   if (!there) some.push_back(one);
 }
 
+SUREFOOT_ONCE bool pays(const Search& search, const EvaluatedHypothesis& one,
+                        const std::vector<EvaluatedHypothesis>& pool) {
+  const auto none =
+      std::find_if(pool.begin(), pool.end(), [&](const auto& other) { return search.effects(other) == 0; });
+  const bool less_probable = none != pool.end() && log_odds(one, *none, search.problem.criteria) < 0;
+  return search.effects(one) > 0 && !less_probable;
+}
+
+SUREFOOT_ONCE void add_with_smaller(const Search& search, const EvaluatedHypothesis& one,
+                                    std::vector<EvaluatedHypothesis>& beam) {
+  add_structure(beam, one);
+  for (const EvaluatedHypothesis& rest : smaller(search, one)) {
+    if (!much_less(one.errors.rms(), rest.errors.rms())) add_structure(beam, rest);
+  }
+}
+
 SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool, std::vector<Hypothesis>& done) {
   const SelectionCriteria& criteria = search.problem.criteria;
   const SearchEffort& effort = search.problem.effort;
@@ -260,17 +296,17 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool, 
     for (const EvaluatedHypothesis& child : children) keep_best_form(pool, child, criteria);
     if (depth == 0 && yields(search, pool)) break;
     const EvaluatedHypothesis now = pool[best_of(pool, criteria)];
-    const bool no_better = same_structure(now.hypothesis, best.hypothesis);
+    const bool no_better = same_structure(now.hypothesis, best.hypothesis) || log_odds(now, best, criteria) < 0;
     const auto nearest_child = least_left(children);
     const bool nearer = nearest_child && much_less(nearest_child->errors.rms(), nearest);
     if (nearer) nearest = nearest_child->errors.rms();
-    if (no_better && ((in_vain && !nearer) || search.effects(now) > 0 || !leaves_structure(search, now))) break;
+    if (no_better && ((in_vain && !nearer) || pays(search, now, pool) || !leaves_structure(search, now))) break;
     in_vain = no_better;
     std::erase_if(children, [&](const EvaluatedHypothesis& one) {
       return holds_idle_effect(one, pool) || log_odds(one, now, criteria) < -effort.hopeless;
     });
     beam = best_structures(children, effort.beam, effort.hopeless, criteria);
-    if (no_better && nearer) add_structure(beam, *nearest_child);
+    if (no_better && nearer) add_with_smaller(search, *nearest_child, beam);
     if (beam.empty()) break;
     reweight(search, now);
     Fit fitted{now.hypothesis, now.loss, true};

@@ -15,9 +15,10 @@ namespace surefoot::diagnosis {
 std::optional<EvaluatedHypothesis> in_richer_forms(const Search& search, const EvaluatedHypothesis& found);
 
 /// A structure with its effect number `e` in its other forms that extend none, all else as it was found: the best
-/// `keep`, fitted and evaluated.
+/// `keep`, fitted and evaluated. `finely`: each with steps as fine as it needs where it begins, for a form that is
+/// stiffer than the one that was found would end where coarse steps do not run away.
 std::vector<EvaluatedHypothesis> in_other_forms(const Search& search, const EvaluatedHypothesis& found, std::size_t e,
-                                                std::size_t keep);
+                                                std::size_t keep, bool finely);
 
 }  // namespace surefoot::diagnosis
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/estimation/starting_values.hpp"
 #include "surefoot/diagnose/selection/richer_forms.hpp"
@@ -34,17 +35,17 @@ SUREFOOT_ONCE std::optional<double> value_named(const std::string& name, const E
   return std::nullopt;
 }
 
-/// The same with one effect in another form, once for each of the starts of its further parameters; none of a form that
-/// only readings suggest.
+/// The same with one effect in another form, once for each of the starts of its further parameters, times a factor;
+/// none of a form that only readings suggest.
 SUREFOOT_ONCE std::vector<Hypothesis> starts_in_form(const Search& search, const Hypothesis& found, std::size_t e,
-                                                     const AttachedEffect& form) {
+                                                     const AttachedEffect& form, double factor = 1) {
   const std::size_t recordings = search.bound.recordings.size();
   std::vector<Hypothesis> starts;
   std::set<std::vector<double>> tried;
   for (Eigen::VectorXd values : starting_values(search.bound, form, {})) {
     for (Eigen::Index k = 0; k < values.size(); ++k) {
       const std::string& name = form.effect->parameters[static_cast<std::size_t>(k)].name;
-      values[k] = value_named(name, *found.effects[e].effect, found.values[e]).value_or(values[k]);
+      values[k] = value_named(name, *found.effects[e].effect, found.values[e]).value_or(factor * values[k]);
     }
     if (!tried.insert({values.begin(), values.end()}).second) continue;  // starts of the known ones do not count
     Hypothesis one = found;
@@ -71,8 +72,29 @@ SUREFOOT_ONCE Hypothesis with_form(const Search& search, const Hypothesis& found
   return best;
 }
 
+/// A fit with the integration that it began with.
+struct IntegratedFit {
+  Fit fit;
+  Integration integration;
+};
+
+/// The best fit of each form of effect number `e`, best first.
+SUREFOOT_ONCE std::vector<IntegratedFit> best_of_forms(std::vector<IntegratedFit> fits, std::size_t e) {
+  std::erase_if(fits, [](const IntegratedFit& one) { return !one.fit.ok; });  // or not begun: the search was stopped
+  sort_items(fits, [](const IntegratedFit& a, const IntegratedFit& b) { return a.fit.loss < b.fit.loss; });
+  std::vector<IntegratedFit> best;
+  for (IntegratedFit& one : fits) {
+    const bool there = std::any_of(best.begin(), best.end(), [&](const IntegratedFit& other) {
+      return same_effect(other.fit.hypothesis.effects[e], one.fit.hypothesis.effects[e]);
+    });
+    if (!there) best.push_back(std::move(one));
+  }
+  return best;
+}
+
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> in_other_forms(const Search& search, const EvaluatedHypothesis& found,
-                                                              std::size_t e, std::size_t keep) {
+                                                              std::size_t e, std::size_t keep, bool finely) {
+  constexpr double stiffer = 0.2;  // of the starts, which are where steps of a row can go
   FitProblem quick = search.problem.fit;
   quick.recordings = search.problem.screened;
   quick.max_iterations = search.problem.effort.first_iterations;
@@ -81,22 +103,32 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> in_other_forms(const Search& sear
   for (const AttachedEffect& one : search.candidates) {
     const bool other = same_but_for_form(one, present) && !same_effect(one, present);
     if (!other || !one.effect->extends.empty()) continue;
-    for (Hypothesis& start : starts_in_form(search, found.hypothesis, e, one)) starts.push_back(std::move(start));
+    for (const double factor : finely ? std::vector{1.0, stiffer} : std::vector{1.0}) {
+      for (Hypothesis& start : starts_in_form(search, found.hypothesis, e, one, factor)) {
+        starts.push_back(std::move(start));
+      }
+    }
   }
-  std::vector<Fit> fits(starts.size());
+  std::vector<IntegratedFit> fits(starts.size());
   search.parallel(starts.size(), [&](std::size_t i) {
-    if (!search.problem.stopped()) fits[i] = fit(search.bound, starts[i], quick, serially());
+    if (search.problem.stopped()) return;
+    FitProblem problem = quick;
+    if (finely) {
+      problem.integration = finer_integration(search.bound, starts[i], quick.weighting.sigma, quick.integration,
+                                              quick.recordings, serially())
+                                .value_or(quick.integration);
+    }
+    fits[i] = {fit(search.bound, starts[i], problem, serially()), problem.integration};
   });
-  std::erase_if(fits, [](const Fit& one) { return !one.ok; });  // or not begun, where the search was stopped
-  sort_items(fits, [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
-  std::vector<Fit> best;  // of each form
-  for (Fit& one : fits) {
-    const bool there = std::any_of(best.begin(), best.end(), [&](const Fit& other) {
-      return same_effect(other.hypothesis.effects[e], one.hypothesis.effects[e]);
-    });
-    if (!there) best.push_back(std::move(one));
+  std::vector<IntegratedFit> best = best_of_forms(std::move(fits), e);
+  if (best.size() > keep) best.resize(keep);
+  std::vector<EvaluatedHypothesis> result;
+  for (IntegratedFit& one : best) {
+    Search as_fitted = search;
+    as_fitted.problem.fit.integration = one.integration;
+    for (EvaluatedHypothesis& ready : finished(as_fitted, {std::move(one.fit)}, 1)) result.push_back(std::move(ready));
   }
-  return finished(search, std::move(best), keep);
+  return result;
 }
 
 /// Not ok where it cannot help.

@@ -71,7 +71,8 @@ SUREFOOT_ONCE void try_other_forms(Search& search, const EvaluatedHypothesis& be
                                    std::vector<EvaluatedHypothesis>& pool) {
   const SearchProblem& problem = search.problem;
   const bool structured = leaves_structure(search, best);
-  std::vector<EvaluatedHypothesis> others = in_other_forms(search, best, e, problem.effort.compared_finalists);
+  const bool finely = structured && !leaves_only_noise(best, problem);
+  std::vector<EvaluatedHypothesis> others = in_other_forms(search, best, e, problem.effort.compared_finalists, finely);
   enrich(search, others, std::numeric_limits<double>::infinity());
   for (const EvaluatedHypothesis& one : others) {
     keep_best_form(pool, one, problem.criteria);

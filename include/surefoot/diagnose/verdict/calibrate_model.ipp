@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
@@ -86,6 +88,22 @@ SUREFOOT_ONCE FreedTogether free_what_is_left(const EstimationSetup& setup, cons
   return free_together(setup.bound, calibrated, problem, run.options.starts, run.seed, run.parallel);
 }
 
+/// A calibration, or the fit from the nominal parameters on if that is better with the steps that were chosen since:
+/// where the model is stiff, such parameters may have run away with coarser ones.
+SUREFOOT_ONCE Fit no_worse_than(const Hypothesis& nominal, const Fit& calibrated, const EstimationSetup& setup,
+                                const Parallel& parallel) {
+  const FitProblem& problem = setup.problem;
+  const auto loss_of = [&](const Hypothesis& one) {
+    const FitFunctions functions(setup.bound, one, problem, parallel);
+    const Eigen::VectorXd residuals = functions.residuals(functions.start());
+    return all_finite(residuals) ? mean_loss(residuals, problem.weighting.robust)
+                                 : std::numeric_limits<double>::infinity();
+  };
+  if (!(loss_of(nominal) < loss_of(calibrated.hypothesis))) return calibrated;
+  const Fit again = fit(setup.bound, nominal, problem, parallel);
+  return again.ok ? again : calibrated;
+}
+
 SUREFOOT_ONCE Calibration calibrate_model(EstimationSetup& setup, const RunContext& run) {
   auto& [bound, split, noise, problem, freed] = setup;
   const Parallel& parallel = run.parallel;
@@ -109,6 +127,7 @@ SUREFOOT_ONCE Calibration calibrate_model(EstimationSetup& setup, const RunConte
     bound.integration = choose_integration(bound, calibrated.hypothesis, problem.weighting.sigma, bound.integration,
                                            split.training, parallel);
     problem.integration = bound.integration;
+    calibrated = no_worse_than(nominal, calibrated, setup, parallel);
     if (noise == NoiseKind::final_pose) {
       problem.weighting.whitening =
           final_pose_whitening(bound, calibrated.hypothesis, split.training, bound.integration);

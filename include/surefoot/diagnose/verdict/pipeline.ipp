@@ -17,12 +17,14 @@
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/growing_horizon.hpp"
+#include "surefoot/diagnose/estimation/instability.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/standard_errors.hpp"
 #include "surefoot/diagnose/log_doctor/reading_faults.hpp"
 #include "surefoot/diagnose/residual_tests/noise.hpp"
 #include "surefoot/diagnose/screening.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
+#include "surefoot/diagnose/text.hpp"
 #include "surefoot/diagnose/verdict/describe.hpp"
 #include "surefoot/diagnose/verdict/detection_limits.hpp"
 #include "surefoot/diagnose/verdict/evaluate.hpp"
@@ -321,17 +323,30 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
   }
 }
 
-/// The simulator with as many steps a row as it needs to run over these recordings.
-SUREFOOT_ONCE BindSimulator with_integration_that_runs(const BindSimulator& bind,
-                                                       const std::vector<Recording>& recordings,
-                                                       const RunContext& run) {
-  const BoundSimulator bound = bind(recordings);
-  const Integration runs = integration_that_runs(bound, nominal_with_known(bound, run.options), run.parallel);
-  return [bind, runs](std::vector<Recording> some) {
+/// As many steps a row as a simulator needs to run over these recordings, which are followed where they must be.
+SUREFOOT_ONCE Integration needed_integration(const BindSimulator& bind, const std::vector<Recording>& recordings,
+                                             const RunContext& run) {
+  BoundSimulator bound = bind(recordings);
+  const Hypothesis nominal = nominal_with_known(bound, run.options);
+  bound.integration = integration_that_runs(bound, nominal, run.parallel);
+  bound.integration.follow = needed_follow(bound, nominal, run.parallel);
+  return bound.integration;
+}
+
+SUREFOOT_ONCE BindSimulator with_integration(const BindSimulator& bind, const Integration& needed) {
+  return [bind, needed](std::vector<Recording> some) {
     BoundSimulator result = bind(std::move(some));
-    result.integration.step = runs.step;
+    result.integration.step = needed.step;
+    result.integration.follow = needed.follow;
     return result;
   };
+}
+
+SUREFOOT_ONCE std::string following_sentence(double rows) {
+  return "the machine is unstable without its controller, which is not part of the model, so that no whole recording "
+         "can be simulated: simulations follow the readings, and errors are those of predictions over " +
+         in_digits(std::round(rows)) +
+         " rows; a model of the controller, with its set points as inputs, would show more";
 }
 
 SUREFOOT_ONCE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorInfo& info,
@@ -344,7 +359,9 @@ SUREFOOT_ONCE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorI
   sort_recordings(recordings);
   const Eigen::Index kept = shorten_recordings(recordings, options.max_rows);
   if (kept > 0) remarks.push_back({"", shortening_sentence(kept)});
-  const BindSimulator bind_to_run = with_integration_that_runs(bind, recordings, run);
+  const Integration needed = needed_integration(bind, recordings, run);
+  if (needed.follow > 0) remarks.push_back({"", following_sentence(1 / needed.follow)});
+  const BindSimulator bind_to_run = with_integration(bind, needed);
   LogExamination log = examine_recordings(bind_to_run, recordings, run);
   const std::string warning = caution(log.faults);
   try {

@@ -1,0 +1,128 @@
+// Definitions of surefoot/diagnose/estimation/instability.hpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/choose_integration.hpp"
+#include "surefoot/diagnose/estimation/guided_fit.hpp"
+#include "surefoot/diagnose/estimation/instability.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
+
+namespace surefoot::diagnosis {
+
+/// A recording in pieces of equal length, each from the states that a simulation close to the readings has there.
+SUREFOOT_ONCE std::vector<Recording> pieces_along(const Recording& whole, const Eigen::MatrixXd& states) {
+  constexpr Eigen::Index pieces = 16;      // each short enough that the model stays near the readings
+  constexpr Eigen::Index fewest_rows = 3;  // of a piece
+  std::vector<Recording> result;
+  for (Eigen::Index k = 0; k < pieces; ++k) {
+    const Eigen::Index from = whole.rows() * k / pieces;
+    const Eigen::Index to = std::min(whole.rows() * (k + 1) / pieces + 1, whole.rows());
+    if (to - from < fewest_rows) continue;
+    const Eigen::VectorXd begin = surefoot::detail::column_of(states, from);
+    result.push_back(part_of(whole, from, to, begin, Eigen::VectorXd::Zero(begin.size())));
+  }
+  return result;
+}
+
+/// States at the end of recording r from others at its begin; empty where the simulation runs away.
+SUREFOOT_ONCE Eigen::VectorXd end_of(const BoundSimulator& bound, Hypothesis& hypothesis, std::size_t r,
+                                     const Eigen::VectorXd& begin) {
+  hypothesis.initial[r] = begin;
+  const SimulatedRun run = simulate(bound, hypothesis, r, bound.integration);
+  return run.finite ? surefoot::detail::column_of(run.states, run.states.cols() - 1) : Eigen::VectorXd();
+}
+
+/// By how much differences of states, each in units of its size, have changed at the end of recording r (columns: of
+/// which state at the begin); empty where a simulation runs away.
+SUREFOOT_ONCE Eigen::MatrixXd transition(const BoundSimulator& bound, Hypothesis hypothesis, std::size_t r,
+                                         const Eigen::VectorXd& sizes) {
+  constexpr double small = 1e-5;  // of the size: a difference that grows without meeting another regime
+  const Eigen::VectorXd begin = bound.recordings[r].initial, end = end_of(bound, hypothesis, r, begin);
+  if (end.size() == 0) return {};
+  Eigen::MatrixXd result(end.size(), end.size());
+  for (Eigen::Index state = 0; state < end.size(); ++state) {
+    Eigen::VectorXd moved = begin;
+    moved[state] += small * sizes[state];
+    const Eigen::VectorXd other = end_of(bound, hypothesis, r, moved);
+    if (other.size() == 0) return {};
+    for (Eigen::Index i = 0; i < end.size(); ++i) result(i, state) = (other[i] - end[i]) / (small * sizes[i]);
+  }
+  return result;
+}
+
+/// Logarithm of the most that differences grow by over a recording; -infinity where it cannot be said.
+SUREFOOT_ONCE double log_growth(BoundSimulator bound, const Hypothesis& hypothesis, std::size_t r) {
+  constexpr double close = 0.5;      // Integration::follow of the motion along which they grow
+  constexpr double smallest = 1e-9;  // size of a state that is always 0
+  constexpr double unknown = -std::numeric_limits<double>::infinity();
+  Integration near = bound.integration;
+  near.follow = close;
+  const SimulatedRun motion = simulate(bound, hypothesis, r, near);
+  if (!motion.finite) return unknown;
+  Eigen::VectorXd sizes(motion.states.rows());
+  for (Eigen::Index i = 0; i < sizes.size(); ++i) {
+    sizes[i] = std::max(root_mean_square(surefoot::detail::row_of(motion.states, i)), smallest);
+  }
+  Eigen::MatrixXd change = Eigen::MatrixXd::Identity(sizes.size(), sizes.size());
+  double sum = 0;
+  for (Recording& piece : pieces_along(bound.recordings[r], motion.states)) {
+    bound.recordings[r] = std::move(piece);
+    const Eigen::MatrixXd next = transition(bound, hypothesis, r, sizes);
+    if (next.size() == 0) return unknown;
+    change = surefoot::detail::product(next, change);
+    const double size = change.norm();
+    if (!(size > 0) || !std::isfinite(size)) return unknown;
+    change /= size;
+    sum += std::log(size);
+  }
+  return sum;
+}
+
+/// Growth over each recording, and how long it is [s].
+struct GrowthOverRecording {
+  double logarithm = 0, seconds = 0;
+};
+
+/// The recording over which differences grow as fast as over most.
+SUREFOOT_ONCE GrowthOverRecording median_growth(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                const Parallel& parallel) {
+  std::vector<GrowthOverRecording> all(bound.recordings.size());
+  parallel(all.size(), [&](std::size_t r) {
+    const Recording& one = bound.recordings[r];
+    all[r] = {log_growth(bound, hypothesis, r), one.time[one.rows() - 1] - one.time[0]};
+  });
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  std::nth_element(all.begin(), middle, all.end(), [](const GrowthOverRecording& a, const GrowthOverRecording& b) {
+    return a.logarithm * b.seconds < b.logarithm * a.seconds;
+  });
+  return *middle;
+}
+
+SUREFOOT_ONCE double growth_rate(const BoundSimulator& bound, const Hypothesis& hypothesis, const Parallel& parallel) {
+  const GrowthOverRecording growth = median_growth(bound, hypothesis, parallel);
+  return growth.logarithm / growth.seconds;
+}
+
+SUREFOOT_ONCE double needed_follow(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                   const Parallel& parallel) {
+  constexpr double forgotten = 1000;  // times a difference: what it began with does not matter any more
+  constexpr double faster = 3;        // than differences grow: following shrinks them, and reaches far ahead still
+  constexpr double most = 0.5;        // rows far apart
+  if (bound.info.kind == SimulatorKind::map || !can_follow(bound)) return 0;
+  const GrowthOverRecording growth = median_growth(bound, hypothesis, parallel);
+  if (!(growth.logarithm > std::log(forgotten))) return 0;
+  std::vector<std::size_t> all(bound.recordings.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return std::min(most, faster * growth.logarithm / growth.seconds * shortest_interval(bound, all));
+}
+
+}  // namespace surefoot::diagnosis
