@@ -183,13 +183,6 @@ SUREFOOT_ONCE bool is_odd(const LogFit& fit, std::size_t r, const Repairs& repai
   return !(missed(r) < median_of(others));
 }
 
-/// The worst error of all recordings but one.
-SUREFOOT_ONCE double worst_of_others(const LogFit& fit, std::size_t r) {
-  double worst = 0;
-  for (std::size_t o = 0; o < fit.error.size(); ++o) worst = std::max(worst, o == r ? 0 : fit.error[o]);
-  return worst;
-}
-
 /// Whether a repaired recording is nearer to the others than to what it was, in decades, once the model is calibrated
 /// to it as well: before, it may have pulled the parameters away, and physics that is missing makes recordings differ.
 SUREFOOT_ONCE bool becomes_like_others(const LogDoctorInputs& inputs, const LogFit& fit, const FoundFault& found) {
@@ -197,7 +190,7 @@ SUREFOOT_ONCE bool becomes_like_others(const LogDoctorInputs& inputs, const LogF
   std::vector<Recording> recordings = fit.bound.recordings;
   recordings[r] = repaired(fit.bound, recordings[r], found.repairs);
   const LogFit again = fit_log(inputs, std::move(recordings), fit.hypothesis.parameters);
-  return again.error[r] * again.error[r] <= fit.error[r] * worst_of_others(again, r);
+  return again.error[r] * again.error[r] <= fit.error[r] * worst_of_others(again.error, r);
 }
 
 SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs& inputs, const LogFit& fit) {
@@ -223,7 +216,7 @@ SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs&
   std::optional<FoundFault> found, unlike;  // the others, as they are calibrated now
   RepairEffect best, best_unlike;
   for (std::size_t r = 0; r < count; ++r) {
-    const double others_worst = worst_of_others(fit, r);
+    const double others_worst = worst_of_others(fit.error, r);
     for (std::size_t t = 0; t < tried[r].size(); ++t) {
       const RepairEffect& effect = effects[r][t];
       if (!(effect.log_odds > least_odds && effect.log_ratio > std::log(criteria.decisive))) continue;

@@ -44,6 +44,9 @@ double independent_share(const ResidualRows& residuals, const Eigen::VectorXd& u
 
 double median_of(std::vector<double> values);
 
+/// The largest error of all recordings but one.
+double worst_of_others(const std::vector<double>& errors, std::size_t r);
+
 /// By output, how much it moves: the standard deviation of the median recording, or of single steps where each starts
 /// anew.
 Eigen::VectorXd output_sizes(const BoundSimulator& bound);

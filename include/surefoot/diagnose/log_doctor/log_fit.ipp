@@ -26,6 +26,12 @@ SUREFOOT_ONCE double median_of(std::vector<double> values) {
   return below == *middle ? below : below + (*middle - below) / 2;  // infinite values too
 }
 
+SUREFOOT_ONCE double worst_of_others(const std::vector<double>& errors, std::size_t r) {
+  double worst = 0;
+  for (std::size_t o = 0; o < errors.size(); ++o) worst = std::max(worst, o == r ? 0 : errors[o]);
+  return worst;
+}
+
 SUREFOOT_ONCE double mean_square(const ResidualRows& residuals, const Eigen::VectorXd& unit) {
   double sum = 0, count = 0;
   for (Eigen::Index row = 0; row < residuals.cols(); ++row) {

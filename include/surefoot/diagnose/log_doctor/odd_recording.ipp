@@ -69,9 +69,8 @@ SUREFOOT_ONCE std::vector<double> errors_of(const LogFit& fit, const LogFit& lik
 SUREFOOT_ONCE std::optional<std::size_t> outstanding(const std::vector<double>& errors,
                                                      const LogDoctorCriteria& criteria) {
   const auto worst = static_cast<std::size_t>(std::max_element(errors.begin(), errors.end()) - errors.begin());
-  double others = 0;
-  for (std::size_t o = 0; o < errors.size(); ++o) others = std::max(others, o == worst ? 0 : errors[o]);
-  const bool far_off = errors[worst] > criteria.decisive * others && errors[worst] > criteria.odd;
+  const bool far_off =
+      errors[worst] > criteria.decisive * worst_of_others(errors, worst) && errors[worst] > criteria.odd;
   return far_off ? std::optional(worst) : std::nullopt;
 }
 
@@ -145,9 +144,7 @@ SUREFOOT_ONCE LogFit predicted_without(const LogDoctorInputs& inputs, const LogF
 
 /// How many times as far off a recording is as the worst of the others.
 SUREFOOT_ONCE double times_the_others(const std::vector<double>& errors, std::size_t r) {
-  double next = 0;
-  for (std::size_t o = 0; o < errors.size(); ++o) next = std::max(next, o == r ? 0 : errors[o]);
-  return std::sqrt(errors[r] / next);
+  return std::sqrt(errors[r] / worst_of_others(errors, r));
 }
 
 /// A recording that the model explains as well as the others, but only with parameters of its own: another payload.
