@@ -9,6 +9,7 @@
 #include "surefoot/core/box.hpp"
 #include "surefoot/core/error.hpp"
 #include "surefoot/core/executor.hpp"
+#include "surefoot/core/function_ref.hpp"
 #include "surefoot/core/policy.hpp"
 #include "surefoot/core/portable.hpp"
 #include "surefoot/core/pose2.hpp"

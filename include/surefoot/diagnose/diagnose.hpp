@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "surefoot/core/executor.hpp"
+#include "surefoot/core/function_ref.hpp"
 #include "surefoot/diagnose/diagnosis.hpp"
 #include "surefoot/diagnose/options.hpp"
 #include "surefoot/diagnose/simulation/bound_simulator.hpp"
@@ -40,7 +41,7 @@ Diagnosis diagnose(const S& simulator, std::span<const Recording> recordings, co
   const auto bind = [&simulator](std::vector<Recording> some) {
     return diagnosis::bind_simulator(simulator, std::move(some));
   };
-  const diagnosis::Parallel parallel = [&executor](std::size_t count, const std::function<void(std::size_t)>& job) {
+  const diagnosis::Parallel parallel = [&executor](std::size_t count, FunctionRef<void(std::size_t)> job) {
     executor.run(count, job);
   };
   return diagnosis::run_pipeline(bind, simulator.info(), std::vector<Recording>(recordings.begin(), recordings.end()),

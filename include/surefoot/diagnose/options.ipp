@@ -40,7 +40,7 @@ SUREFOOT_ONCE void check(const DiagnoseOptions& options) {
     check(options.more_effects[i]);
   }
   std::vector<Effect> every = all_effects();
-  every.insert(every.end(), options.more_effects.begin(), options.more_effects.end());
+  for (const Effect& effect : options.more_effects) every.push_back(effect);
   const auto exists = [&](const std::string& name) {
     return std::any_of(every.begin(), every.end(), [&](const Effect& effect) { return effect.name == name; });
   };

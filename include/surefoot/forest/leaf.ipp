@@ -41,8 +41,8 @@ struct LeafMoments {
   explicit LeafMoments(const LeafSamples& samples) {
     const auto inputs = static_cast<std::size_t>(samples.inputs());
     const std::size_t width = inputs + static_cast<std::size_t>(samples.outputs());
-    mean.resize(width, 0.0);
-    moments.resize(width * inputs, 0.0);
+    mean.resize(width);
+    moments.resize(width * inputs);
     double weight = 0;
     for (std::size_t i = 0; i < samples.count(); ++i) {
       const float* row = samples.input(i);

@@ -44,6 +44,13 @@ inline void velocities_of_set(const Eigen::MatrixXd& mass, const Eigen::VectorXd
   }
 }
 
+// Element i of A v.
+inline double momentum_of(const Eigen::MatrixXd& mass, Eigen::Index i, const Eigen::VectorXd& v) {
+  double sum = mass(i, 0) * v[0];
+  for (Eigen::Index k = 1; k < v.size(); ++k) sum += mass(i, k) * v[k];
+  return sum;
+}
+
 // Sticks what turned back, frees what is pushed beyond its friction. False if nothing had to change.
 inline bool change_set(const Eigen::MatrixXd& mass, const Eigen::VectorXd& momentum, const Eigen::VectorXd& friction,
                        CoupledDryFriction& work, const Eigen::VectorXd& v) {
@@ -54,7 +61,7 @@ inline bool change_set(const Eigen::MatrixXd& mass, const Eigen::VectorXd& momen
       if (v[i] * work.sign[i] > 0) continue;
       work.sign[i] = 0;
     } else {
-      const double push = momentum[i] - mass.row(i).dot(v);
+      const double push = momentum[i] - momentum_of(mass, i, v);
       if (std::abs(push) <= friction[i] * (1 + friction_tolerance)) continue;
       work.sign[i] = push > 0 ? 1 : -1;
     }
@@ -66,14 +73,15 @@ inline bool change_set(const Eigen::MatrixXd& mass, const Eigen::VectorXd& momen
 inline void coordinate_descent(const Eigen::MatrixXd& mass, const Eigen::VectorXd& momentum,
                                const Eigen::VectorXd& friction, Eigen::VectorXd& v) {
   for (int sweep = 0; sweep < friction_sweeps; ++sweep) {
-    double moved = 0;
+    double moved = 0, largest = 0;
     for (Eigen::Index i = 0; i < v.size(); ++i) {
-      const double push = momentum[i] - mass.row(i).dot(v) + mass(i, i) * v[i];
+      const double push = momentum[i] - momentum_of(mass, i, v) + mass(i, i) * v[i];
       const double next = std::copysign(std::max(0.0, std::abs(push) - friction[i]), push) / mass(i, i);
       moved = std::max(moved, std::abs(next - v[i]));
       v[i] = next;
     }
-    if (moved <= friction_tolerance * v.cwiseAbs().maxCoeff()) return;
+    for (Eigen::Index i = 0; i < v.size(); ++i) largest = std::max(largest, std::abs(v[i]));
+    if (moved <= friction_tolerance * largest) return;
   }
 }
 

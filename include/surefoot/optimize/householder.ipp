@@ -93,7 +93,7 @@ SUREFOOT_INLINE Eigen::MatrixXd orthonormal_basis(Eigen::MatrixXd a) {
   for (Eigen::Index k = 0; k < pivots; ++k) {
     if (std::abs(a(k, k)) > largest * (epsilon * static_cast<double>(size))) ++rank;
   }
-  Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(rows, rank);
+  Eigen::MatrixXd basis = identity(rows, rank);
   for (Eigen::Index k = size; k-- > 0;) apply_reflection(&a(k, k) + 1, factors[k], basis, k, 0);
   return basis;
 }

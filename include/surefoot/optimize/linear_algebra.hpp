@@ -26,6 +26,9 @@ double norm(const Eigen::VectorXd& a);
 double sum_of_squares(const Eigen::VectorXd& a);
 double column_norm(const Eigen::MatrixXd& a, Eigen::Index column);
 
+/// Ones on the diagonal, zeros elsewhere.
+Eigen::MatrixXd identity(Eigen::Index rows, Eigen::Index columns);
+
 /// a b and a x, summed one product after the other (Eigen's bits below 20 rows, columns and products in all).
 Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 Eigen::VectorXd product(const Eigen::MatrixXd& a, const Eigen::VectorXd& x);

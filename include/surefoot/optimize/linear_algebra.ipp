@@ -324,8 +324,14 @@ SUREFOOT_INLINE Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& a, const 
   return x;
 }
 
+SUREFOOT_INLINE Eigen::MatrixXd identity(Eigen::Index rows, Eigen::Index columns) {
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(rows, columns);
+  for (Eigen::Index k = 0; k < rows && k < columns; ++k) a(k, k) = 1;
+  return a;
+}
+
 SUREFOOT_INLINE Eigen::MatrixXd invert_symmetric(const Eigen::MatrixXd& a) {
-  Eigen::MatrixXd x = Eigen::MatrixXd::Identity(a.rows(), a.cols());
+  Eigen::MatrixXd x = identity(a.rows(), a.cols());
   solve_by_factor(factorise_with_pivots(a), x);
   return x;
 }

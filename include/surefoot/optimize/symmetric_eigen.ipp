@@ -60,7 +60,7 @@ SUREFOOT_INLINE TridiagonalForm tridiagonal_form(const Eigen::MatrixXd& symmetri
 /// Q of the tridiagonal form.
 SUREFOOT_INLINE Eigen::MatrixXd product_of_reflections(const TridiagonalForm& form) {
   const Eigen::Index n = form.diagonal.size();
-  Eigen::MatrixXd q = Eigen::MatrixXd::Identity(n, n);
+  Eigen::MatrixXd q = identity(n, n);
   for (Eigen::Index k = n - 1; k-- > 0;) {
     const double* const rest = k + 2 < n ? &form.reflections(k + 2, k) : nullptr;
     apply_reflection(rest, form.factors[k], q, k + 1, k + 1);

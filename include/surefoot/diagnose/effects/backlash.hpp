@@ -25,7 +25,7 @@ inline double behind_gap(double driven, double driver, double half_width) {
 }
 
 /// Hidden states: the position behind the gap.
-inline Effect backlash() {
+[[gnu::cold]] inline Effect backlash() {
   return {.name = "backlash",
           .sentence = "backlash of {half_width} to either side at {at}",
           .place = Place::velocity,
@@ -52,7 +52,7 @@ inline TwoMasses gap_joint(Values p) {
 }
 
 /// Damping ratio 0.2 in contact.
-inline Effect backlash_gap() {
+[[gnu::cold]] inline Effect backlash_gap() {
   return {.name = "backlash",
           .sentence = "a load of {ratio} times the inertia behind backlash of {half_width} to either side at {at}",
           .place = Place::velocity,
@@ -74,7 +74,7 @@ inline Effect backlash_gap() {
 }
 
 /// Rigid parts (see motor_behind_backlash.hpp). The inertia of the equations is that of both.
-inline Effect backlash_motor() {
+[[gnu::cold]] inline Effect backlash_motor() {
   return {.name = "backlash",
           .sentence = "a motor of inertia {motor_inertia} before backlash of {half_width} to either side at {at}",
           .place = Place::velocity,
@@ -117,7 +117,7 @@ inline Effect backlash_motor() {
 
 /// A force between two bodies that is not passed on while the parts are within the gap; the gap is as wide as the
 /// displacement to which that force belongs.
-inline Effect backlash_coupling() {
+[[gnu::cold]] inline Effect backlash_coupling() {
   return {.name = "backlash",
           .sentence = "backlash in {at}: nothing is passed on below {force} to either side",
           .place = Place::input,
@@ -134,7 +134,7 @@ inline Effect backlash_coupling() {
           .signal = +[](const EffectContext& m, Values p, Values) { return beyond_dead_zone(m.value, p[0]); }};
 }
 
-inline Effect backlash_sensor() {
+[[gnu::cold]] inline Effect backlash_sensor() {
   return {.name = "backlash",
           .sentence = "backlash of {half_width} to either side before the sensor {at}",
           .place = Place::output,

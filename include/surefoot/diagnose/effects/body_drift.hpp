@@ -7,7 +7,7 @@
 
 namespace surefoot::effects {
 
-inline Effect body_drift() {
+[[gnu::cold]] inline Effect body_drift() {
   return {
       .name = "body_drift",
       .sentence = "each step drifts by {forward} forward, {lateral} to the left and {turn} of turn",

@@ -132,7 +132,7 @@ SUREFOOT_ONCE std::vector<Effect> all_effects() {
   std::vector<Effect> all;
   for (const auto& place : {planar_effects(), velocity_effects(), state_effects(), input_effects(), sensor_effects(),
                             parameter_effects()}) {
-    all.insert(all.end(), place.begin(), place.end());
+    for (const Effect& effect : place) all.push_back(effect);
   }
   all.push_back(effects::supply_sag_current());  // a form of an effect on inputs
   for (std::size_t i = 0, count = all.size(); i < count; ++i) {

@@ -16,7 +16,7 @@
 
 namespace surefoot::effects {
 
-inline Effect cogging() {
+[[gnu::cold]] inline Effect cogging() {
   const EffectParameter amplitude{
       .name = "sine", .measure = {.effort = 1}, .low = -3, .high = 3, .starts = {0.01}, .strength = true};
   EffectParameter quarter_later = amplitude;
@@ -41,7 +41,7 @@ inline Effect cogging() {
 }
 
 /// The same by its number per turn, for an angle that turns round: whole numbers are where it is looked for.
-inline Effect cogging_per_turn() {
+[[gnu::cold]] inline Effect cogging_per_turn() {
   Effect effect = cogging();
   effect.sentence = "cogging of {per_turn} a turn, amplitudes {sine} and {cosine}, at {at}";
   effect.form = "per turn";
@@ -58,7 +58,7 @@ inline Effect cogging_per_turn() {
 }
 
 /// Slots and poles repeat with more than one period: the same with half the period beside it.
-inline Effect cogging_harmonics() {
+[[gnu::cold]] inline Effect cogging_harmonics() {
   Effect effect = cogging();
   effect.sentence =
       "cogging with a period of {period}, amplitudes {sine} and {cosine}, and {sine_2} and {cosine_2} of half the "

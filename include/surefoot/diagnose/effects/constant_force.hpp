@@ -7,7 +7,7 @@
 
 namespace surefoot::effects {
 
-inline Effect constant_force() {
+[[gnu::cold]] inline Effect constant_force() {
   return {.name = "constant_force",
           .sentence = "a constant force of {force} at {at}",
           .place = Place::velocity,

@@ -7,7 +7,7 @@
 
 namespace surefoot::effects {
 
-inline Effect constant_rate() {
+[[gnu::cold]] inline Effect constant_rate() {
   return {
       .name = "constant_rate",
       .sentence = "a constant change of {rate} at {at}",

@@ -10,7 +10,7 @@
 
 namespace surefoot::effects {
 
-inline Effect coulomb_friction() {
+[[gnu::cold]] inline Effect coulomb_friction() {
   return {
       .name = "coulomb_friction",
       .sentence = "dry friction of {level} at {at}",

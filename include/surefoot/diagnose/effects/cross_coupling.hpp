@@ -12,8 +12,8 @@
 namespace surefoot::effects {
 
 /// `gain` times the part `from` is added to the part `to`; names as in the forms.
-inline Effect coupling(double Pose2::*from, double Pose2::*to, const std::string& from_name, const std::string& to_name,
-                       EffectParameter gain) {
+[[gnu::cold]] inline Effect coupling(double Pose2::*from, double Pose2::*to, const std::string& from_name,
+                                     const std::string& to_name, EffectParameter gain) {
   return {.name = "cross_coupling",
           .sentence = from_name + " motion causes " + to_name + " motion, {gain}",
           .place = Place::planar,
@@ -49,22 +49,22 @@ inline EffectParameter sideways_gain() {
   return {.name = "gain", .measure = {}, .low = -2, .high = 2, .starts = {0.01}, .strength = true};
 }
 
-inline Effect cross_coupling_forward_to_turn() {
+[[gnu::cold]] inline Effect cross_coupling_forward_to_turn() {
   return coupling(&Pose2::x, &Pose2::angle, "forward", "turn", turn_gain());
 }
-inline Effect cross_coupling_forward_to_lateral() {
+[[gnu::cold]] inline Effect cross_coupling_forward_to_lateral() {
   return coupling(&Pose2::x, &Pose2::y, "forward", "lateral", sideways_gain());
 }
-inline Effect cross_coupling_lateral_to_turn() {
+[[gnu::cold]] inline Effect cross_coupling_lateral_to_turn() {
   return coupling(&Pose2::y, &Pose2::angle, "lateral", "turn", turn_gain());
 }
-inline Effect cross_coupling_lateral_to_forward() {
+[[gnu::cold]] inline Effect cross_coupling_lateral_to_forward() {
   return coupling(&Pose2::y, &Pose2::x, "lateral", "forward", sideways_gain());
 }
-inline Effect cross_coupling_turn_to_forward() {
+[[gnu::cold]] inline Effect cross_coupling_turn_to_forward() {
   return coupling(&Pose2::angle, &Pose2::x, "turn", "forward", distance_gain());
 }
-inline Effect cross_coupling_turn_to_lateral() {
+[[gnu::cold]] inline Effect cross_coupling_turn_to_lateral() {
   return coupling(&Pose2::angle, &Pose2::y, "turn", "lateral", distance_gain());
 }
 

@@ -9,7 +9,7 @@
 
 namespace surefoot::effects {
 
-inline Effect cubic_stiffness() {
+[[gnu::cold]] inline Effect cubic_stiffness() {
   return {
       .name = "cubic_stiffness",
       .sentence = "a spring that hardens with the cube of the position, {stiffness}, at {at}",
@@ -25,7 +25,7 @@ inline Effect cubic_stiffness() {
       .force = +[](const EffectContext& m, Values p, Values) { return -p[0] * m.position * m.position * m.position; }};
 }
 
-inline Effect cubic_stiffness_coupling() {
+[[gnu::cold]] inline Effect cubic_stiffness_coupling() {
   return {.name = "cubic_stiffness",
           .sentence = "{at} hardens: {hardening} times its cube is added to it",
           .place = Place::input,

@@ -19,7 +19,7 @@ inline double beyond_dead_zone(double value, double width) {
   return std::max(value - width, 0.0) + std::min(value + width, 0.0);
 }
 
-inline Effect dead_zone() {
+[[gnu::cold]] inline Effect dead_zone() {
   return {.name = "dead_zone",
           .sentence = "a dead zone of {width} to either side of {at}",
           .place = Place::input,
@@ -34,7 +34,7 @@ inline Effect dead_zone() {
           .signal = +[](const EffectContext& m, Values p, Values) { return beyond_dead_zone(m.value, p[0]); }};
 }
 
-inline Effect dead_zone_step() {
+[[gnu::cold]] inline Effect dead_zone_step() {
   return {.name = "dead_zone",
           .sentence = "{at} does nothing below {width} to either side",
           .place = Place::input,

@@ -26,7 +26,7 @@ struct EffectFunction {
   throw DiagnoseError("effect '" + effect.name + "': " + why);
 }
 
-SUREFOOT_INLINE const char* in_words(Place place) {
+SUREFOOT_ONCE const char* in_words(Place place) {
   switch (place) {
     case Place::velocity:
       return "velocity";

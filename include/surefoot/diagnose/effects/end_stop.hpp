@@ -15,7 +15,7 @@ namespace surefoot::effects {
 
 // side +1: upper, -1: lower
 template <int Side>
-Effect end_stop_of(std::string form) {
+[[gnu::cold]] Effect end_stop_of(std::string form) {
   return {
       .name = "end_stop",
       .sentence = "an end stop at {level} that returns {restitution} of the speed, at {at}",
@@ -37,9 +37,9 @@ Effect end_stop_of(std::string form) {
       }};
 }
 
-inline Effect end_stop_upper() { return end_stop_of<1>("upper"); }
+[[gnu::cold]] inline Effect end_stop_upper() { return end_stop_of<1>("upper"); }
 
-inline Effect end_stop_lower() { return end_stop_of<-1>("lower"); }
+[[gnu::cold]] inline Effect end_stop_lower() { return end_stop_of<-1>("lower"); }
 
 // side +1: upper, -1: lower
 inline double elastic_force(const EffectContext& m, Values p, int side) {

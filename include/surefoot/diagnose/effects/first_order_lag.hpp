@@ -22,7 +22,7 @@ inline double gone_after(double steps) {
   return gone;
 }
 
-inline Effect first_order_lag() {
+[[gnu::cold]] inline Effect first_order_lag() {
   return {.name = "first_order_lag",
           .sentence = "{at} acts with a lag of {time}",
           .place = Place::input,

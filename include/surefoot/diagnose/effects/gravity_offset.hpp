@@ -10,7 +10,7 @@
 
 namespace surefoot::effects {
 
-inline Effect gravity_offset() {
+[[gnu::cold]] inline Effect gravity_offset() {
   return {.name = "gravity_offset",
           .sentence = "weight off the assumed line, {weight} at angle 0, at {at}",
           .place = Place::velocity,

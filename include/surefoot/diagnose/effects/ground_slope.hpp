@@ -16,7 +16,7 @@ inline Pose2 moved_in_world(const Pose2& displacement, double heading, double x,
   return {displacement.x + c * x + s * y, displacement.y - s * x + c * y, displacement.angle};
 }
 
-inline Effect ground_slope() {
+[[gnu::cold]] inline Effect ground_slope() {
   const EffectParameter x{
       .name = "x", .measure = {.value = 1}, .low = -0.3, .high = 0.3, .starts = {0.0005}, .strength = true};
   EffectParameter y = x;
@@ -32,7 +32,7 @@ inline Effect ground_slope() {
           }};
 }
 
-inline Effect ground_slope_distance() {
+[[gnu::cold]] inline Effect ground_slope_distance() {
   const EffectParameter x{.name = "x", .measure = {}, .low = -2, .high = 2, .starts = {0.01}, .strength = true};
   EffectParameter y = x;
   y.name = "y";

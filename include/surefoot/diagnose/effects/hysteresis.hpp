@@ -103,7 +103,7 @@ inline void keep_between_levels(HiddenStates hidden, double width, double widths
 }
 
 template <double (*Move)(double, double, double)>
-Effect hysteresis_of(std::string form) {
+[[gnu::cold]] Effect hysteresis_of(std::string form) {
   return {
       .name = "hysteresis",
       .sentence = "hysteresis of {force}, reached after {width} of travel, at {at}",
@@ -127,10 +127,10 @@ Effect hysteresis_of(std::string form) {
           }};
 }
 
-inline Effect hysteresis() { return hysteresis_of<bouc_wen_1>(""); }
+[[gnu::cold]] inline Effect hysteresis() { return hysteresis_of<bouc_wen_1>(""); }
 
 /// Dry friction with presliding.
-inline Effect coulomb_friction_presliding() {
+[[gnu::cold]] inline Effect coulomb_friction_presliding() {
   Effect effect = hysteresis_of<bouc_wen_1>("presliding");
   effect.name = "coulomb_friction";
   effect.sentence = "dry friction of {force}, reached after {width} of presliding, at {at}";
@@ -143,7 +143,7 @@ inline Effect coulomb_friction_presliding() {
 
 /// A dry friction that is reached after some travel, in a form of its own: after a reversal it has the share of its
 /// level that the hysteresis of exponent 1 has of its force.
-inline Effect with_presliding(Effect friction) {
+[[gnu::cold]] inline Effect with_presliding(Effect friction) {
   friction.sentence += ", reached after {width} of presliding";
   friction.parameters[0].starts = {0.1};
   const std::size_t width = friction.parameters.size();
@@ -167,7 +167,7 @@ inline Effect with_presliding(Effect friction) {
 /// A friction with presliding whose bristles are damped, where the plain one was found: the model of C. Canudas de Wit,
 /// H. Olsson, K. J. Astrom, P. Lischinsky, "A new model for control of systems with friction", IEEE Trans. Automatic
 /// Control 40(3), 1995, with the quotient of its damping and stiffness as a time.
-inline Effect damped(Effect effect, std::function<double(const EffectContext&, Values p)> level) {
+[[gnu::cold]] inline Effect damped(Effect effect, std::function<double(const EffectContext&, Values p)> level) {
   effect.sentence += ", damped over {damping_time}";
   effect.extends = {effect.form};
   effect.form += ", damped";
@@ -182,12 +182,12 @@ inline Effect damped(Effect effect, std::function<double(const EffectContext&, V
   return effect;
 }
 
-inline Effect coulomb_friction_damped() {
+[[gnu::cold]] inline Effect coulomb_friction_damped() {
   return damped(
       coulomb_friction_presliding(), +[](const EffectContext&, Values p) { return p[0]; });
 }
 
-inline Effect hysteresis_asymmetric() {
+[[gnu::cold]] inline Effect hysteresis_asymmetric() {
   Effect effect = hysteresis();
   effect.sentence = "hysteresis of {force} and shape {shape}, reached after {width} of travel, at {at}";
   effect.parameters[0].starts = {0.1};
@@ -208,7 +208,7 @@ inline Effect hysteresis_asymmetric() {
 }
 
 /// The exponent says how sharply the force turns from rising to its level.
-inline Effect hysteresis_general() {
+[[gnu::cold]] inline Effect hysteresis_general() {
   Effect effect = hysteresis();
   effect.sentence =
       "hysteresis of {force} and exponent {exponent}, {back} steeper on the way back, reached after {width} of travel, "
@@ -227,6 +227,6 @@ inline Effect hysteresis_general() {
   return effect;
 }
 
-inline Effect hysteresis_squared() { return hysteresis_of<bouc_wen_2>("n = 2"); }
+[[gnu::cold]] inline Effect hysteresis_squared() { return hysteresis_of<bouc_wen_2>("n = 2"); }
 
 }  // namespace surefoot::effects

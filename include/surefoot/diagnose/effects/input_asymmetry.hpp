@@ -7,7 +7,7 @@
 
 namespace surefoot::effects {
 
-inline Effect input_asymmetry() {
+[[gnu::cold]] inline Effect input_asymmetry() {
   return {
       .name = "input_asymmetry",
       .sentence =

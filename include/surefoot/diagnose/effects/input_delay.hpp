@@ -7,7 +7,7 @@
 
 namespace surefoot::effects {
 
-inline Effect input_delay() {
+[[gnu::cold]] inline Effect input_delay() {
   return {.name = "input_delay",
           .sentence = "{at} comes {delay} late",
           .place = Place::input,

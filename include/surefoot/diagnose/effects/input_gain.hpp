@@ -7,7 +7,7 @@
 
 namespace surefoot::effects {
 
-inline Effect input_gain() {
+[[gnu::cold]] inline Effect input_gain() {
   return {.name = "input_gain",
           .sentence = "the gain of {at} is off by {excess} of its value",
           .place = Place::input,

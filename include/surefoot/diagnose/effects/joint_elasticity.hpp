@@ -11,7 +11,7 @@ namespace surefoot::effects {
 
 inline TwoMasses elastic_joint(Values p) { return TwoMasses{.ratio = p[0], .frequency = p[1], .damping = p[2]}; }
 
-inline Effect joint_elasticity() {
+[[gnu::cold]] inline Effect joint_elasticity() {
   return {
       .name = "joint_elasticity",
       .sentence =

@@ -12,7 +12,7 @@
 
 namespace surefoot::effects {
 
-inline Effect leak() {
+[[gnu::cold]] inline Effect leak() {
   return {.name = "leak",
           .sentence = "a leak that grows with {at}, {leak}",
           .place = Place::state,
@@ -28,7 +28,7 @@ inline Effect leak() {
           .force = +[](const EffectContext& m, Values p, Values) { return -p[0] * m.value; }};
 }
 
-inline Effect leak_hole() {
+[[gnu::cold]] inline Effect leak_hole() {
   return {.name = "leak",
           .sentence = "a leak through a hole, {rate_at_one} at level 1, at {at}",
           .place = Place::state,

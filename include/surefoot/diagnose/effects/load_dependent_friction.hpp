@@ -16,8 +16,8 @@
 
 namespace surefoot::effects {
 
-inline Effect load_friction(std::string form, std::string sentence,
-                            std::function<double(const EffectContext&, Values)> dry) {
+[[gnu::cold]] inline Effect load_friction(std::string form, std::string sentence,
+                                          std::function<double(const EffectContext&, Values)> dry) {
   return {.name = "load_dependent_friction",
           .sentence = std::move(sentence),
           .place = Place::velocity,
@@ -31,26 +31,26 @@ inline Effect load_friction(std::string form, std::string sentence,
           .dry = std::move(dry)};
 }
 
-inline Effect load_dependent_friction() {
+[[gnu::cold]] inline Effect load_dependent_friction() {
   return load_friction(
       "drive", "dry friction of {factor} times the driving force at {at}",
       +[](const EffectContext& m, Values p) { return p[0] * std::abs(m.drive); });
 }
 
-inline Effect load_dependent_friction_under_load() {
+[[gnu::cold]] inline Effect load_dependent_friction_under_load() {
   return load_friction(
       "load", "dry friction of {factor} times the load at {at}",
       +[](const EffectContext& m, Values p) { return p[0] * std::abs(m.load); });
 }
 
-inline Effect load_dependent_friction_in_gears() {
+[[gnu::cold]] inline Effect load_dependent_friction_in_gears() {
   return load_friction(
       "gears", "dry friction of {factor} times the force that the gears pass on at {at}",
       +[](const EffectContext& m, Values p) { return p[0] * 0.5 * std::abs(m.drive - m.load); });
 }
 
 /// Bearings and meshes on both sides of a gear: of each force its own share.
-inline Effect load_dependent_friction_on_both_sides() {
+[[gnu::cold]] inline Effect load_dependent_friction_on_both_sides() {
   Effect effect = load_friction(
       "both", "dry friction of {factor} times the driving force and {load_factor} times the load at {at}",
       +[](const EffectContext& m, Values p) { return p[0] * std::abs(m.drive) + p[1] * std::abs(m.load); });

@@ -13,7 +13,7 @@
 
 namespace surefoot::effects {
 
-inline Effect overflow() {
+[[gnu::cold]] inline Effect overflow() {
   return {.name = "overflow",
           .sentence = "{at} overflows at {level}",
           .place = Place::state,
@@ -32,7 +32,7 @@ inline Effect overflow() {
           }};
 }
 
-inline Effect overflow_spill() {
+[[gnu::cold]] inline Effect overflow_spill() {
   return {.name = "overflow",
           .sentence = "{at} overflows at {level}, and {share} of what is lost arrives elsewhere",
           .place = Place::state,
@@ -56,7 +56,7 @@ inline Effect overflow_spill() {
           }};
 }
 
-inline Effect overflow_weir() {
+[[gnu::cold]] inline Effect overflow_weir() {
   Effect effect = overflow();
   effect.sentence = "{at} overflows at {level} as over a weir, by {outflow} at twice that height";
   effect.parameters[0].low = 0.01;  // the edge may be far below the level that is reached above it

@@ -15,7 +15,7 @@ namespace surefoot::effects {
 
 inline constexpr double least_drift_factor = 0.05;  // a parameter that drifts does not vanish, nor change its sign
 
-inline Effect parameter_drift() {
+[[gnu::cold]] inline Effect parameter_drift() {
   return {.name = "parameter_drift",
           .sentence = "parameter {at} changes by a share of {rate}",
           .place = Place::parameter,
@@ -26,7 +26,7 @@ inline Effect parameter_drift() {
           .factor = +[](const EffectContext& m, Values p) { return std::max(least_drift_factor, 1 + p[0] * m.time); }};
 }
 
-inline Effect parameter_drift_settling() {
+[[gnu::cold]] inline Effect parameter_drift_settling() {
   return {.name = "parameter_drift",
           .sentence = "parameter {at} changes by a share of {change}, settling with a time constant of {time}",
           .place = Place::parameter,

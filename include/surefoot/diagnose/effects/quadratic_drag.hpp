@@ -10,7 +10,7 @@
 
 namespace surefoot::effects {
 
-inline Effect quadratic_drag() {
+[[gnu::cold]] inline Effect quadratic_drag() {
   return {.name = "quadratic_drag",
           .sentence = "drag that grows with the square of speed, {drag}, at {at}",
           .place = Place::velocity,

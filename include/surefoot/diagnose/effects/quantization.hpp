@@ -21,7 +21,7 @@ inline double soft_round(double x, double sharpness = soft_edge) {
   return below + 0.5 + 0.5 * std::tanh(sharpness * (x - below - 0.5)) / std::tanh(0.5 * sharpness);
 }
 
-inline Effect quantization() {
+[[gnu::cold]] inline Effect quantization() {
   return {.name = "quantization",
           .sentence = "the sensor {at} reads in steps of {step}",
           .place = Place::output,
@@ -41,7 +41,7 @@ inline Effect quantization() {
 }
 
 /// The same for a converter that cuts off instead of rounding.
-inline Effect quantization_floor() {
+[[gnu::cold]] inline Effect quantization_floor() {
   Effect effect = quantization();
   effect.form = "floor";
   effect.suggest = +[](Values readings, Values simulated) { return sensor_steps(readings, simulated, 0); };
@@ -52,7 +52,7 @@ inline Effect quantization_floor() {
 }
 
 /// With sharp edges, where soft ones were found.
-inline Effect sharpened(Effect quantization) {
+[[gnu::cold]] inline Effect sharpened(Effect quantization) {
   const double shift = quantization.form == "floor" ? 0.5 : 0;
   quantization.extends = {quantization.form};
   quantization.form += quantization.form.empty() ? "sharp" : ", sharp";

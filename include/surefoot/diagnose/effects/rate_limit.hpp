@@ -11,7 +11,7 @@
 
 namespace surefoot::effects {
 
-inline Effect rate_limit() {
+[[gnu::cold]] inline Effect rate_limit() {
   return {.name = "rate_limit",
           .sentence = "{at} changes by {rate} at most",
           .place = Place::input,

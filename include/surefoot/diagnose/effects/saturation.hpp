@@ -18,7 +18,7 @@ inline EffectParameter saturation_level(std::vector<double> starts) {
       .name = "level", .measure = {.value = 1}, .low = 0.05, .high = 6, .starts = std::move(starts), .of_peak = true};
 }
 
-inline Effect saturation() {
+[[gnu::cold]] inline Effect saturation() {
   return {.name = "saturation",
           .sentence = "{at} is limited to {level} either way",
           .place = Place::input,
@@ -28,7 +28,7 @@ inline Effect saturation() {
           .signal = +[](const EffectContext& m, Values p, Values) { return std::clamp(m.value, -p[0], p[0]); }};
 }
 
-inline Effect saturation_soft() {
+[[gnu::cold]] inline Effect saturation_soft() {
   return {.name = "saturation",
           .sentence = "{at} levels off at {level} either way",
           .place = Place::input,
@@ -39,7 +39,7 @@ inline Effect saturation_soft() {
           .signal = +[](const EffectContext& m, Values p, Values) { return p[0] * std::tanh(m.value / p[0]); }};
 }
 
-inline Effect saturation_gradual() {
+[[gnu::cold]] inline Effect saturation_gradual() {
   Effect effect = saturation_soft();
   effect.sentence = "{at} levels off at {level} either way, with a knee of sharpness {sharpness}";
   effect.parameters.push_back({.name = "sharpness", .low = 0.5, .high = 8, .starts = {1}});

@@ -7,7 +7,7 @@
 
 namespace surefoot::effects {
 
-inline Effect sensor_bias() {
+[[gnu::cold]] inline Effect sensor_bias() {
   return {.name = "sensor_bias",
           .sentence = "the sensor {at} reads {bias} too much",
           .place = Place::output,

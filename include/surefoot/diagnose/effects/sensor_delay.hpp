@@ -35,7 +35,7 @@ inline void read_late(const Series& series, double delay, Before before) {
   }
 }
 
-inline Effect sensor_delay() {
+[[gnu::cold]] inline Effect sensor_delay() {
   return {.name = "sensor_delay",
           .sentence = "the sensor {at} reads {delay} late",
           .place = Place::output,
@@ -51,7 +51,7 @@ inline Effect sensor_delay() {
           .sensor = +[](const Series& series, Values p) { read_late(series, p[0], Before::still); }};
 }
 
-inline Effect sensor_delay_in_motion() {
+[[gnu::cold]] inline Effect sensor_delay_in_motion() {
   Effect effect = sensor_delay();
   effect.form = "in motion";
   effect.extends = {""};

@@ -12,7 +12,7 @@
 
 namespace surefoot::effects {
 
-inline Effect sensor_drift() {
+[[gnu::cold]] inline Effect sensor_drift() {
   return {.name = "sensor_drift",
           .sentence = "the sensor {at} drifts by {rate}",
           .place = Place::output,
@@ -31,7 +31,7 @@ inline Effect sensor_drift() {
           }};
 }
 
-inline Effect sensor_drift_settling() {
+[[gnu::cold]] inline Effect sensor_drift_settling() {
   return {.name = "sensor_drift",
           .sentence = "the sensor {at} drifts by {change}, settling with a time constant of {time}",
           .place = Place::output,

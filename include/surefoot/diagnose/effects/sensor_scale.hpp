@@ -7,7 +7,7 @@
 
 namespace surefoot::effects {
 
-inline Effect sensor_scale() {
+[[gnu::cold]] inline Effect sensor_scale() {
   return {.name = "sensor_scale",
           .sentence = "the scale of the sensor {at} is off by {excess} of its value",
           .place = Place::output,

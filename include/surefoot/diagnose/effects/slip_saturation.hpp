@@ -10,7 +10,7 @@
 
 namespace surefoot::effects {
 
-inline Effect slip_saturation_of(double Pose2::*part, std::string form, EffectParameter level) {
+[[gnu::cold]] inline Effect slip_saturation_of(double Pose2::*part, std::string form, EffectParameter level) {
   return {.name = "slip_saturation",
           .sentence = "slip: " + form + " steps level off at {level}",
           .place = Place::planar,
@@ -30,11 +30,15 @@ inline EffectParameter slip_distance() {
   return {.name = "level", .measure = {.value = 1}, .low = 0.005, .high = 2, .starts = {0.02, 0.05, 0.12, 0.3}};
 }
 
-inline Effect slip_saturation_forward() { return slip_saturation_of(&Pose2::x, "forward", slip_distance()); }
+[[gnu::cold]] inline Effect slip_saturation_forward() {
+  return slip_saturation_of(&Pose2::x, "forward", slip_distance());
+}
 
-inline Effect slip_saturation_lateral() { return slip_saturation_of(&Pose2::y, "lateral", slip_distance()); }
+[[gnu::cold]] inline Effect slip_saturation_lateral() {
+  return slip_saturation_of(&Pose2::y, "lateral", slip_distance());
+}
 
-inline Effect slip_saturation_turn() {
+[[gnu::cold]] inline Effect slip_saturation_turn() {
   return slip_saturation_of(
       &Pose2::angle, "turn",
       {.name = "level", .measure = {.position = 1}, .low = 0.02, .high = 3, .starts = {0.1, 0.25, 0.6}});

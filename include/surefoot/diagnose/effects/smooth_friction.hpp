@@ -14,7 +14,7 @@
 namespace surefoot::effects {
 
 /// The same friction, with 76 % of its level at the speed `onset`.
-inline Effect smoothed(Effect friction) {
+[[gnu::cold]] inline Effect smoothed(Effect friction) {
   friction.sentence += ", which grows from rest on up to speeds of about {onset}";
   std::vector<double> starts{0.01, 0.05};
   if (friction.parameters.size() > 1) starts = {0.02};  // few combinations with those of the others

@@ -13,7 +13,7 @@
 
 namespace surefoot::effects {
 
-inline Effect stribeck_friction() {
+[[gnu::cold]] inline Effect stribeck_friction() {
   return {
       .name = "stribeck_friction",
       .sentence = "dry friction of {level} and another {breakaway} near rest (below {speed}) at {at}",
@@ -37,7 +37,7 @@ inline Effect stribeck_friction() {
       }};
 }
 
-inline Effect stribeck_friction_tailed() {
+[[gnu::cold]] inline Effect stribeck_friction_tailed() {
   Effect effect = stribeck_friction();
   effect.sentence += ", falling with the power {exponent} of speed";
   effect.parameters.push_back({.name = "exponent", .low = 0.4, .high = 2, .starts = {0.8}});

@@ -12,7 +12,7 @@
 
 namespace surefoot::effects {
 
-inline Effect supply_sag() {
+[[gnu::cold]] inline Effect supply_sag() {
   return {
       .name = "supply_sag",
       .sentence = "the supply of {at} sags by a share of {sag}",
@@ -27,7 +27,7 @@ inline Effect supply_sag() {
 }
 
 /// At a current that is a state: its drive loses a share that grows with it, whoever draws it.
-inline Effect supply_sag_current() {
+[[gnu::cold]] inline Effect supply_sag_current() {
   return {
       .name = "supply_sag",
       .sentence = "the supply sags by a share of {sag} of the current {at}",

@@ -10,7 +10,7 @@
 
 namespace surefoot::effects {
 
-inline Effect viscous_friction() {
+[[gnu::cold]] inline Effect viscous_friction() {
   return {.name = "viscous_friction",
           .sentence = "friction that grows with speed, {damping}, at {at}",
           .place = Place::velocity,

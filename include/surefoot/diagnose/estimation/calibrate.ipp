@@ -17,6 +17,8 @@
 #include "surefoot/diagnose/estimation/fit.hpp"
 #include "surefoot/diagnose/estimation/growing_horizon.hpp"
 #include "surefoot/diagnose/estimation/guided_fit.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
+#include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
 
@@ -25,7 +27,7 @@ namespace surefoot::diagnosis {
 SUREFOOT_ONCE std::vector<Hypothesis> scattered(const BoundSimulator& bound, const Hypothesis& around,
                                                 std::size_t points, std::uint64_t seed) {
   std::vector<Variable> variables = variables_of(bound, around, {});
-  std::erase_if(variables, [](const Variable& one) { return one.kind != Variable::Kind::parameter; });
+  drop_items(variables, [](const Variable& one) { return one.kind != Variable::Kind::parameter; });
   std::vector<Hypothesis> starts;
   if (variables.empty()) return starts;
   Rng rng(seed, 0xca1u);
@@ -55,9 +57,8 @@ SUREFOOT_ONCE Fit scattered_fit(const BoundSimulator& bound, Fit best, const Hyp
     losses[k] = all_finite(residuals) ? mean_loss(residuals, problem.weighting.robust)
                                       : std::numeric_limits<double>::infinity();
   });
-  std::vector<std::size_t> order(starts.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return losses[a] < losses[b]; });
+  const auto lower = [&](std::size_t a, std::size_t b) { return losses[a] < losses[b]; };
+  const std::vector<std::size_t> order = sorted_places(starts.size(), lower);
   std::vector<Fit> fits(std::min<std::size_t>(fitted, order.size()));
   parallel(fits.size(), [&](std::size_t k) { fits[k] = fit(bound, starts[order[k]], problem, serially()); });
   for (const Fit& other : fits) {

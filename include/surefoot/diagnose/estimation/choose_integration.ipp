@@ -14,6 +14,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/hypothesis.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -54,7 +55,7 @@ SUREFOOT_ONCE Eigen::VectorXd differences_of_runs(const std::vector<SimulatedRun
 }
 
 SUREFOOT_ONCE bool any_is_finite(const std::vector<SimulatedRun>& runs) {
-  return std::any_of(runs.begin(), runs.end(), [](const SimulatedRun& run) { return run.finite; });
+  return holds_for_any(runs, [](const SimulatedRun& run) { return run.finite; });
 }
 
 /// Slack of a step, so that rounding does not add one.

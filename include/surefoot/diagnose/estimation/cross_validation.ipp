@@ -10,6 +10,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -70,7 +71,7 @@ SUREFOOT_INLINE void test_losses(const std::vector<double>& before, const std::v
   }
 }
 
-SUREFOOT_INLINE Comparison compare_losses(const BlockLosses& before, const BlockLosses& after) {
+SUREFOOT_ONCE Comparison compare_losses(const BlockLosses& before, const BlockLosses& after) {
   Comparison result;
   const double a = before.total(), b = after.total();
   if (before.blocks.empty() || !(a > 0)) return result;
@@ -96,15 +97,14 @@ SUREFOOT_INLINE Comparison compare_losses(const BlockLosses& before, const Block
   return result;
 }
 
-SUREFOOT_INLINE std::vector<Hypothesis> fits_to_other_folds(const BoundSimulator& bound, const Hypothesis& start,
-                                                            const FitProblem& problem,
-                                                            const std::vector<std::vector<std::size_t>>& folds,
-                                                            const Parallel& parallel) {
+SUREFOOT_ONCE std::vector<Hypothesis> fits_to_other_folds(const BoundSimulator& bound, const Hypothesis& start,
+                                                          const FitProblem& problem,
+                                                          const std::vector<std::vector<std::size_t>>& folds,
+                                                          const Parallel& parallel) {
   std::vector<Hypothesis> result;
   for (const std::vector<std::size_t>& fold : folds) {
     FitProblem others = problem;
-    std::erase_if(others.recordings,
-                  [&](std::size_t r) { return std::find(fold.begin(), fold.end(), r) != fold.end(); });
+    drop_items(others.recordings, [&](std::size_t r) { return std::find(fold.begin(), fold.end(), r) != fold.end(); });
     result.push_back(with_estimated_initial_states(bound, fit(bound, start, others, parallel).hypothesis, fold, problem,
                                                    parallel));
   }

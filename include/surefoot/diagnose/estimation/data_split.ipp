@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/estimation/data_split.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
+#include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/recording.hpp"
 
 namespace surefoot::diagnosis {
@@ -26,19 +29,17 @@ SUREFOOT_ONCE RecordingSplit split_recordings(const std::vector<Recording>& reco
   }
   RecordingSplit split;
   for (const std::string& name : held_out) {
-    const auto found = std::find_if(recordings.begin(), recordings.end(),
-                                    [&](const Recording& recording) { return recording.name == name; });
-    if (found == recordings.end())
-      throw DiagnoseError("the held-out recording '" + name + "' is not among the recordings");
-    split.held_out.push_back(static_cast<std::size_t>(found - recordings.begin()));
+    const auto found = find_item(recordings, [&](const Recording& recording) { return recording.name == name; });
+    if (found == nullptr) throw DiagnoseError("the held-out recording '" + name + "' is not among the recordings");
+    split.held_out.push_back(static_cast<std::size_t>(found - recordings.data()));
   }
   split.cross_fitted = held_out.empty() && !(share > 0);
   if (held_out.empty() && share > 0) {
     const auto wanted = static_cast<std::size_t>(std::lround(share * static_cast<double>(recordings.size())));
     const std::size_t count = std::clamp<std::size_t>(wanted, 1, recordings.size() - 1);
-    split.held_out.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
+    for (std::size_t i = 0; i < count; ++i) split.held_out.push_back(order[i]);
   }
-  std::sort(split.held_out.begin(), split.held_out.end());
+  sort_items(split.held_out, std::less<>());
   for (const std::size_t r : order) {
     if (!std::binary_search(split.held_out.begin(), split.held_out.end(), r)) split.training.push_back(r);
   }
@@ -47,8 +48,8 @@ SUREFOOT_ONCE RecordingSplit split_recordings(const std::vector<Recording>& reco
   split.folds.resize(count <= folds + 2 ? count : folds);
   for (std::size_t i = 0; i < split.training.size(); ++i)
     split.folds[i % split.folds.size()].push_back(split.training[i]);
-  for (auto& fold : split.folds) std::sort(fold.begin(), fold.end());
-  std::sort(split.training.begin(), split.training.end());
+  for (auto& fold : split.folds) sort_items(fold, std::less<>());
+  sort_items(split.training, std::less<>());
   if (split.cross_fitted) split.held_out = split.training;
   return split;
 }

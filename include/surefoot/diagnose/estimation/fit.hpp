@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/residuals.hpp"
 #include "surefoot/optimize/least_squares.hpp"
 
@@ -85,8 +86,7 @@ class FitFunctions {
 
 /// Whether any of these recordings has an initial state to be estimated.
 inline bool has_unknown_initial_state(const BoundSimulator& bound, const std::vector<std::size_t>& recordings) {
-  return std::any_of(recordings.begin(), recordings.end(),
-                     [&](std::size_t r) { return has_unknown_initial_state(bound.recordings[r]); });
+  return holds_for_any(recordings, [&](std::size_t r) { return has_unknown_initial_state(bound.recordings[r]); });
 }
 
 /// Mean robust squared residual.

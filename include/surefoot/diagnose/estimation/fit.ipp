@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -14,23 +15,24 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/residuals.hpp"
 #include "surefoot/optimize/least_squares.hpp"
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE Parallel serially() {
-  return [](std::size_t count, const std::function<void(std::size_t)>& job) {
+SUREFOOT_ONCE Parallel serially() {
+  return [](std::size_t count, FunctionRef<void(std::size_t)> job) {
     for (std::size_t i = 0; i < count; ++i) job(i);
   };
 }
 
-SUREFOOT_INLINE FitFunctions::FitFunctions(const BoundSimulator& bound, const Hypothesis& start,
-                                           const FitProblem& problem, const Parallel& parallel)
+SUREFOOT_ONCE FitFunctions::FitFunctions(const BoundSimulator& bound, const Hypothesis& start,
+                                         const FitProblem& problem, const Parallel& parallel)
     : bound_(bound), base_(start), problem_(problem), parallel_(parallel) {
   variables_ = variables_of(bound, start, problem.recordings, problem.free);
-  shared_ = static_cast<std::size_t>(
-      std::count_if(variables_.begin(), variables_.end(), [](const Variable& v) { return !is_of_one_recording(v); }));
+  shared_ =
+      static_cast<std::size_t>(count_items(variables_, [](const Variable& v) { return !is_of_one_recording(v); }));
   begin_.push_back(0);
   for (const std::size_t r : problem.recordings) {
     cells_.push_back(cells_of(bound.recordings[r]));
@@ -38,7 +40,7 @@ SUREFOOT_INLINE FitFunctions::FitFunctions(const BoundSimulator& bound, const Hy
   }
 }
 
-SUREFOOT_INLINE Eigen::VectorXd FitFunctions::start() const {
+SUREFOOT_ONCE Eigen::VectorXd FitFunctions::start() const {
   Eigen::VectorXd z(static_cast<Eigen::Index>(variables_.size()));
   Hypothesis copy = base_;
   for (std::size_t i = 0; i < variables_.size(); ++i) {
@@ -48,7 +50,7 @@ SUREFOOT_INLINE Eigen::VectorXd FitFunctions::start() const {
   return z;
 }
 
-SUREFOOT_INLINE Box<Eigen::Dynamic> FitFunctions::box() const {
+SUREFOOT_ONCE Box<Eigen::Dynamic> FitFunctions::box() const {
   Eigen::VectorXd low(static_cast<Eigen::Index>(variables_.size())), high = low;
   for (std::size_t i = 0; i < variables_.size(); ++i) {
     low[static_cast<Eigen::Index>(i)] = to_search(variables_[i], variables_[i].low);
@@ -129,8 +131,8 @@ struct Descent {
 };
 
 /// One descent, from the parameters of `start` on.
-SUREFOOT_INLINE Descent descend(const BoundSimulator& bound, const Hypothesis& start, const FitProblem& problem,
-                                const Parallel& parallel) {
+SUREFOOT_ONCE Descent descend(const BoundSimulator& bound, const Hypothesis& start, const FitProblem& problem,
+                              const Parallel& parallel) {
   const FitFunctions functions(bound, start, problem, parallel);
   Descent result{Fit{.hypothesis = start}, {}};
   const Eigen::VectorXd z = functions.start();
@@ -170,14 +172,14 @@ SUREFOOT_INLINE Descent descend(const BoundSimulator& bound, const Hypothesis& s
 
 /// A fitted hypothesis with the unknown initial states of a recording put back to what was read off it, where that fits
 /// better; none where it does so nowhere.
-SUREFOOT_INLINE std::optional<Hypothesis> read_off_again(const BoundSimulator& bound, const Descent& fitted,
-                                                         const FitProblem& problem, const Parallel& parallel) {
+SUREFOOT_ONCE std::optional<Hypothesis> read_off_again(const BoundSimulator& bound, const Descent& fitted,
+                                                       const FitProblem& problem, const Parallel& parallel) {
   const std::size_t count = problem.recordings.size();
   std::vector<Eigen::Index> begin{0};
   for (const std::size_t r : problem.recordings) {
     begin.push_back(begin.back() + static_cast<Eigen::Index>(cells_of(bound.recordings[r]).size()));
   }
-  std::vector<char> better(count, 0);
+  std::vector<std::uint8_t> better(count, 0);
   parallel(count, [&](std::size_t i) {
     const std::size_t r = problem.recordings[i];
     const Recording& recording = bound.recordings[r];
@@ -200,8 +202,8 @@ SUREFOOT_INLINE std::optional<Hypothesis> read_off_again(const BoundSimulator& b
   return result;
 }
 
-SUREFOOT_INLINE Fit fit(const BoundSimulator& bound, const Hypothesis& start, const FitProblem& problem,
-                        const Parallel& parallel) {
+SUREFOOT_ONCE Fit fit(const BoundSimulator& bound, const Hypothesis& start, const FitProblem& problem,
+                      const Parallel& parallel) {
   const Descent first = descend(bound, start, problem, parallel);
   if (!first.fit.ok || problem.stopped()) return first.fit;
   const std::optional<Hypothesis> elsewhere = read_off_again(bound, first, problem, parallel);
@@ -210,12 +212,11 @@ SUREFOOT_INLINE Fit fit(const BoundSimulator& bound, const Hypothesis& start, co
   return again.ok && again.loss < first.fit.loss ? again : first.fit;
 }
 
-SUREFOOT_INLINE Hypothesis with_estimated_initial_states(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                                         const std::vector<std::size_t>& recordings, FitProblem problem,
-                                                         const Parallel& parallel) {
+SUREFOOT_ONCE Hypothesis with_estimated_initial_states(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                       const std::vector<std::size_t>& recordings, FitProblem problem,
+                                                       const Parallel& parallel) {
   const bool effects_start_anywhere =
-      std::any_of(hypothesis.effects.begin(), hypothesis.effects.end(),
-                  [](const AttachedEffect& one) { return one.effect->starts_anywhere; });
+      holds_for_any(hypothesis.effects, [](const AttachedEffect& one) { return one.effect->starts_anywhere; });
   if (!effects_start_anywhere && !has_unknown_initial_state(bound, recordings)) return hypothesis;
   problem.recordings = recordings;
   problem.free = Free::initial_only;

@@ -9,6 +9,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
 #include "surefoot/diagnose/estimation/guided_fit.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -21,7 +22,7 @@ SUREFOOT_ONCE double mean_rows(const BoundSimulator& bound, const std::vector<st
 
 SUREFOOT_ONCE bool can_follow(const BoundSimulator& bound) {
   const auto& output_of = bound.structure.output_of;
-  return std::any_of(output_of.begin(), output_of.end(), [](int output) { return output >= 0; });
+  return holds_for_any(output_of, [](int output) { return output >= 0; });
 }
 
 SUREFOOT_ONCE bool can_be_guided(const BoundSimulator& bound, const FitProblem& problem) {

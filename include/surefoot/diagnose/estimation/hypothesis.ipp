@@ -14,7 +14,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE Hypothesis nominal_hypothesis(const BoundSimulator& bound) {
+SUREFOOT_ONCE Hypothesis nominal_hypothesis(const BoundSimulator& bound) {
   Hypothesis nominal;
   nominal.parameters = nominal_parameters(bound.info);
   for (const Recording& recording : bound.recordings) nominal.initial.push_back(recording.initial);
@@ -74,7 +74,7 @@ SUREFOOT_INLINE double measure_size(const BoundSimulator& bound, const AttachedE
          std::pow(rate, measure.rate) * std::pow(bound.sizes.time, measure.time);
 }
 
-SUREFOOT_INLINE void append_unit(std::string& above, std::string& below, const std::string& unit, int power) {
+SUREFOOT_ONCE void append_unit(std::string& above, std::string& below, const std::string& unit, int power) {
   if (unit.empty() || unit == "1") return;
   for (int i = 0; i < std::abs(power); ++i) {
     std::string& side = power > 0 ? above : below;
@@ -83,8 +83,8 @@ SUREFOOT_INLINE void append_unit(std::string& above, std::string& below, const s
   }
 }
 
-SUREFOOT_INLINE std::string measure_unit(const BoundSimulator& bound, const AttachedEffect& attached,
-                                         const Measure& measure) {
+SUREFOOT_ONCE std::string measure_unit(const BoundSimulator& bound, const AttachedEffect& attached,
+                                       const Measure& measure) {
   const auto at = static_cast<std::size_t>(attached.at);
   const bool map = bound.info.kind == SimulatorKind::map;
   std::string value, effort, position;
@@ -138,8 +138,8 @@ SUREFOOT_INLINE double& value_of(Hypothesis& hypothesis, const Variable& variabl
   return hypothesis.initial[variable.item][static_cast<Eigen::Index>(variable.index)];
 }
 
-SUREFOOT_INLINE std::vector<Variable> variables_of(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                                   const std::vector<std::size_t>& recordings, Free free) {
+SUREFOOT_ONCE std::vector<Variable> variables_of(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                 const std::vector<std::size_t>& recordings, Free free) {
   constexpr double logarithmic_range =
       10;                               // high / low, from which on a positive variable is searched by its logarithm
   constexpr double least_scale = 0.02;  // of the range, for a variable that is near zero

@@ -14,6 +14,7 @@
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/guided_fit.hpp"
 #include "surefoot/diagnose/estimation/instability.hpp"
+#include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
@@ -72,14 +73,14 @@ SUREFOOT_ONCE double log_growth(BoundSimulator bound, const Hypothesis& hypothes
   for (Eigen::Index i = 0; i < sizes.size(); ++i) {
     sizes[i] = std::max(root_mean_square(surefoot::detail::row_of(motion.states, i)), smallest);
   }
-  Eigen::MatrixXd change = Eigen::MatrixXd::Identity(sizes.size(), sizes.size());
+  Eigen::MatrixXd change = surefoot::detail::identity(sizes.size(), sizes.size());
   double sum = 0;
   for (Recording& piece : pieces_along(bound.recordings[r], motion.states)) {
     bound.recordings[r] = std::move(piece);
     const Eigen::MatrixXd next = transition(bound, hypothesis, r, sizes);
     if (next.size() == 0) return unknown;
     change = surefoot::detail::product(next, change);
-    const double size = change.norm();
+    const double size = std::sqrt(surefoot::detail::dot(change.data(), change.data(), change.size()));
     if (!(size > 0) || !std::isfinite(size)) return unknown;
     change /= size;
     sum += std::log(size);
@@ -100,11 +101,10 @@ SUREFOOT_ONCE GrowthOverRecording median_growth(const BoundSimulator& bound, con
     const Recording& one = bound.recordings[r];
     all[r] = {log_growth(bound, hypothesis, r), one.time[one.rows() - 1] - one.time[0]};
   });
-  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-  std::nth_element(all.begin(), middle, all.end(), [](const GrowthOverRecording& a, const GrowthOverRecording& b) {
-    return a.logarithm * b.seconds < b.logarithm * a.seconds;
-  });
-  return *middle;
+  const auto slower = [&all](std::size_t a, std::size_t b) {
+    return all[a].logarithm * all[b].seconds < all[b].logarithm * all[a].seconds;
+  };
+  return all[sorted_places(all.size(), slower)[all.size() / 2]];
 }
 
 SUREFOOT_ONCE double growth_rate(const BoundSimulator& bound, const Hypothesis& hypothesis, const Parallel& parallel) {

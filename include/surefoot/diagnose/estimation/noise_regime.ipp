@@ -13,6 +13,7 @@
 #include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/estimation/exponentials.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/noise_regime.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
 
@@ -34,8 +35,8 @@ SUREFOOT_INLINE Eigen::VectorXd errors_of_steps(const BoundSimulator& bound, std
   return off;
 }
 
-SUREFOOT_INLINE Eigen::MatrixXd step_correlations(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                                  const std::vector<std::size_t>& recordings) {
+SUREFOOT_ONCE Eigen::MatrixXd step_correlations(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                const std::vector<std::size_t>& recordings) {
   Integration stepwise = bound.integration;
   stepwise.restart = 1;
   const auto outputs = static_cast<Eigen::Index>(bound.info.outputs.size());
@@ -58,7 +59,7 @@ SUREFOOT_INLINE Eigen::MatrixXd step_correlations(const BoundSimulator& bound, c
   return products;
 }
 
-SUREFOOT_INLINE bool only_final_pose(const BoundSimulator& bound) {
+SUREFOOT_ONCE bool only_final_pose(const BoundSimulator& bound) {
   if (!bound.info.planar) return false;
   for (const Recording& recording : bound.recordings) {
     for (Eigen::Index row = 1; row + 1 < recording.rows(); ++row) {
@@ -72,20 +73,18 @@ SUREFOOT_INLINE bool only_final_pose(const BoundSimulator& bound) {
 
 SUREFOOT_ONCE bool few_readings(const BoundSimulator& bound, const std::vector<std::size_t>& recordings) {
   constexpr std::size_t few = 20;
-  std::vector<std::size_t> counts;
-  for (const std::size_t r : recordings) counts.push_back(cells_of(bound.recordings[r]).size());
-  if (counts.empty()) return true;
-  std::nth_element(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2), counts.end());
-  return counts[counts.size() / 2] < few;
+  std::size_t with_few = 0;
+  for (const std::size_t r : recordings) with_few += cells_of(bound.recordings[r]).size() < few ? 1 : 0;
+  return recordings.empty() || with_few > recordings.size() / 2;
 }
 
-SUREFOOT_INLINE NoiseKind noise_kind(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                     const std::vector<std::size_t>& recordings) {
+SUREFOOT_ONCE NoiseKind noise_kind(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                   const std::vector<std::size_t>& recordings) {
   if (bound.info.kind != SimulatorKind::map) return NoiseKind::measurement;
   if (only_final_pose(bound)) return NoiseKind::final_pose;
   if (!bound.structure.all_states_measured) return NoiseKind::measurement;
   const auto states_it = [](const OutputInfo& output) { return output.process_noise > 0; };
-  if (std::all_of(bound.info.outputs.begin(), bound.info.outputs.end(), states_it)) return NoiseKind::process;
+  if (holds_for_all(bound.info.outputs, states_it)) return NoiseKind::process;
   const Eigen::MatrixXd apart = step_correlations(bound, hypothesis, recordings);
   constexpr double alternating = 0.3;    // a correlation two or three rows apart: such steps differ in turn, no noise
   constexpr double differenced = -0.25;  // half way between noise of the process (0) and of measurement (-1/2)
@@ -201,10 +200,10 @@ SUREFOOT_INLINE Eigen::VectorXd most_likely_variances(const std::vector<FinalRes
   return best;
 }
 
-SUREFOOT_INLINE std::vector<Eigen::MatrixXd> final_pose_whitening(const BoundSimulator& bound,
-                                                                  const Hypothesis& hypothesis,
-                                                                  const std::vector<std::size_t>& recordings,
-                                                                  const Integration& integration) {
+SUREFOOT_ONCE std::vector<Eigen::MatrixXd> final_pose_whitening(const BoundSimulator& bound,
+                                                                const Hypothesis& hypothesis,
+                                                                const std::vector<std::size_t>& recordings,
+                                                                const Integration& integration) {
   std::vector<FinalResiduals> sequences;
   for (std::size_t r = 0; r < bound.recordings.size(); ++r) {
     sequences.push_back(final_residuals(bound, r, simulate(bound, hypothesis, r, integration)));
@@ -216,7 +215,7 @@ SUREFOOT_INLINE std::vector<Eigen::MatrixXd> final_pose_whitening(const BoundSim
     if (count == 0) continue;
     Eigen::MatrixXd factor = covariance_of(sequences[r], best);
     surefoot::detail::factorise_in_place(factor);
-    whitening[r] = Eigen::MatrixXd::Identity(count, count);
+    whitening[r] = surefoot::detail::identity(count, count);
     surefoot::detail::solve_lower(factor, whitening[r]);
   }
   return whitening;

@@ -11,6 +11,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/restarts.hpp"
 
 namespace surefoot::diagnosis {
@@ -19,7 +20,7 @@ SUREFOOT_ONCE std::vector<Hypothesis> moved_around(const BoundSimulator& bound, 
                                                    std::size_t points, std::uint64_t seed) {
   constexpr double most_factor = 2, most_share = 0.5;  // farther off, other starts of the search are nearer
   std::vector<Variable> variables = variables_of(bound, fitted, {});
-  std::erase_if(variables, [](const Variable& one) { return is_of_one_recording(one); });
+  drop_items(variables, [](const Variable& one) { return is_of_one_recording(one); });
   std::vector<Hypothesis> places;
   if (variables.empty()) return places;
   Rng rng(seed, 0x4e5au);

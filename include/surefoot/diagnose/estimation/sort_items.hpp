@@ -2,16 +2,16 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/core/function_ref.hpp"
 
 namespace surefoot::diagnosis {
 
 /// The places 0 to count - 1 as std::sort puts them.
-std::vector<std::size_t> sorted_places(std::size_t count, const std::function<bool(std::size_t, std::size_t)>& less);
+std::vector<std::size_t> sorted_places(std::size_t count, FunctionRef<bool(std::size_t, std::size_t)> less);
 
 /// Sorts items as std::sort does, equal ones included, but moves each only once.
 template <class Item, class Less>

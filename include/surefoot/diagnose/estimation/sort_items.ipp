@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <functional>
 #include <numeric>
 #include <vector>
 
@@ -13,7 +12,7 @@
 namespace surefoot::diagnosis {
 
 SUREFOOT_ONCE std::vector<std::size_t> sorted_places(std::size_t count,
-                                                     const std::function<bool(std::size_t, std::size_t)>& less) {
+                                                     FunctionRef<bool(std::size_t, std::size_t)> less) {
   std::vector<std::size_t> places(count);
   std::iota(places.begin(), places.end(), std::size_t{0});
   std::sort(places.begin(), places.end(), [&less](std::size_t a, std::size_t b) { return less(a, b); });

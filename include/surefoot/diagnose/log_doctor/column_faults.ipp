@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/log_doctor/column_faults.hpp"
 
 namespace surefoot::diagnosis {
@@ -202,7 +203,7 @@ SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs&
   std::vector<std::vector<RepairEffect>> effects(count);
   for (std::size_t r = 0; r < count; ++r) {
     const auto times = unit_of_time_repairs(fit.bound, r);
-    tried[r].insert(tried[r].end(), times.begin(), times.end());
+    append_items(tried[r], times);
     effects[r].resize(tried[r].size());
   }
   inputs.parallel(count, [&](std::size_t r) {

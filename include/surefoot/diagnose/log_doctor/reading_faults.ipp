@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/log_doctor/column_faults.hpp"
 #include "surefoot/diagnose/log_doctor/reading_faults.hpp"
 
@@ -137,9 +138,8 @@ SUREFOOT_ONCE double error_elsewhere(const LogFit& fit, std::size_t r, Eigen::In
   double sum = 0, count = 0;
   for (Eigen::Index row = 0; row < fit.residuals[r].cols(); ++row) {
     const double off = fit.residuals[r](output, row);
-    const bool within = std::any_of(stretches.begin(), stretches.end(), [&](const ConstantStretch& one) {
-      return row >= one.rows.first && row < one.rows.second;
-    });
+    const bool within = holds_for_any(
+        stretches, [&](const ConstantStretch& one) { return row >= one.rows.first && row < one.rows.second; });
     if (within || !std::isfinite(off)) continue;
     sum += off * off;
     ++count;
@@ -260,7 +260,7 @@ SUREFOOT_ONCE void take_for_repeated_where_all_stick(const BoundSimulator& bound
     const LogRepair& stuck = one.repairs.front();
     const std::size_t r = *one.recording;
     if (stuck.kind != LogFaultKind::stuck || !all_stand_still(bound.recordings[r], stuck.rows)) continue;
-    const auto replaced = std::erase_if(found, [&](const FoundFault& other) {
+    const auto replaced = drop_items(found, [&](const FoundFault& other) {
       return other.recording == r && other.repairs.front().kind == LogFaultKind::stuck &&
              other.repairs.front().rows == stuck.rows;
     });

@@ -14,6 +14,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/diagnosis.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/residual_tests/features.hpp"
 #include "surefoot/diagnose/residual_tests/locate.hpp"
@@ -41,7 +42,7 @@ SUREFOOT_INLINE Eigen::VectorXd mismatch_energy(const BoundSimulator& bound, con
   return energy;
 }
 
-SUREFOOT_INLINE std::vector<std::vector<double>> deciles(const FeatureTable& table) {
+SUREFOOT_ONCE std::vector<std::vector<double>> deciles(const FeatureTable& table) {
   std::vector<std::vector<double>> result;
   for (Eigen::Index f = 0; f < table.values.rows(); ++f) {
     std::vector<double> sorted;
@@ -90,15 +91,15 @@ SUREFOOT_INLINE Condition best_condition(const FeatureTable& table, const std::v
   return best;
 }
 
-SUREFOOT_INLINE std::string in_words(const FeatureTable& table, const Condition& condition) {
+SUREFOOT_ONCE std::string in_words(const FeatureTable& table, const Condition& condition) {
   char text[160];
   std::snprintf(text, sizeof text, "%s %s %.3g", table.names[static_cast<std::size_t>(condition.feature)].c_str(),
                 condition.below ? "<" : ">=", condition.threshold);
   return text;
 }
 
-SUREFOOT_INLINE std::vector<MismatchRegion> find_region(const FeatureTable& table, const Eigen::VectorXd& energy,
-                                                        int conditions, int permutations, std::uint64_t seed) {
+SUREFOOT_ONCE std::vector<MismatchRegion> find_region(const FeatureTable& table, const Eigen::VectorXd& energy,
+                                                      int conditions, int permutations, std::uint64_t seed) {
   constexpr double denser = 1.3;  // than what a condition is cut out of, or it says nothing
   const auto samples = static_cast<std::size_t>(energy.size());
   if (samples < 50 || !(energy.sum() > 0)) return {};
@@ -124,7 +125,7 @@ SUREFOOT_INLINE std::vector<MismatchRegion> find_region(const FeatureTable& tabl
     }
     if (share / count < denser * before / before_count) break;
     inside = smaller;
-    std::erase_if(rule, [&](const Condition& one) {  // a tighter limit of the same
+    drop_items(rule, [&](const Condition& one) {  // a tighter limit of the same
       return one.feature == condition.feature && one.below == condition.below;
     });
     rule.push_back(condition);
@@ -162,10 +163,10 @@ SUREFOOT_INLINE std::vector<MismatchRegion> find_region(const FeatureTable& tabl
   return {region};
 }
 
-SUREFOOT_INLINE std::vector<MismatchInterval> find_intervals(const BoundSimulator& bound,
-                                                             const std::vector<std::size_t>& recordings,
-                                                             const FeatureTable& table, const Eigen::VectorXd& energy,
-                                                             std::size_t count) {
+SUREFOOT_ONCE std::vector<MismatchInterval> find_intervals(const BoundSimulator& bound,
+                                                           const std::vector<std::size_t>& recordings,
+                                                           const FeatureTable& table, const Eigen::VectorXd& energy,
+                                                           std::size_t count) {
   std::vector<MismatchInterval> all;
   const double total = energy.sum();
   if (!(total > 0)) return all;

@@ -13,6 +13,7 @@
 #include "surefoot/diagnose/diagnosis.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/noise_regime.hpp"
 #include "surefoot/diagnose/residual_tests/noise.hpp"
 #include "surefoot/diagnose/residual_tests/noise_model.hpp"
@@ -136,8 +137,8 @@ SUREFOOT_ONCE std::vector<NoiseFinding> find_noise(const std::vector<NoiseSeries
                                                    : output.unit) +
                             (kind == SimulatorKind::ode ? "/s" : "/row");
     NoiseFinding one{output.name, "speed_dependent_noise", {}, grows.gain, grows.p_value, ""};
-    one.parameters = {number("rest", output.unit, &ResidualNoise::rest),
-                      number("growth", time_unit, &ResidualNoise::growth)};
+    one.parameters.push_back(number("rest", output.unit, &ResidualNoise::rest));
+    one.parameters.push_back(number("growth", time_unit, &ResidualNoise::growth));
     one.sentence = "noise of " + output.name + " grows with its speed, from " + with_unit(fit.model.rest, output.unit) +
                    " at rest to " + with_unit(std::hypot(fit.model.rest, fit.model.growth * speed), output.unit) +
                    " at " + with_unit(speed, per);
@@ -145,7 +146,7 @@ SUREFOOT_ONCE std::vector<NoiseFinding> find_noise(const std::vector<NoiseSeries
   }
   if (correlated) {
     NoiseFinding one{output.name, "correlated_noise", {}, remembers.gain, remembers.p_value, ""};
-    one.parameters = {number("time", time_unit, &ResidualNoise::time)};
+    one.parameters.push_back(number("time", time_unit, &ResidualNoise::time));
     if (memory == NoiseMemory::fading_and_white) one.parameters.push_back(number("share", "1", &ResidualNoise::share));
     one.sentence = "noise of " + output.name + " is correlated over " + with_unit(fit.model.time, time_unit);
     findings.push_back(std::move(one));
@@ -213,7 +214,7 @@ SUREFOOT_ONCE std::vector<NoiseFinding> find_noise(const BoundSimulator& bound, 
     rows += bound.recordings[r].rows();
   }
   const auto runs = simulate_all(bound, hypothesis, some, bound.integration, parallel);
-  if (!std::all_of(runs.begin(), runs.end(), [](const SimulatedRun& run) { return run.finite; })) return {};
+  if (!holds_for_all(runs, [](const SimulatedRun& run) { return run.finite; })) return {};
   const Eigen::VectorXd sizes = residual_sizes(bound, some, runs);
   const std::size_t outputs = bound.info.outputs.size();
   std::vector<std::vector<NoiseFinding>> found(outputs);
@@ -229,7 +230,7 @@ SUREFOOT_ONCE std::vector<NoiseFinding> find_noise(const BoundSimulator& bound, 
     if (!series.empty()) found[k] = find_noise(series, bound.info.outputs[k], bound.info.kind, outputs);
   });
   std::vector<NoiseFinding> findings;
-  for (const auto& one : found) findings.insert(findings.end(), one.begin(), one.end());
+  for (const auto& one : found) append_items(findings, one);
   return findings;
 }
 

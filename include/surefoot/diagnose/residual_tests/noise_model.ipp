@@ -12,6 +12,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/residual_tests/noise_model.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -80,7 +81,7 @@ SUREFOOT_INLINE double climb(const NoiseCoordinates& coordinates, const std::vec
 
 SUREFOOT_INLINE Eigen::MatrixXd inverse_of_small(Eigen::MatrixXd a) {
   const Eigen::Index n = a.rows();
-  Eigen::MatrixXd result = Eigen::MatrixXd::Identity(n, n);
+  Eigen::MatrixXd result = surefoot::detail::identity(n, n);
   for (Eigen::Index k = 0; k < n; ++k) {  // a = P L U, in place; the same exchanges of rows in the result
     Eigen::Index pivot = k;
     for (Eigen::Index i = k + 1; i < n; ++i) {
@@ -109,7 +110,7 @@ SUREFOOT_INLINE Eigen::MatrixXd inverse_of_small(Eigen::MatrixXd a) {
   return result;
 }
 
-SUREFOOT_INLINE NoiseFit fit_noise(const std::vector<NoiseSeries>& series, ResidualNoiseShape shape) {
+SUREFOOT_ONCE NoiseFit fit_noise(const std::vector<NoiseSeries>& series, ResidualNoiseShape shape) {
   const NoiseCoordinates coordinates(shape, series);
   NoiseFit best{.shape = shape};
   if (!(coordinates.count() > 0)) return best;
@@ -162,7 +163,7 @@ SUREFOOT_INLINE NoiseFit fit_noise(const std::vector<NoiseSeries>& series, Resid
   return best;
 }
 
-SUREFOOT_INLINE ResidualNoise refit_noise(const std::vector<NoiseSeries>& series, const NoiseFit& near) {
+SUREFOOT_ONCE ResidualNoise refit_noise(const std::vector<NoiseSeries>& series, const NoiseFit& near) {
   const NoiseCoordinates coordinates(near.shape, series);
   if (!(coordinates.count() > 0)) return near.model;
   Eigen::VectorXd z = coordinates.at(near.model);

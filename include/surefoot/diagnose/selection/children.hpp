@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
 #include "surefoot/diagnose/selection/propose.hpp"
 
@@ -49,7 +50,7 @@ double needed_gain(const Search& search, const EvaluatedHypothesis& parent, cons
 /// signatures say.
 template <class T>
 void drop_what_cannot_pay(std::vector<T>& proposals, double needed, const SearchEffort& effort) {
-  std::erase_if(proposals, [&](const T& one) { return one.gain * effort.underestimated < needed; });
+  drop_items(proposals, [&](const T& one) { return one.gain * effort.underestimated < needed; });
 }
 
 /// The parent with one effect more: the best `finalists` of the first proposals, evaluated.

@@ -11,6 +11,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/selection/children.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
@@ -82,19 +83,19 @@ SUREFOOT_ONCE std::vector<Proposal> proposals_for(const Search& search, const Ev
   screened.recordings = problem.screened;
   std::vector<AttachedEffect> open;
   for (const AttachedEffect& candidate : candidates) {
-    const bool used = std::any_of(parent.hypothesis.effects.begin(), parent.hypothesis.effects.end(),
-                                  [&](const AttachedEffect& effect) { return same_but_for_form(effect, candidate); });
+    const bool used = holds_for_any(parent.hypothesis.effects,
+                                    [&](const AttachedEffect& effect) { return same_but_for_form(effect, candidate); });
     if (!used) open.push_back(candidate);
   }
   std::vector<Proposal> proposals = propose(bound, parent.hypothesis, screened, open, problem.known, parallel);
-  std::erase_if(proposals, [&](const Proposal& one) { return one.distinct < problem.criteria.least_distinct; });
+  drop_items(proposals, [&](const Proposal& one) { return one.distinct < problem.criteria.least_distinct; });
   return proposals;
 }
 
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> finished(const Search& search, std::vector<Fit> fits, std::size_t keep) {
   constexpr std::uint64_t scatter_seed = 1;
   const auto& [bound, problem, candidates, parallel] = search;
-  std::erase_if(fits, [](const Fit& one) { return !one.ok; });
+  drop_items(fits, [](const Fit& one) { return !one.ok; });
   const auto keep_best = [&](std::size_t count) {
     sort_items(fits, [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
     if (fits.size() > count) fits.resize(count);
@@ -128,7 +129,7 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> finished(const Search& search, st
     }
     if (!problem.stopped()) evaluated[i] = evaluate_fit(bound, one, problem, serially());
   });
-  std::erase_if(evaluated, [](const EvaluatedHypothesis& one) { return one.errors.empty(); });
+  drop_items(evaluated, [](const EvaluatedHypothesis& one) { return one.errors.empty(); });
   return evaluated;
 }
 
@@ -224,7 +225,7 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> combined(const Search& search,
                                                         const std::vector<EvaluatedHypothesis>& singles) {
   const auto& [bound, problem, candidates, parallel] = search;
   std::vector<EvaluatedHypothesis> best = singles;
-  std::erase_if(best, [&](const EvaluatedHypothesis& one) { return search.effects(one) != 1; });
+  drop_items(best, [&](const EvaluatedHypothesis& one) { return search.effects(one) != 1; });
   constexpr double none_is_hopeless = std::numeric_limits<double>::infinity();
   best = best_structures(best, problem.effort.combined, none_is_hopeless, problem.criteria);
   std::vector<Fit> fits;

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
-#include "surefoot/diagnose/estimation/recording_error.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/noise_regime.hpp"
+#include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/selection/choose_initial_states.hpp"
 
 namespace surefoot::diagnosis {
@@ -45,8 +46,7 @@ SUREFOOT_ONCE Fit fit_with_free(BoundSimulator& bound, std::size_t state, const 
 SUREFOOT_ONCE bool may_be_freed(const BoundSimulator& bound, std::size_t state) {
   const auto said = [&](const Recording& one) { return one.initial_scale[static_cast<Eigen::Index>(state)] == 0; };
   const bool measured = bound.structure.output_of[state] >= 0;  // a reading says where it begins
-  return !measured && bound.sizes.state[state] > 0 &&
-         std::all_of(bound.recordings.begin(), bound.recordings.end(), said);
+  return !measured && bound.sizes.state[state] > 0 && holds_for_all(bound.recordings, said);
 }
 
 /// Whether recordings can tell where their states begin: they begin once, and have more than a few readings.

@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -185,8 +184,8 @@ double log_odds_of_forms(EvaluatedHypothesis a, EvaluatedHypothesis b, const Sel
 /// Posterior probabilities, which add up to 1. Cost: rounds * recordings * hypotheses.
 std::vector<double> probabilities(const std::vector<EvaluatedHypothesis>& evaluated, const SelectionCriteria& criteria);
 
-/// The effects of a hypothesis, each with its place, whatever their form.
-std::multiset<std::string> structure_of(const Hypothesis& hypothesis);
+/// The effects of a hypothesis, each with its place, whatever their form, in alphabetical order.
+std::vector<std::string> structure_of(const Hypothesis& hypothesis);
 
 /// The same effects at the same places, perhaps in another form or order.
 bool same_structure(const Hypothesis& a, const Hypothesis& b);

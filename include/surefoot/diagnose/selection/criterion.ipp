@@ -7,13 +7,13 @@
 #include <cstddef>
 #include <limits>
 #include <numeric>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
 
 namespace surefoot::diagnosis {
@@ -76,8 +76,8 @@ SUREFOOT_ONCE double cost_of_own_numbers(const ErrorSquares& errors) {
   return cost;
 }
 
-SUREFOOT_INLINE EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, const Fit& fitted,
-                                                 const SearchProblem& problem, const Parallel& parallel) {
+SUREFOOT_ONCE EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, const Fit& fitted,
+                                               const SearchProblem& problem, const Parallel& parallel) {
   EvaluatedHypothesis result{
       fitted.hypothesis, fitted.loss,
       error_squares(bound, fitted.hypothesis, problem.fit.recordings, problem.fit.integration, problem.scale, parallel),
@@ -113,8 +113,8 @@ SUREFOOT_INLINE bool is_at_bound(const Hypothesis& hypothesis, const Variable& v
   return !natural && (share < criteria.bound_share || share > 1 - criteria.bound_share);
 }
 
-SUREFOOT_INLINE double log_prior(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t known,
-                                 std::size_t candidates, const SelectionCriteria& criteria) {
+SUREFOOT_ONCE double log_prior(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t known,
+                               std::size_t candidates, const SelectionCriteria& criteria) {
   constexpr double nothing = 1e-3;  // of a range
   double sum = 0;
   for (std::size_t e = known; e < hypothesis.effects.size(); ++e) {
@@ -180,20 +180,24 @@ SUREFOOT_ONCE std::string label_at(const AttachedEffect& effect) {
   return effect.label() + "/" + std::to_string(static_cast<int>(effect.effect->place));
 }
 
-SUREFOOT_INLINE std::multiset<std::string> structure_of(const Hypothesis& hypothesis) {
-  std::multiset<std::string> labels;
-  for (const AttachedEffect& effect : hypothesis.effects) labels.insert(label_at(effect));
+SUREFOOT_ONCE std::vector<std::string> structure_of(const Hypothesis& hypothesis) {
+  std::vector<std::string> labels;
+  for (const AttachedEffect& effect : hypothesis.effects) {
+    labels.push_back(label_at(effect));
+    for (std::size_t i = labels.size() - 1; i > 0 && labels[i] < labels[i - 1]; --i)
+      std::swap(labels[i], labels[i - 1]);
+  }
   return labels;
 }
 
-SUREFOOT_INLINE bool may_be_confused(const Effect& a, const Effect& b) {
+SUREFOOT_ONCE bool may_be_confused(const Effect& a, const Effect& b) {
   const auto says = [](const Effect& one, const std::string& name) {
     return std::find(one.confusable_with.begin(), one.confusable_with.end(), name) != one.confusable_with.end();
   };
   return says(a, b.name) || says(b, a.name);
 }
 
-SUREFOOT_INLINE bool is_like(const Effect& a, const Effect& b) { return a.name == b.name || may_be_confused(a, b); }
+SUREFOOT_ONCE bool is_like(const Effect& a, const Effect& b) { return a.name == b.name || may_be_confused(a, b); }
 
 /// Whether an effect may make up for the form of another one that the machine has otherwise.
 SUREFOOT_ONCE bool may_mend_form_of(const AttachedEffect& one, const AttachedEffect& other) {
@@ -205,11 +209,11 @@ SUREFOOT_ONCE bool may_mend_form_of(const AttachedEffect& one, const AttachedEff
 }
 
 SUREFOOT_ONCE bool may_mend_form(const Hypothesis& larger, const Hypothesis& smaller) {
-  const std::multiset<std::string> known = structure_of(smaller);
+  const std::vector<std::string> known = structure_of(smaller);
   for (const AttachedEffect& extra : larger.effects) {
-    if (known.count(label_at(extra)) > 0) continue;
-    const bool mends = std::any_of(smaller.effects.begin(), smaller.effects.end(),
-                                   [&](const AttachedEffect& one) { return may_mend_form_of(extra, one); });
+    if (std::find(known.begin(), known.end(), label_at(extra)) != known.end()) continue;
+    const bool mends =
+        holds_for_any(smaller.effects, [&](const AttachedEffect& one) { return may_mend_form_of(extra, one); });
     if (!mends) return false;
   }
   return true;
@@ -290,16 +294,16 @@ SUREFOOT_ONCE std::vector<double> probabilities(const std::vector<EvaluatedHypot
   return result;
 }
 
-SUREFOOT_INLINE bool same_structure(const Hypothesis& a, const Hypothesis& b) {
+SUREFOOT_ONCE bool same_structure(const Hypothesis& a, const Hypothesis& b) {
   return structure_of(a) == structure_of(b);
 }
 
 SUREFOOT_ONCE bool is_part_of(const Hypothesis& part, const Hypothesis& whole) {
-  const std::multiset<std::string> some = structure_of(part), all = structure_of(whole);
+  const std::vector<std::string> some = structure_of(part), all = structure_of(whole);
   return some.size() < all.size() && std::includes(all.begin(), all.end(), some.begin(), some.end());
 }
 
-SUREFOOT_INLINE bool holds_idle_effect(const EvaluatedHypothesis& one, const std::vector<EvaluatedHypothesis>& pool) {
+SUREFOOT_ONCE bool holds_idle_effect(const EvaluatedHypothesis& one, const std::vector<EvaluatedHypothesis>& pool) {
   const double error = one.errors.rms();
   for (const EvaluatedHypothesis& other : pool) {
     const double without = other.errors.rms();

@@ -17,6 +17,7 @@
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/growing_horizon.hpp"
 #include "surefoot/diagnose/estimation/guided_fit.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/restarts.hpp"
 #include "surefoot/diagnose/selection/choose_holds.hpp"
@@ -77,8 +78,7 @@ SUREFOOT_ONCE void extend(const Search& search, const EvaluatedHypothesis& paren
   const bool structured = leaves_structure(search, parent);
   std::vector<Proposal> proposals = proposals_for(search, parent);
   if (!structured) {
-    std::erase_if(proposals,
-                  [&](const Proposal& one) { return one.gain < problem.criteria.unstructured_proposal_gain; });
+    drop_items(proposals, [&](const Proposal& one) { return one.gain < problem.criteria.unstructured_proposal_gain; });
   }
   const bool first = search.effects(best) == 0;
   const SearchEffort& effort = problem.effort;
@@ -193,14 +193,17 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> smaller(const Search& search, con
 
 SUREFOOT_ONCE bool yields(const Search& search, const std::vector<EvaluatedHypothesis>& pool) {
   const SelectionCriteria& criteria = search.problem.criteria;
-  const auto none = std::find_if(pool.begin(), pool.end(), [&](const auto& one) { return search.effects(one) == 0; });
-  return none != pool.end() && log_odds(pool[best_of(pool, criteria)], *none, criteria) < search.problem.rival;
+  const auto none = find_item(pool, [&](const auto& one) { return search.effects(one) == 0; });
+  return none != nullptr && log_odds(pool[best_of(pool, criteria)], *none, criteria) < search.problem.rival;
 }
 
 /// Whether two hypotheses have the same effects in the same forms.
 SUREFOOT_ONCE bool same_effects(const Hypothesis& a, const Hypothesis& b) {
-  return a.effects.size() == b.effects.size() &&
-         std::is_permutation(a.effects.begin(), a.effects.end(), b.effects.begin(), same_effect);
+  const auto as_often_in_both = [&](const AttachedEffect& one) {
+    const auto is_same = [&](const AttachedEffect& other) { return same_effect(one, other); };
+    return count_items(a.effects, is_same) == count_items(b.effects, is_same);
+  };
+  return a.effects.size() == b.effects.size() && holds_for_all(a.effects, as_often_in_both);
 }
 
 /// With the parameters of effects that are at bounds a tenth of their range inside, and all else fitted around them.
@@ -250,17 +253,15 @@ SUREFOOT_ONCE bool much_less(double left, double before) {
 }
 
 SUREFOOT_ONCE void add_structure(std::vector<EvaluatedHypothesis>& some, const EvaluatedHypothesis& one) {
-  const bool there = std::any_of(some.begin(), some.end(), [&](const EvaluatedHypothesis& other) {
-    return same_structure(other.hypothesis, one.hypothesis);
-  });
+  const bool there = holds_for_any(
+      some, [&](const EvaluatedHypothesis& other) { return same_structure(other.hypothesis, one.hypothesis); });
   if (!there) some.push_back(one);
 }
 
 SUREFOOT_ONCE bool pays(const Search& search, const EvaluatedHypothesis& one,
                         const std::vector<EvaluatedHypothesis>& pool) {
-  const auto none =
-      std::find_if(pool.begin(), pool.end(), [&](const auto& other) { return search.effects(other) == 0; });
-  const bool less_probable = none != pool.end() && log_odds(one, *none, search.problem.criteria) < 0;
+  const auto none = find_item(pool, [&](const auto& other) { return search.effects(other) == 0; });
+  const bool less_probable = none != nullptr && log_odds(one, *none, search.problem.criteria) < 0;
   return search.effects(one) > 0 && !less_probable;
 }
 
@@ -283,10 +284,9 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool, 
                                static_cast<double>(depth) / criteria.max_effects);
     const EvaluatedHypothesis best = pool[best_of(pool, criteria)];
     const auto most = static_cast<std::size_t>(criteria.max_effects);
-    std::erase_if(beam, [&](const EvaluatedHypothesis& one) {
-      return search.effects(one) >= most || std::any_of(done.begin(), done.end(), [&](const Hypothesis& other) {
-               return same_effects(one.hypothesis, other);
-             });
+    drop_items(beam, [&](const EvaluatedHypothesis& one) {
+      return search.effects(one) >= most ||
+             holds_for_any(done, [&](const Hypothesis& other) { return same_effects(one.hypothesis, other); });
     });
     for (const EvaluatedHypothesis& one : beam) done.push_back(one.hypothesis);
     std::vector<EvaluatedHypothesis> children = extended(search, beam, best);
@@ -302,7 +302,7 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool, 
     if (nearer) nearest = nearest_child->errors.rms();
     if (no_better && ((in_vain && !nearer) || pays(search, now, pool) || !leaves_structure(search, now))) break;
     in_vain = no_better;
-    std::erase_if(children, [&](const EvaluatedHypothesis& one) {
+    drop_items(children, [&](const EvaluatedHypothesis& one) {
       return holds_idle_effect(one, pool) || log_odds(one, now, criteria) < -effort.hopeless;
     });
     beam = best_structures(children, effort.beam, effort.hopeless, criteria);
@@ -317,10 +317,9 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool, 
       done.clear();
     }
     for (EvaluatedHypothesis& one : beam) {  // and with the weights of their children
-      const auto again = std::find_if(pool.begin(), pool.end(), [&](const EvaluatedHypothesis& other) {
-        return same_structure(other.hypothesis, one.hypothesis);
-      });
-      if (otherwise && again != pool.end()) {
+      const auto again = find_item(
+          pool, [&](const EvaluatedHypothesis& other) { return same_structure(other.hypothesis, one.hypothesis); });
+      if (otherwise && again != nullptr) {
         one = *again;
       } else {
         one = refitted(search, one.hypothesis);
@@ -340,8 +339,7 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> fitted_again(const Search& search
   const SearchEffort& effort = search.problem.effort;
   std::vector<EvaluatedHypothesis> best =
       best_structures(pool, effort.finalists, effort.hopeless, search.problem.criteria);
-  const bool has_none =
-      std::any_of(best.begin(), best.end(), [&](const auto& one) { return search.effects(one) == 0; });
+  const bool has_none = holds_for_any(best, [&](const auto& one) { return search.effects(one) == 0; });
   for (const EvaluatedHypothesis& one : pool) {
     if (!has_none && search.effects(one) == 0) best.push_back(one);
   }

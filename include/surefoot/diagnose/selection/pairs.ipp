@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/vec.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/selection/pairs.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
@@ -64,7 +64,7 @@ SUREFOOT_INLINE Shares best_shares(const Eigen::MatrixXd& gram, const Eigen::Vec
 }
 
 /// A proposal that starts with shares of what it was screened with, from place `from` on.
-SUREFOOT_INLINE Proposal started(const Proposal& proposal, const Eigen::VectorXd& shares, Eigen::Index from) {
+SUREFOOT_ONCE Proposal started(const Proposal& proposal, const Eigen::VectorXd& shares, Eigen::Index from) {
   Proposal result = proposal;
   const std::vector<Eigen::Index> strengths = strengths_of(*proposal.effect.effect);
   for (std::size_t m = 0; m < strengths.size(); ++m) {
@@ -122,7 +122,7 @@ SUREFOOT_INLINE Shares shares_of_pair(const AllSignatures& all, std::size_t i, s
   return best_shares(gram, against, low, high);
 }
 
-SUREFOOT_INLINE std::vector<ProposedPair> propose_pairs(const std::vector<Proposal>& proposals, std::size_t count) {
+SUREFOOT_ONCE std::vector<ProposedPair> propose_pairs(const std::vector<Proposal>& proposals, std::size_t count) {
   struct Ranked {
     std::size_t first, second;
     Shares shares;
@@ -143,7 +143,7 @@ SUREFOOT_INLINE std::vector<ProposedPair> propose_pairs(const std::vector<Propos
   for (const auto& [first, second, shares] : ranked) {
     if (pairs.size() == count) break;
     const Proposal &a = proposals[first], &b = proposals[second];
-    const bool in_other_forms = std::any_of(pairs.begin(), pairs.end(), [&](const ProposedPair& other) {
+    const bool in_other_forms = holds_for_any(pairs, [&](const ProposedPair& other) {
       const AttachedEffect &c = other.first.effect, &d = other.second.effect;
       return (same_but_for_form(a.effect, c) && same_but_for_form(b.effect, d)) ||
              (same_but_for_form(a.effect, d) && same_but_for_form(b.effect, c));
@@ -154,12 +154,23 @@ SUREFOOT_INLINE std::vector<ProposedPair> propose_pairs(const std::vector<Propos
   return pairs;
 }
 
-SUREFOOT_INLINE std::vector<ProposedPair> propose_tied_pairs(const std::vector<Proposal>& proposals,
-                                                             std::size_t count) {
-  std::map<std::pair<std::string, std::string>, std::vector<Proposal>> by_effect;  // name and form
-  for (const Proposal& one : proposals) by_effect[{one.effect.effect->name, one.effect.effect->form}].push_back(one);
+/// Below, at or above 0 as the name and form of an effect stand before, at or after those of another.
+SUREFOOT_ONCE int compare_effects(const Proposal& a, const Proposal& b) {
+  const int by_name = a.effect.effect->name.compare(b.effect.effect->name);
+  return by_name != 0 ? by_name : a.effect.effect->form.compare(b.effect.effect->form);
+}
+
+SUREFOOT_ONCE std::vector<ProposedPair> propose_tied_pairs(const std::vector<Proposal>& proposals, std::size_t count) {
+  const std::vector<std::size_t> order = sorted_places(proposals.size(), [&](std::size_t a, std::size_t b) {
+    const int before = compare_effects(proposals[a], proposals[b]);
+    return before != 0 ? before < 0 : a < b;
+  });
   std::vector<ProposedPair> tied;
-  for (const auto& [effect, places] : by_effect) {
+  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    std::vector<Proposal> places;  // of one effect in one form
+    for (; end < order.size() && compare_effects(proposals[order[begin]], proposals[order[end]]) == 0; ++end) {
+      places.push_back(proposals[order[end]]);
+    }
     for (ProposedPair& pair : propose_pairs(places, places.size() * places.size())) tied.push_back(std::move(pair));
   }
   sort_items(tied, [](const ProposedPair& a, const ProposedPair& b) { return a.gain > b.gain; });

@@ -9,6 +9,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/selection/predictions.hpp"
 
 namespace surefoot::diagnosis {
@@ -24,7 +25,9 @@ SUREFOOT_ONCE ErrorSquares errors_of_predictions(const Search& search, const Eva
         error_squares(search.bound, fits[k], fold, problem.fit.integration, problem.scale, serially());
     for (std::size_t i = 0; i < fold.size(); ++i) {
       const auto row = std::find(recordings.begin(), recordings.end(), fold[i]) - recordings.begin();
-      result.mean_squares.row(row) = unseen.mean_squares.row(static_cast<Eigen::Index>(i));
+      for (Eigen::Index c = 0; c < result.mean_squares.cols(); ++c) {
+        result.mean_squares(row, c) = unseen.mean_squares(static_cast<Eigen::Index>(i), c);
+      }
     }
   }
   const Eigen::VectorXd left = pooled(result);
@@ -42,8 +45,8 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> with_predictions(const Search& se
   const double behind = by_predictions ? problem.effort.hopeless : std::log(problem.criteria.tie_odds);
   std::vector<EvaluatedHypothesis> best = best_structures(pool, problem.effort.predicted, behind, problem.criteria);
   const auto is_bare = [&](const EvaluatedHypothesis& one) { return search.effects(one) == 0; };
-  const auto bare = std::find_if(pool.begin(), pool.end(), is_bare);
-  if (std::none_of(best.begin(), best.end(), is_bare) && bare != pool.end()) best.push_back(*bare);
+  const auto bare = find_item(pool, is_bare);
+  if (!holds_for_any(best, is_bare) && bare != nullptr) best.push_back(*bare);
   search.parallel(best.size(), [&](std::size_t i) {
     const ErrorSquares errors = errors_of_predictions(search, best[i]);
     best[i].predicted = errors.rms();
@@ -61,10 +64,9 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> with_predictions(const Search& se
 
 SUREFOOT_ONCE void restore_errors_of_fits(Selection& selection, const std::vector<EvaluatedHypothesis>& pool) {
   const auto restore = [&](EvaluatedHypothesis& one) {
-    const auto fitted = std::find_if(pool.begin(), pool.end(), [&](const EvaluatedHypothesis& other) {
-      return same_structure(other.hypothesis, one.hypothesis);
-    });
-    if (fitted != pool.end()) one.errors = fitted->errors;
+    const auto fitted = find_item(
+        pool, [&](const EvaluatedHypothesis& other) { return same_structure(other.hypothesis, one.hypothesis); });
+    if (fitted != nullptr) one.errors = fitted->errors;
   };
   restore(selection.nominal);
   restore(selection.chosen);

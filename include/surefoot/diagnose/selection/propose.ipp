@@ -15,6 +15,7 @@
 #include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/estimation/starting_values.hpp"
 #include "surefoot/diagnose/selection/candidates.hpp"
@@ -59,9 +60,8 @@ SUREFOOT_ONCE std::vector<Eigen::Index> strengths_of(const Effect& effect) {
 
 SUREFOOT_ONCE Hypothesis with_effect(Hypothesis base, const AttachedEffect& effect, const Eigen::VectorXd& values,
                                      std::size_t before) {
-  const auto at = static_cast<std::ptrdiff_t>(before);
-  base.effects.insert(base.effects.begin() + at, effect);
-  base.values.insert(base.values.begin() + at, values_before_starts(*effect.effect, values, base.initial.size()));
+  insert_item(base.effects, before, effect);
+  insert_item(base.values, before, values_before_starts(*effect.effect, values, base.initial.size()));
   return base;
 }
 
@@ -169,14 +169,14 @@ SUREFOOT_ONCE Proposal predict_gain(const BoundSimulator& bound, const OpenResid
 /// there are `behind`, unless it clearly does more in front of them.
 SUREFOOT_ONCE std::vector<Proposal> best_of_each_effect(std::vector<Proposal> tried, std::size_t behind,
                                                         const ProposalCriteria& criteria) {
-  std::erase_if(tried, [](const Proposal& one) { return !one.effect.effect; });
+  drop_items(tried, [](const Proposal& one) { return !one.effect.effect; });
   std::vector<Proposal> in_front;
   for (const Proposal& one : tried) {
     if (one.before < behind) in_front.push_back(one);
   }
-  std::erase_if(tried, [&](const Proposal& one) { return one.before < behind; });
+  drop_items(tried, [&](const Proposal& one) { return one.before < behind; });
   for (Proposal& one : in_front) {
-    const bool clearly = std::none_of(tried.begin(), tried.end(), [&](const Proposal& other) {
+    const bool clearly = !holds_for_any(tried, [&](const Proposal& other) {
       return other.before == behind && same_effect(other.effect, one.effect) &&
              !(one.gain > other.gain + criteria.order_matters);
     });
@@ -185,9 +185,8 @@ SUREFOOT_ONCE std::vector<Proposal> best_of_each_effect(std::vector<Proposal> tr
   sort_items(tried, [](const Proposal& a, const Proposal& b) { return a.gain > b.gain; });
   std::vector<Proposal> best;
   for (const Proposal& one : tried) {
-    const auto same = std::find_if(best.begin(), best.end(),
-                                   [&](const Proposal& other) { return same_effect(other.effect, one.effect); });
-    if (same == best.end()) {
+    const auto same = find_item(best, [&](const Proposal& other) { return same_effect(other.effect, one.effect); });
+    if (same == nullptr) {
       best.push_back(one);
     } else if (same->before == one.before) {
       same->more_starts.push_back(one.start);

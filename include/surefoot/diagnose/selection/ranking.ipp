@@ -5,11 +5,11 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
 #include "surefoot/diagnose/selection/ranking.hpp"
@@ -64,23 +64,38 @@ SUREFOOT_ONCE std::size_t closest_of_tie(const Search& search, const std::vector
   return closest;
 }
 
+/// The effects of a hypothesis that a part of it does not have.
+SUREFOOT_ONCE std::vector<std::string> labels_beyond(const Hypothesis& whole, const Hypothesis& part) {
+  const std::vector<std::string> kept = structure_of(part);
+  std::vector<std::string> dropped;
+  std::size_t next = 0;  // of those kept
+  for (const std::string& label : structure_of(whole)) {
+    if (next < kept.size() && kept[next] == label) {
+      ++next;
+    } else {
+      dropped.push_back(label);
+    }
+  }
+  return dropped;
+}
+
 SUREFOOT_ONCE std::size_t without_improbable(const Search& search, const std::vector<EvaluatedHypothesis>& pool,
                                              const std::vector<double>& share, std::size_t whole) {
   constexpr double probable = 0.5;  // than not
   const double most = *std::max_element(share.begin(), share.end());
   const auto improbable = [&](const std::string& effect) {
     double with = 0;
-    for (std::size_t i = 0; i < pool.size(); ++i)
-      with += structure_of(pool[i].hypothesis).contains(effect) ? share[i] : 0;
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+      const std::vector<std::string> labels = structure_of(pool[i].hypothesis);
+      with += std::find(labels.begin(), labels.end(), effect) != labels.end() ? share[i] : 0;
+    }
     return with < probable;
   };
   std::size_t best = whole;
   for (std::size_t i = 0; i < pool.size(); ++i) {
     const bool tied = share[i] * search.problem.criteria.tie_odds >= most;
     if (!tied || search.effects(pool[i]) == 0 || !is_part_of(pool[i].hypothesis, pool[whole].hypothesis)) continue;
-    std::multiset<std::string> dropped = structure_of(pool[whole].hypothesis);
-    for (const std::string& kept : structure_of(pool[i].hypothesis)) dropped.erase(dropped.find(kept));
-    if (!std::all_of(dropped.begin(), dropped.end(), improbable)) continue;
+    if (!holds_for_all(labels_beyond(pool[whole].hypothesis, pool[i].hypothesis), improbable)) continue;
     if (best == whole || share[i] > share[best]) best = i;
   }
   return best;

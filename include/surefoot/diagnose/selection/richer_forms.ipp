@@ -7,13 +7,13 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/estimation/starting_values.hpp"
 #include "surefoot/diagnose/selection/richer_forms.hpp"
@@ -41,13 +41,15 @@ SUREFOOT_ONCE std::vector<Hypothesis> starts_in_form(const Search& search, const
                                                      const AttachedEffect& form, double factor = 1) {
   const std::size_t recordings = search.bound.recordings.size();
   std::vector<Hypothesis> starts;
-  std::set<std::vector<double>> tried;
+  std::vector<std::vector<double>> tried;
   for (Eigen::VectorXd values : starting_values(search.bound, form, {})) {
     for (Eigen::Index k = 0; k < values.size(); ++k) {
       const std::string& name = form.effect->parameters[static_cast<std::size_t>(k)].name;
       values[k] = value_named(name, *found.effects[e].effect, found.values[e]).value_or(factor * values[k]);
     }
-    if (!tried.insert({values.begin(), values.end()}).second) continue;  // starts of the known ones do not count
+    const std::vector<double> start(values.begin(), values.end());
+    if (std::find(tried.begin(), tried.end(), start) != tried.end()) continue;  // starts of the known ones do not count
+    tried.push_back(start);
     Hypothesis one = found;
     one.effects[e] = form;
     one.values[e] = values_before_starts(*form.effect, values, recordings);
@@ -80,11 +82,11 @@ struct IntegratedFit {
 
 /// The best fit of each form of effect number `e`, best first.
 SUREFOOT_ONCE std::vector<IntegratedFit> best_of_forms(std::vector<IntegratedFit> fits, std::size_t e) {
-  std::erase_if(fits, [](const IntegratedFit& one) { return !one.fit.ok; });  // or not begun: the search was stopped
+  drop_items(fits, [](const IntegratedFit& one) { return !one.fit.ok; });  // or not begun: the search was stopped
   sort_items(fits, [](const IntegratedFit& a, const IntegratedFit& b) { return a.fit.loss < b.fit.loss; });
   std::vector<IntegratedFit> best;
   for (IntegratedFit& one : fits) {
-    const bool there = std::any_of(best.begin(), best.end(), [&](const IntegratedFit& other) {
+    const bool there = holds_for_any(best, [&](const IntegratedFit& other) {
       return same_effect(other.fit.hypothesis.effects[e], one.fit.hypothesis.effects[e]);
     });
     if (!there) best.push_back(std::move(one));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
 #include "surefoot/diagnose/selection/grow.hpp"
 #include "surefoot/diagnose/selection/richer_forms.hpp"
@@ -28,8 +29,7 @@ SUREFOOT_ONCE void swap_effects(const Search& search, std::vector<EvaluatedHypot
     std::vector<Proposal> proposals = proposals_for(search, rest);
     drop_what_cannot_pay(proposals, needed_gain(search, rest, best, 1), problem.effort);
     const std::string& name = best.hypothesis.effects[e].effect->name;  // the right name may be at a wrong place
-    std::stable_partition(proposals.begin(), proposals.end(),
-                          [&](const Proposal& one) { return one.effect.effect->name == name; });
+    put_first(proposals, [&](const Proposal& one) { return one.effect.effect->name == name; });
     for (const EvaluatedHypothesis& other :
          next_effects(search, rest, std::move(proposals),
                       std::min(problem.effort.compared_shortlist, problem.effort.further_shortlist),
@@ -51,7 +51,7 @@ SUREFOOT_ONCE void swap_pairs_of_inputs(const Search& search, std::vector<Evalua
       const EvaluatedHypothesis parent =
           evaluate_fit(search.bound, fit(search.bound, rest, problem.fit, search.parallel), problem, search.parallel);
       std::vector<Proposal> proposals = proposals_for(search, parent);
-      std::erase_if(proposals, [&](const Proposal& one) {
+      drop_items(proposals, [&](const Proposal& one) {
         const bool signal = one.effect.at >= static_cast<int>(search.bound.info.inputs.size());
         return !acts_on_input(one.effect) || signal ||
                (!is_like(*one.effect.effect, *effects[e].effect) && !is_like(*one.effect.effect, *effects[f].effect));

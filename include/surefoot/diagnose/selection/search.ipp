@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
 #include "surefoot/diagnose/selection/grow.hpp"
@@ -168,7 +169,7 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
     settle(search, selection.chosen);
     const auto fewer = weigh_effects(search, selection);
     if (!fewer) break;
-    std::erase_if(pool, [&](const EvaluatedHypothesis& one) {
+    drop_items(pool, [&](const EvaluatedHypothesis& one) {
       return same_structure(one.hypothesis, selection.chosen.hypothesis);
     });
     keep_best_form(pool, *fewer, criteria);

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/core/function_ref.hpp"
 #include "surefoot/diagnose/simulation/simulation_run.hpp"
 #include "surefoot/diagnose/simulation/structure.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
@@ -17,7 +18,7 @@
 namespace surefoot::diagnosis {
 
 /// Runs job(0) ... job(count - 1), on whatever executor the user gave.
-using Parallel = std::function<void(std::size_t count, const std::function<void(std::size_t)>& job)>;
+using Parallel = std::function<void(std::size_t count, FunctionRef<void(std::size_t)> job)>;
 
 struct BoundSimulator {
   SimulatorInfo info;

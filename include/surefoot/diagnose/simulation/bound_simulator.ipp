@@ -45,14 +45,14 @@ SUREFOOT_INLINE double standard_deviation(const Eigen::VectorXd& values) {
   return std::sqrt(std::max(0.0, squares / static_cast<double>(count) - mean * mean));
 }
 
-SUREFOOT_INLINE Eigen::VectorXd nominal_parameters(const SimulatorInfo& info) {
+SUREFOOT_ONCE Eigen::VectorXd nominal_parameters(const SimulatorInfo& info) {
   Eigen::VectorXd p(static_cast<Eigen::Index>(info.parameters.size()));
   for (std::size_t i = 0; i < info.parameters.size(); ++i) p[static_cast<Eigen::Index>(i)] = info.parameters[i].value;
   return p;
 }
 
-SUREFOOT_INLINE BoundSimulator without_functions(SimulatorInfo info, SimulatorStructure structure,
-                                                 std::vector<Recording> recordings) {
+SUREFOOT_ONCE BoundSimulator without_functions(SimulatorInfo info, SimulatorStructure structure,
+                                               std::vector<Recording> recordings) {
   constexpr double half_turn = 3.1416;  // [rad] rounded up: readings beyond it are of an angle that counts turns
   BoundSimulator bound;
   bound.info = std::move(info);

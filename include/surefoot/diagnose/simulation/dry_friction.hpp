@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "surefoot/diagnose/simulation/input_signal.hpp"
@@ -22,7 +21,7 @@ inline bool rests(const EffectSlot& slot, double velocity) { return !(std::abs(v
 template <Simulator S, class LimitAt>
 void decide_together(AugmentedSimulator<S>& m, const Point<S>& at, typename S::State f,
                      const ForceResponse<S>& response, LimitAt&& limit_at, const typename S::Input& u, double t,
-                     double h, std::span<Mode> modes) {
+                     double h, std::vector<Mode>& modes) {
   const auto& dry = m.slots.dry;
   const auto without = copied(f);
   std::vector<int> resting;
@@ -57,7 +56,7 @@ void decide_together(AugmentedSimulator<S>& m, const Point<S>& at, typename S::S
 /// Sliding or stuck, by dry friction, from the beginning of a step on. Those of one velocity add up.
 template <Simulator S>
 void decide_modes(AugmentedSimulator<S>& m, const Point<S>& at, const InputSignal<typename S::Input>& inputs, double t,
-                  double h, std::span<Mode> modes) {
+                  double h, std::vector<Mode>& modes) {
   const auto& dry = m.slots.dry;
   bool any_rests = false;
   for (std::size_t i = 0; i < dry.size(); ++i) {
@@ -94,7 +93,7 @@ struct Stop {
 };
 
 template <class State>
-Stop first_stop(const EffectSlots& slots, std::span<const Mode> modes, const State& before, const State& after) {
+Stop first_stop(const EffectSlots& slots, const std::vector<Mode>& modes, const State& before, const State& after) {
   Stop stop;
   for (std::size_t i = 0; i < modes.size(); ++i) {
     const int at = slots.dry[i].at;

@@ -1,8 +1,6 @@
 // One step of an ODE with effects: Runge-Kutta of order 4 or 2 (midpoint), cut where dry friction stops a velocity.
 #pragma once
 
-#include <span>
-
 #include "surefoot/diagnose/simulation/dry_friction.hpp"
 #include "surefoot/diagnose/simulation/input_signal.hpp"
 
@@ -50,7 +48,7 @@ void plain_step(const AugmentedSimulator<S>& m, const InputSignal<typename S::In
 /// With effects on rates and a given mode of each dry friction.
 template <Simulator S>
 Point<S> effects_step(AugmentedSimulator<S>& m, const InputSignal<typename S::Input>& u, int order, const Point<S>& now,
-                      double t, double h, std::span<const Mode> modes) {
+                      double t, double h, const std::vector<Mode>& modes) {
   using Input = typename S::Input;
   if (m.slots.hidden_rates) {
     return runge_kutta(now, u, order, t, h, [&](const Point<S>& at, const Input& input, double time) {
@@ -70,7 +68,7 @@ Point<S> effects_step(AugmentedSimulator<S>& m, const InputSignal<typename S::In
 /// `modes` is room for one mode per dry friction.
 template <Simulator S>
 void step(AugmentedSimulator<S>& m, const InputSignal<typename S::Input>& u, int order, Point<S>& now, double t,
-          double h, std::span<Mode> modes, int depth = 0) {
+          double h, std::vector<Mode>& modes, int depth = 0) {
   if (m.slots.plain_rates) return plain_step(m, u, order, now.x, t, h);
   const auto slide_for = [&](double length) { return effects_step(m, u, order, now, t, length, modes); };
   if (modes.empty()) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "surefoot/diagnose/simulation/generalized_forces.hpp"
@@ -125,7 +124,7 @@ inline typename S::State seen_states(const AugmentedSimulator<S>& m, const typen
 /// Adds dry friction in a given mode of each to the rates; `model` are those of the simulator alone.
 template <Simulator S>
 void rub(AugmentedSimulator<S>& m, const ForceResponse<S>& response, const typename S::State& x,
-         const typename S::State& model, const typename S::Input& u, double t, double h, std::span<const Mode> modes,
+         const typename S::State& model, const typename S::Input& u, double t, double h, const std::vector<Mode>& modes,
          typename S::State& rate) {
   for (std::size_t i = 0; i < modes.size(); ++i) {
     const EffectSlot& slot = m.slots.dry[i];
@@ -149,7 +148,7 @@ void rub(AugmentedSimulator<S>& m, const ForceResponse<S>& response, const typen
 /// are put into dz where they have any.
 template <Simulator S>
 typename S::State rates(AugmentedSimulator<S>& m, const typename S::State& x, const Hidden& z, typename S::Input u,
-                        Hidden& dz, double t, double h, std::span<const Mode> modes) {
+                        Hidden& dz, double t, double h, const std::vector<Mode>& modes) {
   for (const EffectSlot& slot : m.slots.commands) u[slot.at] = through(m, slot, u[slot.at], z, dz, t, h);
   const auto model = equations(m, seen_states(m, x, z, t, h), u, z, dz, t, h);
   auto rate = copied(model);

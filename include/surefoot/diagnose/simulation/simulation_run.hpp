@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "surefoot/core/pose2.hpp"
@@ -154,14 +153,14 @@ class SimulationRun {
   void advance(Point<S>& now, double t, double h, int hits = 0) {
     if (m_.slots.limits.empty()) return advance_through(now, t, h);
     const Point<S> before = now;
-    step(m_, u_, integration_.order, now, t, h, std::span<Mode>(modes_));
+    step(m_, u_, integration_.order, now, t, h, modes_);
     constexpr int most_hits = 4;  // in a step; what bounces more often rests
     const StopHit hit = hits < most_hits ? first_hit(m_.slots, before, now) : StopHit{};
     if (!(hit.beyond > 0 && hit.beyond < h)) return apply_step_updates(m_, now, u_.now(), t, h);
     double length = h - hit.beyond;
     for (int round = 0; round < 3; ++round) {  // of Newton's method, which doubles the right digits in each
       assign(now, before);
-      step(m_, u_, integration_.order, now, t, length, std::span<Mode>(modes_));
+      step(m_, u_, integration_.order, now, t, length, modes_);
       const double later = hit.until(now.x);
       if (round == 2 || !(std::abs(later) > 1e-12 * h)) break;
       length = std::clamp(length + later, 0.0, h);
@@ -172,7 +171,7 @@ class SimulationRun {
   }
 
   void advance_through(Point<S>& now, double t, double h) {
-    step(m_, u_, integration_.order, now, t, h, std::span<Mode>(modes_));
+    step(m_, u_, integration_.order, now, t, h, modes_);
     apply_step_updates(m_, now, u_.now(), t, h);
   }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/text.hpp"
 #include "surefoot/diagnose/verdict/alternatives.hpp"
 
@@ -20,8 +21,8 @@ SUREFOOT_ONCE Evidence evidence_for(const Selection& selection, std::size_t effe
   double confidence = selection.probability;
   for (std::size_t i = 0; i < selection.alternatives.size(); ++i) {
     const auto& others = selection.alternatives[i].hypothesis.effects;
-    const bool has_it = std::any_of(others.begin(), others.end(),
-                                    [&](const AttachedEffect& other) { return same_but_for_form(other, mine); });
+    const bool has_it =
+        holds_for_any(others, [&](const AttachedEffect& other) { return same_but_for_form(other, mine); });
     if (has_it) confidence += selection.alternative_probabilities[i];
   }
   return {gain.gain, gain.stderr_, gain.p_value, std::min(1.0, confidence)};

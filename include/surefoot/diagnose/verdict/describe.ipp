@@ -11,6 +11,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/text.hpp"
 #include "surefoot/diagnose/verdict/describe.hpp"
 #include "surefoot/diagnose/verdict/verdict.hpp"
@@ -156,7 +157,7 @@ SUREFOOT_ONCE std::string not_held_out_sentence() {
 SUREFOOT_ONCE const Effect& effect_beyond(const Hypothesis& hypothesis, const Hypothesis& other) {
   for (std::size_t e = hypothesis.effects.size(); e > 0; --e) {
     const AttachedEffect& mine = hypothesis.effects[e - 1];
-    const bool shared = std::any_of(other.effects.begin(), other.effects.end(), [&](const AttachedEffect& theirs) {
+    const bool shared = holds_for_any(other.effects, [&](const AttachedEffect& theirs) {
       return theirs.effect->name == mine.effect->name && theirs.place == mine.place;
     });
     if (!shared) return *mine.effect;
@@ -175,8 +176,7 @@ SUREFOOT_ONCE std::string next_experiment(const Hypothesis& chosen, const Hypoth
 /// "1.04 times the noise", which may be estimated from what is left, or nothing where that is unknown.
 SUREFOOT_ONCE std::string against_noise(const Diagnosis& diagnosis) {
   if (!std::isfinite(diagnosis.noise_ratio)) return "";
-  const bool stated = std::all_of(diagnosis.channels.begin(), diagnosis.channels.end(),
-                                  [](const ChannelMismatch& one) { return one.noise_stated; });
+  const bool stated = holds_for_all(diagnosis.channels, [](const ChannelMismatch& one) { return one.noise_stated; });
   return in_digits(diagnosis.noise_ratio) + (stated ? " times the noise" : " times the noise as estimated");
 }
 
@@ -197,8 +197,8 @@ SUREFOOT_ONCE std::string beyond_noise_sentence(const Diagnosis& diagnosis) {
 
 /// By how much the error on held-out recordings falls, in how many of them, and what is left of it.
 SUREFOOT_ONCE std::string gain_sentence(const Diagnosis& diagnosis) {
-  const auto better = std::count_if(diagnosis.per_recording.begin(), diagnosis.per_recording.end(),
-                                    [](const RecordingFit& one) { return one.after < one.before; });
+  const auto better =
+      count_items(diagnosis.per_recording, [](const RecordingFit& one) { return one.after < one.before; });
   const std::string noise = against_noise(diagnosis);
   return " With that, the error on held-out recordings falls by " +
          in_digits(100 * (1 - diagnosis.held_out_after / std::max(diagnosis.held_out_before, never_zero))) + " %" +
@@ -209,8 +209,7 @@ SUREFOOT_ONCE std::string gain_sentence(const Diagnosis& diagnosis) {
 /// Whether all recordings are within what an explanation may leave.
 SUREFOOT_ONCE bool within_noise(const Diagnosis& diagnosis) {
   return diagnosis.noise_ratio <= VerdictCriteria{}.largest_ratio &&
-         std::none_of(diagnosis.per_recording.begin(), diagnosis.per_recording.end(),
-                      [](const RecordingFit& one) { return one.beyond_noise; });
+         !holds_for_any(diagnosis.per_recording, [](const RecordingFit& one) { return one.beyond_noise; });
 }
 
 SUREFOOT_ONCE std::string clean_sentence(const Diagnosis& diagnosis, const std::string& parameters) {

@@ -38,7 +38,7 @@ SUREFOOT_ONCE FittedModel simulate_model(const EstimationSetup& setup, const Hyp
     unseen = cross_fitted(setup, hypothesis, refit, parallel);
   } else {
     model.hypothesis = with_estimated_initial_states(bound, hypothesis, held_out, setup.problem, parallel);
-    unseen.assign(held_out.size(), model.hypothesis);
+    unseen = std::vector<Hypothesis>(held_out.size(), model.hypothesis);
   }
   const auto of_training = [&](const Integration& integration) {
     return simulate_all(bound, model.hypothesis, training, integration, parallel);

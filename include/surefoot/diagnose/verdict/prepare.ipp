@@ -6,6 +6,7 @@
 #include <cmath>
 #include <compare>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
@@ -46,7 +47,9 @@ SUREFOOT_ONCE std::vector<Recording> cut_recordings(const BoundSimulator& bound,
         if (std::isfinite(measured)) initial[i] = measured;
       }
       Recording one = part_of(whole, begin, to, initial, scale);
-      for (Eigen::Index row = 0; row < from - begin; ++row) one.outputs.col(row).fill(not_measured);
+      for (Eigen::Index row = 0; row < from - begin; ++row) {
+        for (Eigen::Index k = 0; k < one.outputs.rows(); ++k) one.outputs(k, row) = not_measured;
+      }
       if (part == 0) one.initial = hypothesis.initial[r];
       result.push_back(std::move(one));
     }
@@ -82,7 +85,7 @@ SUREFOOT_ONCE bool measured_early(const Recording& one, Eigen::Index rows) {
 SUREFOOT_ONCE Eigen::Index shorten_recordings(std::vector<Recording>& recordings, std::size_t most) {
   std::vector<std::size_t> rows;
   for (const Recording& one : recordings) rows.push_back(static_cast<std::size_t>(one.rows()));
-  std::sort(rows.begin(), rows.end());
+  sort_items(rows, std::less<>());
   std::size_t left = most, limit = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {  // from the shortest on, each may take an equal share of what is left
     limit = left / (rows.size() - i);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/noise_regime.hpp"
 #include "surefoot/diagnose/estimation/sensor_noise.hpp"
 #include "surefoot/diagnose/screening.hpp"
@@ -25,14 +26,14 @@ SUREFOOT_ONCE std::vector<AttachedEffect> candidate_effects(const EstimationSetu
                                                             const Calibration& calibration, const RunContext& run) {
   const auto& names = run.options.effects;
   std::vector<Effect> effects = nameable_effects(run.options);
-  std::erase_if(effects, [&](const Effect& effect) {
+  drop_items(effects, [&](const Effect& effect) {
     return !names.empty() && std::find(names.begin(), names.end(), effect.name) == names.end();
   });
   if (setup.noise == NoiseKind::process) {  // each row starts from readings, so that a sensor's faults cannot be told
-    std::erase_if(effects, [](const Effect& effect) { return effect.place == Place::output; });
+    drop_items(effects, [](const Effect& effect) { return effect.place == Place::output; });
   }
   if (few_readings(setup.bound, setup.split.training)) {
-    std::erase_if(effects, [](const Effect& effect) { return effect.starts_anywhere; });
+    drop_items(effects, [](const Effect& effect) { return effect.starts_anywhere; });
   }
   std::vector<AttachedEffect> candidates = attachments(
       setup.bound, effects,
@@ -41,7 +42,7 @@ SUREFOOT_ONCE std::vector<AttachedEffect> candidate_effects(const EstimationSetu
   const std::vector<bool> zero = zero_at_first(setup.bound, setup.split.training);
   const InputValues values =
       input_values(setup.bound, calibration.calibrated.hypothesis, setup.split.training, calibration.training_runs);
-  std::erase_if(candidates, [&](const AttachedEffect& one) {
+  drop_items(candidates, [&](const AttachedEffect& one) {
     const auto at = static_cast<std::size_t>(one.at);
     const Effect& effect = *one.effect;
     return (effect.from_rest && (map || zero[at])) || (effect.needs_both_signs && !values.both_signs[at]) ||
@@ -98,7 +99,7 @@ SUREFOOT_ONCE void remove_outliers_from(EstimationSetup& setup, const Hypothesis
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (!runs[i].finite) continue;
     const auto removed = remove_outliers(bound.info, bound.recordings[setup.split.training[i]], runs[i].outputs);
-    diagnosis.remarks.insert(diagnosis.remarks.end(), removed.begin(), removed.end());
+    append_items(diagnosis.remarks, removed);
   }
 }
 

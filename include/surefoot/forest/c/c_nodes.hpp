@@ -27,7 +27,7 @@ struct CNodes {
   CNodes(const Trees& from, bool words_name_the_leaves)
       : input_bits(static_cast<int>(std::bit_width(static_cast<unsigned>(from.inputs)))),
         words_name_leaves(words_name_the_leaves) {
-    std::vector<char> used(from.nodes.size(), 0);  // cache lines are filled up with nodes of no tree
+    std::vector<std::uint8_t> used(from.nodes.size(), 0);  // cache lines are filled up with nodes of no tree
     for (const std::uint32_t root : from.roots) used[root] = 1;
     std::vector<std::uint32_t> place(from.nodes.size(), 0);
     std::uint32_t count = 0;

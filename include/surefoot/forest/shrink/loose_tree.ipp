@@ -23,7 +23,7 @@ SUREFOOT_INLINE LooseTree loosen(const Trees& trees, std::size_t tree) {
   loose.nodes.emplace_back();
   for (std::size_t i = 0; i < loose.nodes.size(); ++i) {
     const Node node = trees.nodes[from[i]];
-    loose.numbers.resize((i + 1) * width, 0.0F);
+    loose.numbers.resize((i + 1) * width);
     if (node.is_leaf()) {
       if (trees.inline_leaves()) {
         loose.numbers[i] = std::bit_cast<float>(node.payload());

@@ -36,12 +36,12 @@ class LinearScore {
     }
     row_begin_[inputs_] = products_;
     products_ = (products_ + width_ + chunk - 1) / chunk * chunk;
-    unit_.resize(width_, 0.0F);
+    unit_.resize(width_);
     std::fill_n(unit_.begin() + shape.inputs, outputs_, 1.0F);
-    shift_.resize(width_, 0.0F);
+    shift_.resize(width_);
     shift_[inputs_ + outputs_] = 1;
     z_ = shift_;
-    block_.resize(block_size * products_, 0.0F);
+    block_.resize(block_size * products_);
     block_total_.resize(products_);
     block_part_.resize(products_);
     total_.resize(products_);

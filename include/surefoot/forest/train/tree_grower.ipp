@@ -116,7 +116,7 @@ class TreeGrower {
       tree_[open.node].payload = std::bit_cast<std::uint32_t>(parameters_[0]);
     } else {
       tree_[open.node].payload = static_cast<std::uint32_t>(trees_.leaves);
-      trees_.parameters.insert(trees_.parameters.end(), parameters_.begin(), parameters_.end());
+      trees_.parameters.insert(trees_.parameters.end(), parameters_.cbegin(), parameters_.cend());
     }
     ++trees_.leaves;
   }

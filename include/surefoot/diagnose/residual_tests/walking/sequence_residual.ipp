@@ -15,6 +15,7 @@
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
 #include "surefoot/diagnose/estimation/exponentials.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
 #include "surefoot/diagnose/residual_tests/walking/sequence_residual.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
@@ -233,9 +234,9 @@ SUREFOOT_INLINE std::vector<double> permuted_evidence(const Eigen::MatrixXd& cov
   return result;
 }
 
-SUREFOOT_INLINE StepScales step_scales(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                       const std::vector<std::size_t>& recordings,
-                                       const std::vector<SimulatedRun>& runs) {
+SUREFOOT_ONCE StepScales step_scales(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                     const std::vector<std::size_t>& recordings,
+                                     const std::vector<SimulatedRun>& runs) {
   const Sizes sizes = measure_sizes(bound, hypothesis, recordings, runs);
   const PlanarInfo& planar = *bound.info.planar;
   StepScales scales;
@@ -278,7 +279,7 @@ SUREFOOT_INLINE bool SequenceTest::read_off(const KernelChoice& kernel, Sequence
     const std::size_t r = order[i];
     std::vector<Cell> cells = cells_of(bound.recordings[r]);
     if (kernel.headings_only) {
-      std::erase_if(cells, [&](const Cell& cell) {
+      drop_items(cells, [&](const Cell& cell) {
         return bound.structure.output_of[static_cast<std::size_t>(planar.heading)] != static_cast<int>(cell.output);
       });
     }
@@ -344,8 +345,7 @@ SUREFOOT_INLINE Comparison SequenceTest::cross_validated(const SequenceData& dat
   return compare_losses(before, after);
 }
 
-SUREFOOT_INLINE Comparison most_evident(std::vector<Comparison> found,
-                                        const std::vector<std::vector<double>>& evidence) {
+SUREFOOT_ONCE Comparison most_evident(std::vector<Comparison> found, const std::vector<std::vector<double>>& evidence) {
   const auto against = [&](std::size_t job, int draw) {
     const std::vector<double>& all = evidence[job];
     double mean = 0, squared = 0;
@@ -365,19 +365,19 @@ SUREFOOT_INLINE Comparison most_evident(std::vector<Comparison> found,
       largest[static_cast<std::size_t>(draw)] = std::max(largest[static_cast<std::size_t>(draw)], against(job, draw));
     }
   }
-  const auto as_large = std::count_if(largest.begin(), largest.end(), [&](double one) { return one >= largest[0]; });
+  const auto as_large = count_items(largest, [&](double one) { return one >= largest[0]; });
   found[best].p_value = static_cast<double>(as_large) / static_cast<double>(largest.size());
   return found[best];
 }
 
-SUREFOOT_INLINE Comparison sequence_structure(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                              const FitProblem& problem,
-                                              const std::vector<std::vector<std::size_t>>& folds,
-                                              const Parallel& parallel) {
+SUREFOOT_ONCE Comparison sequence_structure(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                            const FitProblem& problem,
+                                            const std::vector<std::vector<std::size_t>>& folds,
+                                            const Parallel& parallel) {
   SequenceTest test{.bound = bound, .problem = problem};
   for (std::size_t f = 0; f < folds.size(); ++f) {
-    test.order.insert(test.order.end(), folds[f].begin(), folds[f].end());
-    test.fold_of.insert(test.fold_of.end(), folds[f].size(), f);
+    append_items(test.order, folds[f]);
+    for (std::size_t i = 0; i < folds[f].size(); ++i) test.fold_of.push_back(f);
   }
   if (test.order.size() < 20) return {};
   test.runs = simulate_all(bound, hypothesis, test.order, problem.integration, parallel);

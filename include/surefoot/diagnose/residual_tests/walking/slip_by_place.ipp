@@ -21,9 +21,9 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE std::optional<MeasuredSteps> measured_steps(const BoundSimulator& bound,
-                                                            const std::vector<std::size_t>& recordings,
-                                                            const std::vector<SimulatedRun>& runs) {
+SUREFOOT_ONCE std::optional<MeasuredSteps> measured_steps(const BoundSimulator& bound,
+                                                          const std::vector<std::size_t>& recordings,
+                                                          const std::vector<SimulatedRun>& runs) {
   if (!bound.info.planar) return std::nullopt;
   const auto output_of = [&](int state) { return bound.structure.output_of[static_cast<std::size_t>(state)]; };
   const int x = output_of(bound.info.planar->x), y = output_of(bound.info.planar->y),
@@ -42,10 +42,12 @@ SUREFOOT_INLINE std::optional<MeasuredSteps> measured_steps(const BoundSimulator
       const Pose2 before = pose(measured, row - 1), after = pose(measured, row), expected = pose(runs[i].outputs, row);
       if (!is_finite(before) || !is_finite(after) || !is_finite(expected)) continue;
       const Pose2 back = before.inverse(), simulated = back * expected, moved = back * after;
-      places.insert(places.end(), {before.x, before.y});
-      simulations.insert(simulations.end(), {simulated.x, simulated.y, simulated.angle});
-      residuals.insert(residuals.end(),
-                       {simulated.x - moved.x, simulated.y - moved.y, wrap_angle(simulated.angle - moved.angle)});
+      for (const double value : {before.x, before.y}) places.push_back(value);
+      for (const double value : {simulated.x, simulated.y, simulated.angle}) simulations.push_back(value);
+      for (const double value :
+           {simulated.x - moved.x, simulated.y - moved.y, wrap_angle(simulated.angle - moved.angle)}) {
+        residuals.push_back(value);
+      }
     }
   }
   const auto count = static_cast<Eigen::Index>(places.size() / 2);
@@ -72,8 +74,8 @@ SUREFOOT_INLINE double sign_flip_p_value(const std::vector<double>& terms) {
   return static_cast<double>(as_large) / (draws + 1);
 }
 
-SUREFOOT_INLINE Eigen::MatrixXd left_by_slip(const std::vector<MeasuredSteps>& by_fold, std::size_t fold,
-                                             std::uint64_t seed) {
+SUREFOOT_ONCE Eigen::MatrixXd left_by_slip(const std::vector<MeasuredSteps>& by_fold, std::size_t fold,
+                                           std::uint64_t seed) {
   Eigen::Index total = 0, at = 0;
   for (std::size_t g = 0; g < by_fold.size(); ++g) total += g == fold ? 0 : by_fold[g].place.cols();
   Dataset<Eigen::Dynamic, Eigen::Dynamic> known;
@@ -150,9 +152,9 @@ SUREFOOT_INLINE Comparison best_direction(const std::vector<MeasuredSteps>& by_f
   return best;
 }
 
-SUREFOOT_INLINE Comparison slip_by_place(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                         const FitProblem& problem, const std::vector<std::vector<std::size_t>>& folds,
-                                         const Parallel& parallel, std::uint64_t seed) {
+SUREFOOT_ONCE Comparison slip_by_place(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                       const FitProblem& problem, const std::vector<std::vector<std::size_t>>& folds,
+                                       const Parallel& parallel, std::uint64_t seed) {
   std::vector<MeasuredSteps> by_fold;
   Eigen::Vector3d step_square(0, 0, 0), error_square = step_square;
   double count = 0;
