@@ -1,6 +1,7 @@
 // Checks of a model file that need all its tables: names, and what expressions refer to.
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,14 @@ void check_formula(const Formula& formula, const Table& allowed) {
   }
 }
 
+// Whether the formula of a let comes to use another one, through as many as there are.
+bool leads_to(const ModelFile& model, const std::string& from, const std::string& to, std::set<std::string>& seen) {
+  const auto let = std::ranges::find(model.lets, from, &ModelLet::name);
+  if (let == model.lets.end() || !seen.insert(from).second) return false;
+  return std::ranges::any_of(used_names(let->value),
+                             [&](const std::string& name) { return name == to || leads_to(model, name, to, seen); });
+}
+
 // A let may use what stands above it.
 void check_lets(const ModelFile& model, const Table& known) {
   Table allowed;
@@ -71,6 +80,11 @@ void check_lets(const ModelFile& model, const Table& known) {
       if (name == let.name)
         fail(let.value.place, "the expression uses " + in_quotes(name) + " itself; a let cannot be recursive");
       const auto at = known.find(name);
+      std::set<std::string> seen;
+      if (leads_to(model, name, let.name, seen)) {
+        fail(let.value.place, "the expression uses " + in_quotes(name) + ", which in turn needs " +
+                                  in_quotes(let.name) + "; lets cannot go in a circle: make one of them a state");
+      }
       if (at != known.end() && !allowed.contains(name)) {
         fail(let.value.place, "the expression uses " + in_quotes(name) + ", which stands further down; move " +
                                   in_quotes(name) + " above " + in_quotes(let.name));

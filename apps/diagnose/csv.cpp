@@ -42,6 +42,12 @@ void read_meta(std::string_view line, std::map<std::string, std::string>& meta) 
 }
 
 void read_header(std::string_view line, std::size_t number, Csv& csv) {
+  const std::size_t other = line.find_first_of(";\t");
+  if (other != std::string_view::npos && line.find(',') == std::string_view::npos) {
+    const std::string mark = line[other] == ';' ? "semicolons" : "tabs";
+    fail(csv.file, number,
+         "cells are set apart by " + mark + "; save it with commas between cells, and decimal points");
+  }
   for (const std::string_view cell : cells_of(line)) {
     const std::string place = "column " + std::to_string(csv.columns.size() + 1);
     if (cell.empty()) fail(csv.file, number, place + " has no name in the header; name it, with its unit at the end");

@@ -49,7 +49,20 @@ LoadedRecordings load_all(const CommandLine& line, const Layout& layout) {
     std::ranges::move(loaded.recordings, std::back_inserter(all.recordings));
     std::ranges::move(loaded.remarks, std::back_inserter(all.remarks));
   }
+  all.remarks = once_each(all.remarks);
   return all;
+}
+
+std::vector<surefoot::Remark> once_each(const std::vector<surefoot::Remark>& remarks) {
+  std::vector<surefoot::Remark> result;
+  std::set<std::string> said;
+  for (const surefoot::Remark& remark : remarks) {
+    if (!said.insert(remark.text).second) continue;
+    const auto times = std::ranges::count(remarks, remark.text, &surefoot::Remark::text);
+    result.push_back(times == 1 ? remark
+                                : surefoot::Remark{"", remark.text + ", in " + std::to_string(times) + " recordings"});
+  }
+  return result;
 }
 
 std::vector<std::string> test_names(const CommandLine& line, const std::vector<surefoot::Recording>& recordings) {

@@ -14,6 +14,9 @@ namespace diagnose_program {
 /// another folder goes by its whole path.
 LoadedRecordings load_all(const CommandLine& line, const Layout& layout);
 
+/// Remarks, those that several recordings share said once.
+std::vector<surefoot::Remark> once_each(const std::vector<surefoot::Remark>& remarks);
+
 /// Names of those recordings that --test names.
 std::vector<std::string> test_names(const CommandLine& line, const std::vector<surefoot::Recording>& recordings);
 

@@ -45,9 +45,15 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-/// "; did you mean 'x'?" for the nearest known name, else "; known are ...".
+/// "; did you mean 'x'?" for the nearest known name, or the one that holds it, else "; known are ...".
 inline std::string suggestion(std::string_view wrong, const std::vector<std::string>& known) {
+  constexpr std::size_t telling = 4;  // letters that hardly stand in a name by chance
   wrong = wrong.substr(0, 60);
+  std::vector<std::string> longer;
+  for (const std::string& name : known) {
+    if (wrong.size() >= telling && name.find(wrong) != std::string::npos) longer.push_back(name);
+  }
+  if (longer.size() == 1) return "; did you mean " + in_quotes(longer.front()) + "?";
   std::size_t best = 1 + wrong.size() / 3;
   const std::string* nearest = nullptr;
   for (const std::string& name : known) {

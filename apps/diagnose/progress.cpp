@@ -20,6 +20,8 @@ void Progress::close() {
 void Progress::show(std::string_view stage, double share, std::string_view best) {
   if (quiet_) return;
   const auto now = Clock::now();
+  if (share < share_) began_ = now;
+  share_ = share;
   const auto pause = terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(10'000);
   if (stage == stage_ && now - shown_ < pause) return;
   stage_ = stage;

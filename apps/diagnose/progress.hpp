@@ -22,7 +22,8 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
   bool quiet_, terminal_, open_ = false;  // open: a line without its end stands on the terminal
-  Clock::time_point began_ = Clock::now(), shown_{};
+  Clock::time_point began_ = Clock::now(), shown_{};  // began: or began anew, from a smaller share on
+  double share_ = 0;
   std::string stage_;
 };
 

@@ -42,9 +42,8 @@ std::string verdict_part(const Diagnosis& d) {
   if (std::isfinite(d.noise_ratio)) html += tile(rounded(d.noise_floor), "noise floor");
   html += tile(std::to_string(d.held_out.size()), "held-out recordings, for these figures");
   return html +
-         "</div>\n<p class=\"note\">Errors are those of whole simulations of recordings that were used neither to fit "
-         "nor to choose (they may only reject the choice), in units of the noise, or of the standard deviation of the "
-         "output where the noise is "
+         "</div>\n<p class=\"note\">Errors are those of whole simulations, of each recording with parameters that were "
+         "fitted to others, in units of the noise, or of the standard deviation of the output where the noise is "
          "unknown.</p>\n";
 }
 

@@ -1,14 +1,17 @@
 #include "run.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <iostream>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "../common/interrupt.hpp"
 #include "known_effects.hpp"
 #include "load_all.hpp"
+#include "names.hpp"
 #include "progress.hpp"
 #include "results.hpp"
 #include "surefoot/core/error.hpp"
@@ -16,6 +19,20 @@
 #include "surefoot/diagnose/effects/catalogue.hpp"
 
 namespace diagnose_program {
+namespace {
+
+void check_effects(const std::vector<std::string>& wanted) {
+  std::vector<std::string> names;
+  for (const surefoot::Effect& effect : surefoot::all_effects()) {
+    if (std::ranges::find(names, effect.name) == names.end()) names.push_back(effect.name);
+  }
+  for (const std::string& name : wanted) {
+    if (std::ranges::find(names, name) != names.end()) continue;
+    throw surefoot::DiagnoseError("--effects: there is no effect called " + in_quotes(name) + suggestion(name, names));
+  }
+}
+
+}  // namespace
 
 int guarded(int argc, char** argv, bool with_model, const std::function<int(const CommandLine&)>& work) {
   try {
@@ -32,6 +49,7 @@ int guarded(int argc, char** argv, bool with_model, const std::function<int(cons
 
 int run(const surefoot::SimulatorInfo& info, const surefoot_apps::DiagnoseFunction& diagnose, const Layout& layout,
         const CommandLine& line, const ModelFile* model) {
+  check_effects(line.effects);
   LoadedRecordings loaded = load_all(line, layout);
   surefoot::DiagnoseOptions options;
   if (model != nullptr) options.known = known_effects(*model, surefoot::all_effects());

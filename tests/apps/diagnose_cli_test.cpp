@@ -85,6 +85,8 @@ TEST_SUITE("surefoot-diagnose" * doctest::skip(!program_exists())) {
     check_call_refused(folder, model + out + " --test-share 2" + files(folder), "--test-share");
     check_call_refused(folder, model + out + " --max-effects many" + files(folder), "--max-effects");
     check_call_refused(folder, model + out + " --budget -1" + files(folder), "--budget");
+    check_call_refused(folder, model + out + " --effects coulomb" + files(folder), "did you mean 'coulomb_friction'?");
+    check_call_refused(folder, model + out + " --effects friction" + files(folder), "known are ");
     check_call_refused(folder, model + out + " --speed 3" + files(folder), "--speed");
     check_call_refused(folder, model + out + " --test nothing.csv" + files(folder), "nothing.csv");
     check_call_refused(folder, model + out + files(folder) + files(folder), "named twice");

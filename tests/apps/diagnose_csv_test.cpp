@@ -40,6 +40,11 @@ TEST_CASE("a CSV file has constants, a header and numbers, and may miss cells") 
   CHECK(csv.lines[2] == 7);
 }
 
+TEST_CASE("semicolons or tabs between cells are refused with the cure") {
+  check_csv_refused("t_s;a_V\n0,0;1,5\n", "line 1: cells are set apart by semicolons; save it with commas");
+  check_csv_refused("# who: me\nt_s\ta_V\n0\t1\n", "line 2: cells are set apart by tabs; save it with commas");
+}
+
 TEST_CASE("a mark of UTF-8 before the header is no part of it") {
   CHECK(parse_csv("\xEF\xBB\xBFt_s\n1\n", "rec.csv").columns[0].name == "t_s");
 }

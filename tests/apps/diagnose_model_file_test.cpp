@@ -211,8 +211,11 @@ TEST_CASE("a name can be used once, and not that of a function") {
 TEST_CASE("a let may use neither itself nor what stands further down") {
   check_model_refused(with(servo_model, "\"kt/R*(vin*duty", "\"kt/R*(tau*duty"),
                       "line 11, [let] tau: the expression uses 'tau' itself");
-  check_model_refused(with(servo_model, "min(max(kp*(goal", "min(max(tau*(goal"),
-                      "line 10, [let] duty: the expression uses 'tau', which stands further down");
+  check_model_refused(
+      with(servo_model, "min(max(kp*(goal", "min(max(tau*(goal"),
+      "line 10, [let] duty: the expression uses 'tau', which in turn needs 'duty'; lets cannot go in a circle");
+  check_model_refused(with(servo_model, "min(max(kp*(goal", "min(max(inertia*(goal"),
+                      "line 10, [let] duty: the expression uses 'inertia', which stands further down");
 }
 
 TEST_CASE("an unknown name in an expression is refused, and a near one proposed") {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/diagnose/equations.hpp"
+#include "apps/diagnose/load_all.hpp"
 #include "apps/diagnose/load_recording.hpp"
 #include "tests/apps/diagnose_models.hpp"
 
@@ -132,6 +133,15 @@ TEST_CASE("a column without a unit is remarked on, unless the model says that it
   const std::string csv = with(servo_csv, "goal_rad", "goal_on");
   CHECK(load(csv, with(servo_model, "\"goal_rad\"", "\"goal_on\"")).remarks.size() == 1);
   CHECK(load(csv, with(servo_model, "\"goal_rad\"", "{ column = \"goal_on\", unit = \"1\" }")).remarks.empty());
+}
+
+TEST_CASE("a remark that several recordings share is made once") {
+  const auto remarks = once_each({{"a.csv", "no unit"}, {"a.csv", "one outlier"}, {"b.csv", "no unit"}});
+  REQUIRE(remarks.size() == 2);
+  CHECK(remarks[0].recording.empty());
+  CHECK(remarks[0].text == "no unit, in 2 recordings");
+  CHECK(remarks[1].recording == "a.csv");
+  CHECK(remarks[1].text == "one outlier");
 }
 
 TEST_CASE("a simulator in C++ reads columns called after names and units") {

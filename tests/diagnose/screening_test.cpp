@@ -73,6 +73,20 @@ TEST_CASE("what a model says shows outliers among readings that move fast by the
   CHECK(std::isnan(lively.outputs(0, 200)));
 }
 
+TEST_CASE("a bend between two neighbours, as where friction stops a motion, is no outlier") {
+  Recording stopped = tank();
+  Eigen::MatrixXd simulated = stopped.outputs;
+  Rng rng(3);
+  for (Eigen::Index i = 0; i < 400; ++i) {
+    simulated(0, i) = i < 200 ? 0.2 : i == 200 ? 0.025 : -0.15;
+    stopped.outputs(0, i) = simulated(0, i) + 2e-4 * rng.normal();
+  }
+  stopped.outputs(0, 200) = 0.147;
+  CHECK(remove_outliers(info, stopped, simulated).empty());
+  stopped.outputs(0, 200) = 0.247;
+  CHECK(remove_outliers(info, stopped, simulated).size() == 1);
+}
+
 TEST_CASE("where only the simulation jumps no reading is an outlier") {
   Recording smooth = tank();
   Eigen::MatrixXd simulated = smooth.outputs;
@@ -92,6 +106,25 @@ TEST_CASE("steps, slow swings, noise and short pulses of two rows are no outlier
   stepping.outputs.middleCols(60, 2).array() += 1;
   CHECK(remove_outliers(info, stepping).empty());
   CHECK(stepping.outputs.allFinite());
+}
+
+TEST_CASE("recordings in which no sensor ever moves are refused") {
+  const auto refusal = [](const std::vector<Recording>& recordings) {
+    try {
+      check_readings(info, recordings);
+    } catch (const DiagnoseError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  std::vector<Recording> two{tank(), tank()};
+  two[0].outputs.setConstant(0.7);
+  CHECK(refusal(two).empty());
+  two[1].outputs.setConstant(0.5);  // as where only the end of each is measured
+  CHECK(refusal(two).empty());
+  two[1].outputs.setConstant(0.7);
+  two[1].outputs(0, 3) = std::numeric_limits<double>::quiet_NaN();
+  CHECK(refusal(two).find("no output changes in any recording: see that the sensors are connected") == 0);
 }
 
 TEST_CASE("recordings that do not fit are refused by name, channel and row") {

@@ -52,8 +52,26 @@ SUREFOOT_ONCE void check_recording(const SimulatorInfo& info, const Recording& r
   }
 }
 
+/// Whether any output takes two values.
+SUREFOOT_ONCE bool any_output_changes(const std::vector<Recording>& recordings) {
+  for (Eigen::Index k = 0; k < recordings.front().outputs.rows(); ++k) {
+    double first = std::numeric_limits<double>::quiet_NaN();
+    for (const Recording& recording : recordings) {
+      for (const double value : detail::row_of(recording.outputs, k)) {
+        if (std::isfinite(value) && std::isfinite(first) && value != first) return true;
+        if (!std::isfinite(first)) first = value;
+      }
+    }
+  }
+  return false;
+}
+
 SUREFOOT_ONCE void check_readings(const SimulatorInfo& info, const std::vector<Recording>& recordings) {
   constexpr std::size_t enough = 3;  // readings for each unknown
+  if (!recordings.empty() && !any_output_changes(recordings)) {
+    throw DiagnoseError(
+        "no output changes in any recording: see that the sensors are connected, and their columns the right ones");
+  }
   std::size_t unknowns = 0, readings = 0;
   for (const ParameterInfo& parameter : info.parameters) unknowns += parameter.fixed ? 0 : 1;
   for (const Recording& recording : recordings) {
@@ -95,8 +113,9 @@ SUREFOOT_ONCE std::vector<Remark> remove_outliers(const SimulatorInfo& info, Rec
     for (Eigen::Index i = 1; i + 1 < y.size(); ++i) {
       const double bend = std::abs(y[i] - 0.5 * (y[i - 1] + y[i + 1]));
       if (!(bend > limit) || std::abs(y[i + 1] - y[i - 1]) > 0.5 * bend) continue;
-      const double of_readings = std::abs(readings[i] - 0.5 * (readings[i - 1] + readings[i + 1]));
-      if (of_readings < 0.5 * bend) continue;  // it is the simulation that jumps
+      const double before = readings[i] - readings[i - 1], after = readings[i] - readings[i + 1];
+      if (std::abs(before + after) < bend) continue;  // it is the simulation that jumps
+      if (!(before * after > 0)) continue;  // between its neighbours: a bend, as where friction stops a motion
       recording.outputs(k, i) = std::numeric_limits<double>::quiet_NaN();
       char text[200];
       std::snprintf(text, sizeof text, "one outlier of %s at time %.4g (%.4g between %.4g and %.4g) was taken out",

@@ -87,6 +87,25 @@ TEST_SUITE("log_doctor") {
     CHECK(examined.faults[0].size == doctest::Approx(0.1).epsilon(0.1));
   }
 
+  TEST_CASE("clocks that differ beside much physics that is missing are suspected, a delay of all is not") {
+    const std::vector<surefoot::NamedEffect> much{{"coulomb_friction", "omega", {}, {}, {10.0}}};
+    const Log clean = toys::servo_log(much);
+    Log log = clean;
+    const double late[] = {0.0, 0.05, 0.02, 0.06, 0.01, 0.04};
+    for (std::size_t r = 0; r < log.size(); ++r) toys::delay_outputs(log[r], late[r]);
+    const auto examined = toys::examined(log);
+    CHECK(examined.faults.empty());
+    REQUIRE(examined.suspected.size() == 1);
+    CHECK(examined.suspected[0].kind == "clock_offset");
+    CHECK(examined.suspected[0].size == doctest::Approx(0.06).epsilon(0.3));
+    REQUIRE(examined.without_suspected.size() == log.size());
+    CHECK(examined.without_suspected[3].outputs != examined.repaired[3].outputs);
+    CHECK(toys::examined(clean).suspected.empty());
+    log = clean;
+    for (Recording& recording : log) toys::delay_outputs(recording, 0.05);
+    CHECK(toys::examined(log).suspected.empty());
+  }
+
   TEST_CASE("one late clock is named with its recording") {
     Log log = toys::servo_log();
     toys::delay_outputs(log[3], 0.05);

@@ -2,11 +2,53 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "tests/diagnose/log_doctor/servo_log.hpp"
 
 namespace {
 
 using namespace surefoot::diagnosis;
+
+/// What follows its goal the faster, the harder it is pulled: too fast for steps of a row where it is pulled most.
+struct Pull {
+  using State = surefoot::Vec<1>;
+  using Input = surefoot::Vec<2>;
+  using Output = surefoot::Vec<1>;
+
+  surefoot::SimulatorInfo info() const {
+    return {.name = "pull",
+            .states = {{"level", "m"}},
+            .inputs = {{"goal", "m"}, {"pull", "1"}},
+            .outputs = {{"level_m", "m"}},
+            .parameters = {{"speed", "1/s", 8, 1, 20}}};
+  }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& p) const {
+    return State(p[0] * u[1] * (u[0] - x[0]));
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return x; }
+};
+
+surefoot::Recording pulled(double pull, int number) {
+  surefoot::Recording recording;
+  recording.name = "rec_" + std::to_string(number);
+  recording.time.setLinSpaced(200, 0, 1.99);
+  recording.inputs.setConstant(2, 200, pull);
+  recording.outputs.setZero(1, 200);
+  recording.initial = recording.initial_scale = Eigen::VectorXd::Zero(1);
+  surefoot::Rng rng(static_cast<std::uint64_t>(number) + 1);
+  double level = 0;
+  for (Eigen::Index row = 0; row < 200; ++row) {
+    recording.inputs(0, row) = (row / 40) % 2 == 0 ? 1 : -0.5;
+    recording.outputs(0, row) = level + 0.01 * rng.normal();
+    level += (1 - std::exp(-8 * pull * 0.01)) * (recording.inputs(0, row) - level);
+  }
+  return recording;
+}
 
 TEST_SUITE("log_doctor") {
   TEST_CASE("a recording with the commands of another is odd, one that is just missed by more is not") {
@@ -41,6 +83,18 @@ TEST_SUITE("log_doctor") {
     stopped.effects = {{"saturation", "goal", {}, {}, {0.25}}};
     log[2].outputs = simulate_augmented(toys::Servo{}, stopped, log[2]).outputs;
     CHECK_FALSE(find_odd_recording(inputs, fit_log(inputs, log)));
+  }
+
+  TEST_CASE("a recording of which the simulation runs away is not odd for that") {
+    const auto bind = [](std::vector<surefoot::Recording> some) { return bind_simulator(Pull{}, std::move(some)); };
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs{bind, [](const BoundSimulator& bound) { return nominal_hypothesis(bound); }, parallel};
+    std::vector<surefoot::Recording> log;
+    for (int r = 0; r < 6; ++r) log.push_back(pulled(r == 3 ? 40 : 1, r));
+    const LogFit fit = fit_log(inputs, log);
+    INFO(fit.error[3]);
+    CHECK(fit.error[3] > 1);
+    CHECK_FALSE(find_odd_recording(inputs, fit));
   }
 
   TEST_CASE("recordings that happen to be hit well do not excuse one that is missed") {

@@ -42,9 +42,17 @@ TEST_CASE("effects are proposed that a parent has not yet, the most promising fi
   }
 }
 
-TEST_CASE("signatures that the parameters of the model can make as well are not proposed") {
+TEST_CASE(
+    "signatures that the parameters of the model can make as well are not proposed, unless the rest is worth it") {
   TankBench bench({rate_in_tank});
+  const auto all = proposals_without_effects(bench);
+  REQUIRE(all.size() > 1);
   bench.problem.criteria.least_distinct = 2;  // more than all of it
+  bench.problem.criteria.structure_share = all.back().gain;
+  const auto worth = proposals_without_effects(bench);
+  REQUIRE(worth.size() < all.size());
+  CHECK(worth.front().effect.effect->name == "constant_rate");
+  bench.problem.criteria.structure_share = 1;
   CHECK(proposals_without_effects(bench).empty());
 }
 

@@ -103,6 +103,27 @@ TEST_CASE("every verdict has its sentence") {
   CHECK(verdict_sentence(diagnosis, {}).ends_with("Its error is 4 times the noise."));
 }
 
+TEST_CASE("where nothing is named, the structure that comes clearly nearest is told") {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::unexplained;
+  diagnosis.held_out_before = 2;
+  Alternative little, much, unknown;
+  little.effects = {{"sensor_bias", "level_m"}};
+  little.held_out_rmse = 1.7;
+  much.effects = {{"overflow", "level_1"}, {"leak", "level_2"}};
+  much.held_out_rmse = 1;
+  unknown.effects = {{"backlash", "level_m"}};
+  diagnosis.alternatives = {little, unknown};
+  CHECK(verdict_sentence(diagnosis, {}).find("nearest") == std::string::npos);
+  diagnosis.alternatives = {little, much, unknown};
+  CHECK(verdict_sentence(diagnosis, {})
+            .ends_with(" What comes nearest is overflow at level_1 and leak at level_2: with that the error on "
+                       "held-out recordings would "
+                       "fall by 50 %, but too few of them show it to be sure."));
+  diagnosis.effects.resize(1);
+  CHECK(verdict_sentence(diagnosis, {}).find("nearest") == std::string::npos);
+}
+
 TEST_CASE("recordings that are further off than noise explains are named, three of them at most") {
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::unexplained;

@@ -66,13 +66,18 @@ TEST_CASE("a coarse sensor does not hide what a fine one shows") {
 
 TEST_CASE("the noise of an output is what no lag predicts, unless it is stated") {
   EstimationSetup setup = toys::tank_setup(toys::noisy_tanks({}, 0.01));
-  const auto noise = [&](double predicted, double p) {
-    const WhitenessTest residuals{.share = 0.2, .predicted = predicted, .p_value = p, .typical = 0.1};
+  const auto noise = [&](double predicted, double p, double typical = 0.03) {
+    const WhitenessTest residuals{.share = 0.2, .predicted = predicted, .p_value = p, .typical = typical};
     return output_noise(setup.bound, setup.split.training, 0, residuals, 0.2);
   };
-  CHECK(noise(0.75, 1e-6) == doctest::Approx(0.05));
-  CHECK(noise(0.75, 0.5) == doctest::Approx(0.1));              // by chance
+  CHECK(noise(0.75, 1e-6) == doctest::Approx(0.015));
+  CHECK(noise(0.75, 0.5) == doctest::Approx(0.03));             // by chance
   CHECK(noise(1, 1e-6) == doctest::Approx(0.01).epsilon(0.2));  // what differs from row to row is left
+  CHECK(noise(0, 0.5, 0.1) == doctest::Approx(0.04).epsilon(0.2));  // no more than four times that
+  for (Recording& one : setup.bound.recordings) {
+    for (double& level : one.outputs.reshaped()) level = std::round(level);  // a sensor that rarely moves
+  }
+  CHECK(noise(0, 0.5, 0.1) == doctest::Approx(0.1));
   CHECK(output_noise(setup.bound, setup.split.training, 0, {.typical = 0.1}, 0.02) == 0.02);  // never more than the error
   setup.bound.info.outputs[0].noise = 0.03;
   CHECK(noise(0.75, 1e-6) == 0.03);

@@ -62,6 +62,27 @@ TEST_CASE("a fast clock that missing friction hides is named, and repaired if as
   CHECK(repaired.fit.size() == named.fit.size());
 }
 
+TEST_CASE("clocks that differ beside much friction are named once the friction is found without them") {
+  const BindSimulator bind = [](std::vector<Recording> some) { return bind_simulator(toys::Servo{}, std::move(some)); };
+  const SimulatorInfo info = toys::Servo{}.info();
+  auto log = toys::servo_log({{"coulomb_friction", "omega", {}, {}, {10.0}}});
+  const double late[] = {0.0, 0.05, 0.02, 0.06, 0.01, 0.04};
+  for (std::size_t r = 0; r < log.size(); ++r) toys::delay_outputs(log[r], late[r]);
+  DiagnoseOptions options{.effects = {"coulomb_friction", "input_delay"}, .max_effects = 2};
+  const Parallel parallel = serially();
+  const Diagnosis named = run_pipeline(bind, info, log, options, parallel, 1, {});
+  REQUIRE(named.log_faults.size() == 1);
+  CHECK(named.log_faults[0].kind == "clock_offset");
+  CHECK(named.log_faults[0].size == doctest::Approx(0.06).epsilon(0.2));
+  CHECK_FALSE(named.log_faults[0].repaired);
+  options.repair = true;
+  const Diagnosis repaired = run_pipeline(bind, info, log, options, parallel, 1, {});
+  REQUIRE(repaired.log_faults.size() == 1);
+  CHECK(repaired.log_faults[0].repaired);
+  CHECK(repaired.held_out_after < 0.5 * named.held_out_after);
+  REQUIRE(repaired.effects.size() == 2);  // what is late in all is not repaired
+}
+
 TEST_CASE("a search begins anew only if there is time for as much again") {
   const Parallel parallel = serially();
   const DiagnoseOptions options{.max_seconds = 1000};

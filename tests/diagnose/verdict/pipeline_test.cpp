@@ -48,6 +48,22 @@ TEST_CASE("few recordings are cut, unless those to hold out are named; one short
   CHECK_THROWS_AS(cut_few_recordings(toys::bind_tank, short_one, run), DiagnoseError);
 }
 
+TEST_CASE("where something is left it is said what was not tried") {
+  const Parallel parallel = serially();
+  const auto logs =
+      toys::noisy_tanks({{"constant_rate", "level", {}, {}, {0.2}}, {"sensor_drift", "level_m", {}, {}, {0.3}}}, 0.01);
+  const DiagnoseOptions options{.effects = {"sensor_scale", "constant_rate"}, .max_effects = 1};
+  const Diagnosis diagnosis = run_pipeline(toys::bind_tank, toys::LeakyTank{}.info(), logs, options, parallel, 1, {});
+  REQUIRE(diagnosis.verdict == Verdict::unexplained);
+  REQUIRE(diagnosis.effects.size() == 1);
+  const auto said = [&](const std::string& text) {
+    return std::any_of(diagnosis.remarks.begin(), diagnosis.remarks.end(),
+                       [&](const Remark& one) { return one.text == text; });
+  };
+  CHECK(said(no_speed_sentence()));
+  CHECK(said(most_effects_sentence(1)));
+}
+
 TEST_CASE("what is held out takes no part in the fit") {
   DiagnoseOptions options;
   options.held_out = {"tank 2"};

@@ -34,7 +34,7 @@ namespace surefoot::effects {
 
 [[gnu::cold]] inline Effect overflow_spill() {
   return {.name = "overflow",
-          .sentence = "{at} overflows at {level}, and {share} of what is lost arrives elsewhere",
+          .sentence = "{at} overflows at {level}, and a share of {share} of what is lost arrives elsewhere",
           .place = Place::state,
           .parameters = parameters_of({{.name = "level",
                                         .measure = {.value = 1},

@@ -14,6 +14,7 @@ namespace surefoot::diagnosis {
 struct ClockFault {
   LogFaultKind kind = LogFaultKind::offset;
   std::vector<double> amounts;
+  bool decisive = true;  // false: more than chance, but no more than physics that is missing might make of it
 };
 
 /// Whether recordings of this fit have clocks that can be compared.

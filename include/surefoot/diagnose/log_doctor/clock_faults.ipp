@@ -240,8 +240,8 @@ SUREFOOT_ONCE bool beats_own_parameters(const LogDoctorInputs& inputs, const Log
   return mean_square(resimulate(fit, r, cured).residuals, fit.size) < mean_square(own.residuals.front(), fit.size);
 }
 
-/// Offsets that differ between all recordings: the error falls much further with each one's own than with a delay that
-/// all have in common.
+/// Offsets that differ between all recordings: the error falls further with each one's own than with a delay that all
+/// have in common, and decisively so unless physics is missing.
 SUREFOOT_ONCE std::optional<ClockFault> differing_offsets(const LogDoctorInputs& inputs, const LogFit& fit,
                                                           const Clocks& clocks) {
   const LogDoctorCriteria& criteria = inputs.criteria;
@@ -252,16 +252,16 @@ SUREFOOT_ONCE std::optional<ClockFault> differing_offsets(const LogDoctorInputs&
   compare_single(delayed.fit, measure_clocks(delayed.fit, LogFaultKind::offset, inputs), LogFaultKind::offset, criteria, single);
   if (single && beats_own_parameters(inputs, delayed.fit, *single)) return single_fault(*single, fit.error.size());
   WithoutOffsets cured = take_offsets_out(inputs, fit, delayed, true);
-  const WithoutOffsets other = take_offsets_out(inputs, fit, logged, true);
-  if (mean_gain(cured.fit, other.fit) > 0) cured = other;
+  WithoutOffsets other = take_offsets_out(inputs, fit, logged, true);
+  if (mean_gain(cured.fit, other.fit) > 0) cured = std::move(other);
   for (const double& amount : cured.amounts) {  // the common delay from several starts: no worse a chance for physics
     WithoutOffsets same{cured.fit, std::vector<double>(fit.error.size(), amount)};
     same.fit = fit_log(inputs, with_amounts(fit, LogFaultKind::offset, same.amounts), cured.fit.hypothesis.parameters);
-    if (mean_gain(delayed.fit, same.fit) > 0) delayed = same;
+    if (mean_gain(delayed.fit, same.fit) > 0) delayed = std::move(same);
   }
   const double gain = mean_gain(delayed.fit, cured.fit);
-  if (!(gain > std::log(criteria.decisive))) return std::nullopt;
-  ClockFault fault{LogFaultKind::offset, cured.amounts};
+  if (!(gain > std::log(criteria.suspect_gain))) return std::nullopt;
+  ClockFault fault{LogFaultKind::offset, cured.amounts, gain > std::log(criteria.decisive)};
   const double middle = median_of(fault.amounts);
   for (double& amount : fault.amounts) amount -= middle;
   return fault;

@@ -15,6 +15,8 @@ namespace surefoot::diagnosis {
 struct LogExamination {
   std::vector<LogFault> faults;
   std::vector<Recording> repaired;  // all recordings, without what could be repaired
+  std::vector<LogFault> suspected = {};           // faults that physics that is missing might pass for, or hide
+  std::vector<Recording> without_suspected = {};  // `repaired` without these too; empty if there are none
 };
 
 LogExamination examine_log(const LogDoctorInputs& inputs, const std::vector<Recording>& recordings);

@@ -24,6 +24,8 @@ struct LogUnderExamination {
   const LogDoctorInputs& inputs;
   LogFit fit;
   std::vector<LogFault> faults;
+  std::vector<LogFault> suspected = {};
+  std::vector<Recording> without_suspected = {};
 
   void add(std::vector<LogFault> more, bool repaired) {
     for (LogFault& fault : more) {
@@ -129,12 +131,18 @@ SUREFOOT_ONCE void examine_clocks(LogUnderExamination& log) {
       return;
     }
     earlier = fault;
-    log.add(describe_fault(log.fit.bound, *fault), true);
+    std::vector<LogFault> named = describe_fault(log.fit.bound, *fault);
     std::vector<Recording> recordings = log.fit.bound.recordings;
     for (std::size_t r = 0; r < recordings.size(); ++r) {
       if (fault->amounts[r] == 0) continue;
       recordings[r] = repaired(log.fit.bound, recordings[r], {.kind = fault->kind, .amount = fault->amounts[r]});
     }
+    if (!fault->decisive) {
+      log.suspected = std::move(named);
+      log.without_suspected = std::move(recordings);
+      return;
+    }
+    log.add(std::move(named), true);
     log.calibrate_again(std::move(recordings));
     const auto off =
         std::count_if(fault->amounts.begin(), fault->amounts.end(), [](double amount) { return amount != 0; });
@@ -149,7 +157,8 @@ SUREFOOT_ONCE LogExamination examine_log(const LogDoctorInputs& inputs, const st
   examine_clocks(log);
   const auto odd = find_odd_recording(inputs, log.fit);
   if (odd && !inputs.stopped()) log.add({describe_fault(log.fit.bound, *odd)}, false);
-  return {std::move(log.faults), std::move(log.fit.bound.recordings)};
+  return {std::move(log.faults), std::move(log.fit.bound.recordings), std::move(log.suspected),
+          std::move(log.without_suspected)};
 }
 
 SUREFOOT_ONCE std::string caution(const std::vector<LogFault>& faults) {

@@ -88,7 +88,9 @@ SUREFOOT_ONCE std::vector<Proposal> proposals_for(const Search& search, const Ev
     if (!used) open.push_back(candidate);
   }
   std::vector<Proposal> proposals = propose(bound, parent.hypothesis, screened, open, problem.known, parallel);
-  drop_items(proposals, [&](const Proposal& one) { return one.distinct < problem.criteria.least_distinct; });
+  drop_items(proposals, [&](const Proposal& one) {
+    return one.distinct < problem.criteria.least_distinct && !(one.gain > problem.criteria.structure_share);
+  });
   return proposals;
 }
 

@@ -45,7 +45,8 @@ struct SelectionCriteria {
   double structure_share = 0.03;  // of their mean square: less is not worth a parameter
 
   // Proposals that get no fit:
-  double least_distinct = 0.01;  // share of a signature beyond the model's parameters: below, they do it
+  double least_distinct = 0.01;  // share of a signature beyond the model's parameters: below, they do it, unless what
+                                 // is left of it is worth a parameter
   double unstructured_proposal_gain =
       0.012;  // share of the squared residuals, if these look like noise: more than chance
 

@@ -48,6 +48,12 @@ std::string hold_sentence(const std::string& input, InputHold hold);
 /// That friction at one of these velocities may have to move the others too.
 std::string moved_together_sentence(const SimulatorInfo& info, const std::vector<int>& velocities);
 
+/// That forces were not tried, for no state is known to be a speed.
+std::string no_speed_sentence();
+
+/// That no more effects were combined than may be, while something is left.
+std::string most_effects_sentence(int most);
+
 /// How to tell the last of the chosen effects from the last of another choice.
 std::string next_experiment(const Hypothesis& chosen, const Hypothesis& other);
 

@@ -148,6 +148,16 @@ SUREFOOT_ONCE std::string moved_together_sentence(const SimulatorInfo& info, con
          "NAME in the rates, C++ by response()); friction at one then moves the others as well";
 }
 
+SUREFOOT_ONCE std::string no_speed_sentence() {
+  return "no state is known to be a speed, so that neither friction nor drag nor another force was tried: where one "
+         "is, say what effort moves it (a model file by effort and effort_unit, C++ by effort() of the simulator)";
+}
+
+SUREFOOT_ONCE std::string most_effects_sentence(int most) {
+  return "as many effects were found as may be combined (" + std::to_string(most) +
+         "), and something is left: max_effects (--max-effects) allows more";
+}
+
 SUREFOOT_ONCE std::string not_held_out_sentence() {
   return "the time was over before parameters were fitted without the held-out recordings: errors on these are those "
          "of recordings that were fitted, and too small";
@@ -226,6 +236,26 @@ SUREFOOT_ONCE std::string tie_sentence(const std::vector<std::string>& ties) {
   return text + (ties.size() > most ? "; or from others." : ".");
 }
 
+/// Of structures that were not chosen, the one whose predictions come clearly nearest; empty if there is none.
+SUREFOOT_ONCE std::string nearest_sentence(const Diagnosis& diagnosis) {
+  constexpr double clearly = 0.8;  // of the error without effects
+  const Alternative* nearest = nullptr;
+  double least = clearly * diagnosis.held_out_before;
+  for (const Alternative& one : diagnosis.alternatives) {
+    if (!(one.held_out_rmse < least)) continue;
+    least = one.held_out_rmse;
+    nearest = &one;
+  }
+  if (nearest == nullptr) return "";
+  std::vector<std::string> names;
+  for (const auto& [name, place] : nearest->effects) {
+    names.push_back(name + " at " + place);
+    std::replace(names.back().begin(), names.back().begin() + static_cast<std::ptrdiff_t>(name.size()), '_', ' ');
+  }
+  return " What comes nearest is " + in_list(names) + ": with that the error on held-out recordings would fall by " +
+         in_digits(100 * (1 - least / diagnosis.held_out_before)) + " %, but too few of them show it to be sure.";
+}
+
 SUREFOOT_ONCE std::string verdict_sentence(const Diagnosis& diagnosis, const std::vector<std::string>& ties) {
   std::vector<std::string> effects;
   for (const FoundEffect& effect : diagnosis.effects) effects.push_back(effect.sentence);
@@ -252,7 +282,8 @@ SUREFOOT_ONCE std::string verdict_sentence(const Diagnosis& diagnosis, const std
   text += ".";
   if (!effects.empty()) return text + gain_sentence(diagnosis) + beyond_noise_sentence(diagnosis) + tie_sentence(ties);
   const std::string noise = against_noise(diagnosis);
-  return text + (noise.empty() ? "" : " Its error is " + noise + ".") + beyond_noise_sentence(diagnosis);
+  return text + (noise.empty() ? "" : " Its error is " + noise + ".") + beyond_noise_sentence(diagnosis) +
+         nearest_sentence(diagnosis);
 }
 
 }  // namespace surefoot::diagnosis

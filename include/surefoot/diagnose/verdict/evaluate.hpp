@@ -39,8 +39,8 @@ ForestResidual offer_forest(const EstimationSetup& setup, const FittedModel& cho
                             const Parallel& parallel, std::uint64_t seed, const EvaluationCriteria& criteria = {});
 
 /// Standard deviation of the noise of one output: as stated; or, where it is not, the part of the `residuals` of
-/// the median recording that no lag predicts, and at least what differs from row to row. Never more than the `error` of
-/// the model.
+/// the median recording that no lag predicts, at least what differs from row to row and at most four times that (an
+/// autoregression that keeps 0.9). Never more than the `error` of the model.
 double output_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings, Eigen::Index output,
                     const WhitenessTest& residuals, double error);
 

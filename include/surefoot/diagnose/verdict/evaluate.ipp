@@ -101,11 +101,14 @@ SUREFOOT_ONCE ForestResidual offer_forest(const EstimationSetup& setup, const Fi
 SUREFOOT_ONCE double output_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
                                   Eigen::Index output, const WhitenessTest& residuals, double error) {
   constexpr double significance = 0.01;  // of structure in the residuals
+  constexpr double remembering = 4;      // times as large as what differs from row to row: noise of which 0.9 remains
   const double stated = bound.info.outputs[static_cast<std::size_t>(output)].noise;
   if (stated > 0) return stated;
   const double structured = residuals.p_value < significance ? residuals.predicted : 0;
   const double unpredictable = residuals.typical * std::sqrt(1 - structured);
-  return std::min(std::max(fast_noise(bound, recordings, output), unpredictable), error);
+  const double fast = fast_noise(bound, recordings, output);
+  const double most = fast > 0 ? remembering * fast : unpredictable;  // 0: a coarse sensor that rarely moves
+  return std::min(std::max(fast, std::min(unpredictable, most)), error);
 }
 
 /// The same where noise adds up from row to row: as stated, or as far as it is fast.

@@ -9,6 +9,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/selection/choose_initial_states.hpp"
 #include "surefoot/diagnose/verdict/examine_recordings.hpp"
 
@@ -16,7 +17,7 @@ namespace surefoot::diagnosis {
 
 SUREFOOT_ONCE std::vector<Effect> nameable_effects(const DiagnoseOptions& options) {
   std::vector<Effect> effects = all_effects();
-  effects.insert(effects.end(), options.more_effects.begin(), options.more_effects.end());
+  append_items(effects, options.more_effects);
   return effects;
 }
 
@@ -74,8 +75,8 @@ SUREFOOT_ONCE LogExamination examine_with_effects(const BindSimulator& bind, con
 }
 
 SUREFOOT_ONCE bool is_named_again(const std::vector<LogFault>& repaired, const std::vector<LogFault>& named) {
-  return std::any_of(repaired.begin(), repaired.end(), [&](const LogFault& one) {
-    return std::any_of(named.begin(), named.end(), [&](const LogFault& other) {
+  return holds_for_any(repaired, [&](const LogFault& one) {
+    return holds_for_any(named, [&](const LogFault& other) {
       return one.kind == other.kind && one.recording == other.recording && one.channel == other.channel;
     });
   });
@@ -83,7 +84,7 @@ SUREFOOT_ONCE bool is_named_again(const std::vector<LogFault>& repaired, const s
 
 SUREFOOT_ONCE bool withdraw_faults(LogExamination& log, const LogExamination& again, bool can_begin_anew) {
   bool repaired = false;
-  std::erase_if(log.faults, [&](const LogFault& fault) {
+  drop_items(log.faults, [&](const LogFault& fault) {
     const bool withdrawn = !is_named_again({fault}, again.faults) && (can_begin_anew || !fault.repaired);
     repaired = repaired || (withdrawn && fault.repaired);
     return withdrawn;

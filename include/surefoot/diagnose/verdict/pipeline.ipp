@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <tuple>
@@ -18,6 +19,7 @@
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/growing_horizon.hpp"
 #include "surefoot/diagnose/estimation/instability.hpp"
+#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/standard_errors.hpp"
 #include "surefoot/diagnose/log_doctor/reading_faults.hpp"
@@ -48,11 +50,11 @@ SUREFOOT_ONCE std::vector<Remark> screen_recordings(const SimulatorInfo& info, s
   for (Recording& recording : recordings) {
     check_recording(info, recording);
     const auto outliers = remove_outliers(info, recording);
-    remarks.insert(remarks.end(), outliers.begin(), outliers.end());
+    append_items(remarks, outliers);
   }
   check_readings(info, recordings);
   const auto screened = screen(info, recordings);
-  remarks.insert(remarks.end(), screened.begin(), screened.end());
+  append_items(remarks, screened);
   int lost = 0;
   for (const Recording& recording : recordings) lost += lost_rows(recording);
   if (lost > 0 && !info.inputs.empty() && info.kind == SimulatorKind::ode) {
@@ -173,6 +175,13 @@ SUREFOOT_ONCE double least_of_others(const Selection& selection, const Diagnosis
   return std::fmin(least, diagnosis.held_out_forest);
 }
 
+/// Whether inputs drive states none of which forces may act on.
+SUREFOOT_ONCE bool no_speed_is_known(const BoundSimulator& bound) {
+  const SimulatorInfo& info = bound.info;
+  const bool driven = info.kind == SimulatorKind::ode && !info.inputs.empty() && !info.planar;
+  return driven && !holds_for_any(bound.structure.velocity, [](bool is) { return is; });
+}
+
 SUREFOOT_ONCE void evaluate_selection(const EstimationSetup& setup, const Calibration& calibration,
                                       const SearchProblem& problem, const Selection& selection,
                                       const std::vector<AttachedEffect>& candidates, const RunContext& run,
@@ -209,6 +218,11 @@ SUREFOOT_ONCE void evaluate_selection(const EstimationSetup& setup, const Calibr
   if (diagnosis.verdict == Verdict::unexplained) {
     const std::vector<int>& together = setup.bound.structure.moved_together;
     if (!together.empty()) diagnosis.remarks.push_back({"", moved_together_sentence(setup.bound.info, together)});
+    if (no_speed_is_known(setup.bound)) diagnosis.remarks.push_back({"", no_speed_sentence()});
+    const bool as_many_as_may_be = static_cast<int>(diagnosis.effects.size()) >= run.options.max_effects;
+    if (!diagnosis.effects.empty() && as_many_as_may_be) {
+      diagnosis.remarks.push_back({"", most_effects_sentence(run.options.max_effects)});
+    }
     return;  // what is left of it would pass for noise
   }
   diagnosis.noise_findings = find_noise(setup.bound, choice.chosen.hypothesis, training, setup.noise, run.parallel);
@@ -281,12 +295,40 @@ SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vec
   return {selection.chosen.hypothesis, setup.bound.sizes, setup.bound.integration.inputs, setup.freed};
 }
 
+/// Suspected faults are true if the model with what is found without them names them beyond doubt in the recordings as
+/// they were logged. Then `log` holds them, and this is the diagnosis without them. What was suspected in vain may take
+/// half of the time.
+SUREFOOT_ONCE std::optional<Diagnosis> diagnose_without_suspected(const BindSimulator& bind,
+                                                                  const std::vector<Recording>& logged,
+                                                                  LogExamination& log,
+                                                                  const std::vector<Remark>& remarks,
+                                                                  const RunContext& run) {
+  constexpr double share = 0.5;  // of the time that is left
+  if (log.suspected.empty()) return std::nullopt;
+  DiagnoseOptions options = run.options;
+  options.max_seconds = (1 - share) * run.seconds() + share * options.max_seconds;
+  const RunContext part{options, run.parallel, run.seed, run.stop, run.began};
+  Diagnosis diagnosis;
+  diagnosis.remarks = remarks;
+  const FoundModel found = diagnose_recordings(bind, log.without_suspected, part, diagnosis);
+  if (run.search_has_ended()) return std::nullopt;
+  LogExamination again = examine_with_effects(bind, logged, found, run);
+  if (!is_named_again(log.suspected, again.faults)) return std::nullopt;
+  log = std::move(again);
+  diagnosis.log_faults = log.faults;
+  return diagnosis;
+}
+
 /// Stages after the log was examined. What was found shows more faults: with these repaired all begins anew, if there
 /// is time for as much again.
 SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, const std::vector<Recording>& logged,
                                                    LogExamination log, const std::vector<Remark>& remarks,
                                                    const RunContext& run) {
-  bool begins_anew = false, confirmed = false;
+  bool begins_anew = false;
+  const double examined = run.seconds();
+  const std::optional<Diagnosis> without_suspected = diagnose_without_suspected(bind, logged, log, remarks, run);
+  bool confirmed = without_suspected.has_value();
+  if (confirmed && run.options.repair && !run.has_time_for_as_much_again(examined)) return *without_suspected;
   while (true) {
     const double started = run.seconds();
     const std::vector<LogFault> considered = log.faults;
@@ -305,7 +347,7 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
     if (named_again) {
       log = examine_with_effects(bind, logged, found, run);
     } else if (!more.faults.empty()) {
-      log.faults.insert(log.faults.end(), more.faults.begin(), more.faults.end());
+      append_items(log.faults, more.faults);
       log.repaired = std::move(more.repaired);
     }
     if (begins_anew) continue;
