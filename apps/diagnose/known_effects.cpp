@@ -31,9 +31,8 @@ std::optional<surefoot::NamedEffect> in_order(const ModelEffect& effect, const s
 }
 
 surefoot::NamedEffect known_effect(const ModelEffect& effect, const std::vector<surefoot::Effect>& library) {
-  std::vector<std::string> names, forms, parameters;
+  std::vector<std::string> forms, parameters;
   for (const surefoot::Effect& known : library) {
-    if (std::ranges::find(names, known.name) == names.end()) names.push_back(known.name);
     if (known.name != effect.name) continue;
     forms.push_back(known.form.empty() ? "no form" : known.form);
     if (known.form != effect.form) continue;
@@ -42,7 +41,8 @@ surefoot::NamedEffect known_effect(const ModelEffect& effect, const std::vector<
     for (const surefoot::EffectParameter& wanted : known.parameters) parameters.push_back(wanted.name);
   }
   const auto fail = [&effect](const std::string& what) { throw surefoot::DiagnoseError(effect.place + ": " + what); };
-  if (forms.empty()) fail("there is no effect " + in_quotes(effect.name) + suggestion(effect.name, names));
+  if (forms.empty())
+    fail("there is no effect " + in_quotes(effect.name) + suggestion(effect.name, names_of_effects(library)));
   if (parameters.empty()) {
     fail("the effect " + in_quotes(effect.name) + " has no form " + in_quotes(effect.form) + "; there is " +
          listed(forms));
@@ -53,6 +53,14 @@ surefoot::NamedEffect known_effect(const ModelEffect& effect, const std::vector<
 }
 
 }  // namespace
+
+std::vector<std::string> names_of_effects(const std::vector<surefoot::Effect>& library) {
+  std::vector<std::string> names;
+  for (const surefoot::Effect& effect : library) {
+    if (std::ranges::find(names, effect.name) == names.end()) names.push_back(effect.name);
+  }
+  return names;
+}
 
 std::vector<surefoot::NamedEffect> known_effects(const ModelFile& model, const std::vector<surefoot::Effect>& library) {
   std::vector<surefoot::NamedEffect> result;

@@ -22,10 +22,7 @@ namespace diagnose_program {
 namespace {
 
 void check_effects(const std::vector<std::string>& wanted) {
-  std::vector<std::string> names;
-  for (const surefoot::Effect& effect : surefoot::all_effects()) {
-    if (std::ranges::find(names, effect.name) == names.end()) names.push_back(effect.name);
-  }
+  const std::vector<std::string> names = names_of_effects(surefoot::all_effects());
   for (const std::string& name : wanted) {
     if (std::ranges::find(names, name) != names.end()) continue;
     throw surefoot::DiagnoseError("--effects: there is no effect called " + in_quotes(name) + suggestion(name, names));
