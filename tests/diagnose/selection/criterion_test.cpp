@@ -19,6 +19,7 @@
 #include "surefoot/diagnose/effects/hysteresis.hpp"
 #include "surefoot/diagnose/effects/not_settled.hpp"
 #include "surefoot/diagnose/effects/quadratic_drag.hpp"
+#include "surefoot/diagnose/effects/quantization.hpp"
 #include "surefoot/diagnose/effects/sensor_bias.hpp"
 #include "surefoot/diagnose/effects/sensor_delay.hpp"
 #include "surefoot/diagnose/effects/sensor_drift.hpp"
@@ -132,6 +133,9 @@ TEST_CASE("what acts on the same, along a coupling, or is like another effect ma
                  attached(effects::cubic_stiffness_coupling(), 4, "belt")));
   CHECK_FALSE(may_mend(friction, attached(effects::constant_force(), 1, "w")));  // a constant has no form
   CHECK_FALSE(may_mend(attached(effects::sensor_drift(), 0, "y"), attached(effects::sensor_bias(), 0, "y")));
+  const AttachedEffect drift = attached(effects::sensor_drift(), 0, "y");
+  CHECK(may_mend(attached(effects::sensor_bias(), 0, "y"), drift));
+  CHECK_FALSE(may_mend(attached(effects::quantization(), 0, "y"), drift));  // its steps show in the readings
 }
 
 TEST_CASE("the scale of a recording is its own in part: errors that differ from one to the next are no worse for it") {

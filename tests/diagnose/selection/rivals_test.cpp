@@ -56,5 +56,33 @@ TEST_CASE("what an effect may be confused with is tried in its place, beside the
   CHECK(same.size() == 1);
 }
 
+TEST_CASE("a rival is weighed with the steps that it needs, and all go on with these only if it is better then") {
+  const TankBench bench({rate_in_tank});
+  const EvaluatedHypothesis rate = bench.with({"constant_rate"}), drift = bench.with({"sensor_drift"});
+  const auto coarse = [&](double residual) {
+    Search search = bench.search();
+    search.problem.fit.integration = {.order = 2, .step = 0.07};  // rows are 0.05 s long
+    search.problem.fit.weighting.sigma[0] = residual;
+    return search;
+  };
+  const auto is_finer = [](const Search& search) {
+    const Integration& now = search.problem.fit.integration;
+    return now.order > 2 || now.step < 0.07;
+  };
+  std::vector<EvaluatedHypothesis> pool{drift};
+  Search fine = coarse(1e-6), enough = coarse(1), worse = coarse(1e-6);
+  weigh_with_its_own_steps(fine, rate, drift, pool);
+  CHECK(is_finer(fine));
+  CHECK(names_in(pool[best_of(pool, bench.problem.criteria)]) == "constant_rate");
+  pool = {drift};
+  weigh_with_its_own_steps(enough, rate, drift, pool);
+  CHECK_FALSE(is_finer(enough));
+  CHECK(pool.size() == 1);
+  pool = {rate};
+  weigh_with_its_own_steps(worse, drift, rate, pool);
+  CHECK_FALSE(is_finer(worse));
+  CHECK(pool.size() == 1);
+}
+
 }  // namespace
 }  // namespace surefoot::diagnosis

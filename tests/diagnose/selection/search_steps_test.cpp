@@ -46,9 +46,10 @@ TEST_CASE("an input that was found not to be held is held again where nothing ne
 TEST_CASE("what an earlier search found is taken up, with its rivals") {
   const TankBench bench({rate_in_tank});
   std::vector<EvaluatedHypothesis> pool{bench.with({})};
-  take_up(bench.search(), {}, pool);
+  Search search = bench.search();
+  take_up(search, {}, pool);
   CHECK(pool.size() == 1);
-  take_up(bench.search(), {bench.start({"constant_rate"})}, pool);
+  take_up(search, {bench.start({"constant_rate"})}, pool);
   CHECK(names_in(pool[best_of(pool, bench.problem.criteria)]) == "constant_rate");
   CHECK(pool.size() > 1);
 }

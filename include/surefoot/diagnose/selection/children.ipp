@@ -95,7 +95,6 @@ SUREFOOT_ONCE std::vector<Proposal> proposals_for(const Search& search, const Ev
 }
 
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> finished(const Search& search, std::vector<Fit> fits, std::size_t keep) {
-  constexpr std::uint64_t scatter_seed = 1;
   const auto& [bound, problem, candidates, parallel] = search;
   drop_items(fits, [](const Fit& one) { return !one.ok; });
   const auto keep_best = [&](std::size_t count) {
@@ -115,21 +114,9 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> finished(const Search& search, st
   parallel(fits.size(), [&](std::size_t i) {
     if (!problem.stopped()) fits[i] = fit(bound, fits[i].hypothesis, problem.fit, serially());
   });
-  // what is missing may have pushed the calibrated parameters where no fit finds back from; not if one leaves noise
-  // only
-  const auto least =
-      std::min_element(fits.begin(), fits.end(), [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
-  const bool scatter = problem.scatter && least != fits.end() &&
-                       least->hypothesis.effects.size() == problem.known + 1 &&
-                       problem.structured(least->hypothesis, problem.fit);
   std::vector<EvaluatedHypothesis> evaluated(fits.size());
   parallel(fits.size(), [&](std::size_t i) {
-    Fit& one = fits[i];
-    if (scatter && !problem.stopped()) {
-      one = scattered_fit(bound, one, one.hypothesis, problem.fit, problem.effort.scattered_points, scatter_seed,
-                          serially());
-    }
-    if (!problem.stopped()) evaluated[i] = evaluate_fit(bound, one, problem, serially());
+    if (!problem.stopped()) evaluated[i] = evaluate_fit(bound, fits[i], problem, serially());
   });
   drop_items(evaluated, [](const EvaluatedHypothesis& one) { return one.errors.empty(); });
   return evaluated;

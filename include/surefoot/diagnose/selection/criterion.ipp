@@ -199,13 +199,14 @@ SUREFOOT_ONCE bool may_be_confused(const Effect& a, const Effect& b) {
 
 SUREFOOT_ONCE bool is_like(const Effect& a, const Effect& b) { return a.name == b.name || may_be_confused(a, b); }
 
-/// Whether an effect may make up for the form of another one that the machine has otherwise.
+/// Whether an effect may make up for the form of another one that the machine has otherwise. What readings themselves
+/// show, as that they come in steps, does not.
 SUREFOOT_ONCE bool may_mend_form_of(const AttachedEffect& one, const AttachedEffect& other) {
   const Effect &a = *one.effect, &b = *other.effect;
   const auto forces = [](const Effect& effect) { return effect.place == Place::velocity || effect.needs_coupling; };
   const bool on_same = a.place == b.place && one.at == other.at;
   const bool along_coupling = (a.needs_coupling || b.needs_coupling) && forces(a) && forces(b);
-  return !b.is_constant && (on_same || along_coupling || is_like(a, b));
+  return !b.is_constant && !a.needs_suggestion && (on_same || along_coupling || is_like(a, b));
 }
 
 SUREFOOT_ONCE bool may_mend_form(const Hypothesis& larger, const Hypothesis& smaller) {

@@ -1,5 +1,4 @@
-// Growth of the pool of structures: the best of them are each extended by a further effect, or by a pair where no
-// single one is worth its parameters. Weights follow what the best one so far leaves.
+// Growth of the pool of structures: the best of them are each extended, until that makes none better.
 #pragma once
 
 #include <vector>
@@ -8,45 +7,6 @@
 #include "surefoot/diagnose/selection/criterion.hpp"
 
 namespace surefoot::diagnosis {
-
-/// Puts a hypothesis into the pool, in the place of another form of the same structure if it is better or leaves no
-/// more with fewer parameters; true if it went in.
-bool keep_best_form(std::vector<EvaluatedHypothesis>& pool, const EvaluatedHypothesis& one,
-                    const SelectionCriteria& criteria);
-
-/// Weights residuals of further fits by what a hypothesis leaves of each output and recording, and screens proposals on
-/// the recordings that show this best.
-void reweight(Search& search, const EvaluatedHypothesis& best);
-
-/// What effects explain shows smaller errors of the integration, which would pass for further effects: chooses it anew
-/// for what a hypothesis leaves; true if it is finer now.
-bool refine_integration(Search& search, const EvaluatedHypothesis& best);
-
-/// Whether a hypothesis leaves more than noise: what leaves only noise needs no second effect, nor another start.
-bool leaves_structure(const Search& search, const EvaluatedHypothesis& one);
-
-/// A hypothesis, fitted and evaluated again.
-EvaluatedHypothesis refitted(const Search& search, const Hypothesis& one);
-
-/// Richer forms for the best structures, none of them `hopeless` behind the best [nat].
-void enrich(const Search& search, std::vector<EvaluatedHypothesis>& pool, double hopeless);
-
-/// The children of one parent into the pool of children; no fits for what cannot come near the best structure so far.
-void extend(const Search& search, const EvaluatedHypothesis& parent, const EvaluatedHypothesis& best,
-            std::vector<EvaluatedHypothesis>& children);
-
-/// The children of the model without effects, but with the parameters and initial states of `start`: what is missing
-/// may have pushed the calibrated ones where no fit finds back from, and where signatures look otherwise. With a `best`
-/// structure so far, only what could come near it.
-std::vector<EvaluatedHypothesis> extended_from(Search search, Hypothesis start, const EvaluatedHypothesis* best);
-
-/// The same under guidance (guided_fit.hpp): signatures and first fits along the readings, wherever the calibrated
-/// model has run to, and at the end fits of whole recordings.
-std::vector<EvaluatedHypothesis> extended_under_guidance(const Search& search);
-
-/// Where first effects leave more than noise: the best from places around, first effects under guidance and from the
-/// nominal parameters on, and pairs of the best.
-void begin_elsewhere(Search search, std::vector<EvaluatedHypothesis>& children);
 
 /// Whether the rival explanation of the problem does better than the best of a pool of first effects.
 bool yields(const Search& search, const std::vector<EvaluatedHypothesis>& pool);
@@ -69,13 +29,6 @@ void add_with_smaller(const Search& search, const EvaluatedHypothesis& one, std:
 /// effect that does nothing, and those far behind, are not extended, nor is what was before, which `done` keeps, with
 /// the same recordings and integration.
 void grow(Search& search, std::vector<EvaluatedHypothesis>& pool, std::vector<Hypothesis>& done);
-
-/// The best structures, and the model without effects, fitted and evaluated with the present weights and recordings.
-std::vector<EvaluatedHypothesis> fitted_again(const Search& search, const std::vector<EvaluatedHypothesis>& pool);
-
-/// Fits the best of a pool from places around, with a growing horizon and under guidance, where they leave more than
-/// noise: another effect would only mend a fit that ended in a valley.
-void try_around(const Search& search, std::vector<EvaluatedHypothesis>& pool);
 
 /// A structure without each of its effects in turn, fitted from its parameters on; none for a single effect.
 std::vector<EvaluatedHypothesis> smaller(const Search& search, const EvaluatedHypothesis& whole);

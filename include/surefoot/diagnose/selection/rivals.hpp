@@ -15,6 +15,12 @@ void swap_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool);
 /// that are limited are no limited speed and turn, but neither one of them is better alone.
 void swap_pairs_of_inputs(const Search& search, std::vector<EvaluatedHypothesis>& pool);
 
+/// A rival of the best structure, which may need finer steps than that one to show what it is worth: where it is better
+/// with these, all of the pool is simulated so from then on. Cost: what choosing steps for the rival takes, and two
+/// fits where they are finer.
+void weigh_with_its_own_steps(Search& search, const EvaluatedHypothesis& rival, const EvaluatedHypothesis& best,
+                              std::vector<EvaluatedHypothesis>& pool);
+
 /// Puts other effects in the place of each of the best structure, beside the parameters that were found with it: those
 /// it may be confused with, its other forms, and itself elsewhere. Where the search began the parameters were so far
 /// off that a right effect may have looked like the wrong one.

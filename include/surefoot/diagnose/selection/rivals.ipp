@@ -11,7 +11,8 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
-#include "surefoot/diagnose/selection/grow.hpp"
+#include "surefoot/diagnose/selection/extend.hpp"
+#include "surefoot/diagnose/selection/first_effects.hpp"
 #include "surefoot/diagnose/selection/richer_forms.hpp"
 #include "surefoot/diagnose/selection/rivals.hpp"
 
@@ -65,8 +66,20 @@ SUREFOOT_ONCE void swap_pairs_of_inputs(const Search& search, std::vector<Evalua
   }
 }
 
-/// The other forms of an effect of the best structure, some of which may need finer steps than that one to show what
-/// they are worth: where they do, all of the pool is simulated with these.
+SUREFOOT_ONCE void weigh_with_its_own_steps(Search& search, const EvaluatedHypothesis& rival,
+                                            const EvaluatedHypothesis& best, std::vector<EvaluatedHypothesis>& pool) {
+  const SelectionCriteria& criteria = search.problem.criteria;
+  Search fine = search;
+  if (search.problem.stopped() || !refine_integration(fine, rival)) return;
+  const EvaluatedHypothesis again = refitted(fine, rival.hypothesis), before = refitted(fine, best.hypothesis);
+  const bool form = same_structure(again.hypothesis, before.hypothesis);
+  if (!((form ? log_odds_of_forms(again, before, criteria) : log_odds(again, before, criteria)) > 0)) return;
+  search.problem.fit.integration = fine.problem.fit.integration;
+  pool = fitted_again(search, pool);
+  keep_best_form(pool, again, criteria);
+}
+
+/// The other forms of an effect of the best structure.
 SUREFOOT_ONCE void try_other_forms(Search& search, const EvaluatedHypothesis& best, std::size_t e,
                                    std::vector<EvaluatedHypothesis>& pool) {
   const SearchProblem& problem = search.problem;
@@ -76,13 +89,7 @@ SUREFOOT_ONCE void try_other_forms(Search& search, const EvaluatedHypothesis& be
   enrich(search, others, std::numeric_limits<double>::infinity());
   for (const EvaluatedHypothesis& one : others) {
     keep_best_form(pool, one, problem.criteria);
-    Search fine = search;
-    if (!structured || problem.stopped() || !refine_integration(fine, one)) continue;
-    const EvaluatedHypothesis again = refitted(fine, one.hypothesis), before = refitted(fine, best.hypothesis);
-    if (!(log_odds_of_forms(again, before, problem.criteria) > 0)) continue;
-    search.problem.fit.integration = fine.problem.fit.integration;
-    pool = fitted_again(search, pool);
-    keep_best_form(pool, again, problem.criteria);
+    if (structured) weigh_with_its_own_steps(search, one, best, pool);
   }
 }
 
@@ -91,8 +98,7 @@ SUREFOOT_ONCE void try_confusable(Search& search, std::vector<EvaluatedHypothesi
   for (std::size_t e = search.problem.known; e < chosen.hypothesis.effects.size() && !search.problem.stopped(); ++e) {
     try_other_forms(search, chosen, e, pool);
   }
-  SearchProblem problem = search.problem;
-  problem.scatter = false;  // the parameters are near enough
+  const SearchProblem problem = search.problem;
   const EvaluatedHypothesis best = pool[best_of(pool, problem.criteria)];
   for (std::size_t e = problem.known; e < best.hypothesis.effects.size() && !problem.stopped(); ++e) {
     const AttachedEffect& found = best.hypothesis.effects[e];
@@ -108,7 +114,10 @@ SUREFOOT_ONCE void try_confusable(Search& search, std::vector<EvaluatedHypothesi
       std::vector<EvaluatedHypothesis> fitted =
           next_effects(among, rest, proposals_for(among, rest), rivals.size(), problem.effort.compared_finalists);
       enrich(search, fitted, std::numeric_limits<double>::infinity());
-      for (const EvaluatedHypothesis& one : fitted) keep_best_form(pool, one, problem.criteria);
+      for (const EvaluatedHypothesis& one : fitted) {
+        keep_best_form(pool, one, problem.criteria);
+        weigh_with_its_own_steps(search, one, best, pool);
+      }
     }
   }
 }

@@ -37,7 +37,7 @@ bool take_back_holds(Search& search, std::vector<EvaluatedHypothesis>& pool);
 
 /// Into a pool that holds the model without effects what an earlier search found, fitted again, and first effects that
 /// come near the best of it.
-void take_up(const Search& search, const std::vector<Hypothesis>& begun, std::vector<EvaluatedHypothesis>& pool);
+void take_up(Search& search, const std::vector<Hypothesis>& begun, std::vector<EvaluatedHypothesis>& pool);
 
 /// The whole search, from a fitted hypothesis without effects and from `begun`, what an earlier search found.
 Selection select_effects(const BoundSimulator& bound, const Fit& calibrated, SearchProblem problem,

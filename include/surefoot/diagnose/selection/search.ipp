@@ -12,6 +12,7 @@
 #include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
+#include "surefoot/diagnose/selection/extend.hpp"
 #include "surefoot/diagnose/selection/grow.hpp"
 #include "surefoot/diagnose/selection/predictions.hpp"
 #include "surefoot/diagnose/selection/rivals.hpp"
@@ -98,7 +99,7 @@ SUREFOOT_ONCE bool take_back_holds(Search& search, std::vector<EvaluatedHypothes
   return changed;
 }
 
-SUREFOOT_ONCE void take_up(const Search& search, const std::vector<Hypothesis>& begun,
+SUREFOOT_ONCE void take_up(Search& search, const std::vector<Hypothesis>& begun,
                            std::vector<EvaluatedHypothesis>& pool) {
   if (begun.empty()) return;
   const SelectionCriteria& criteria = search.problem.criteria;
