@@ -104,14 +104,7 @@ TEST_CASE("the best structures are fitted again, always with the model without e
 
 TEST_CASE("a first effect is settled with the inputs and steps that it needs before it is given a second one") {
   TankBench bench({rate_in_tank});
-  Rng rng(2);
-  Integration straight;
-  straight.inputs = {InputHold::linear};
-  for (Recording& recording : bench.bound.recordings) {
-    recording.outputs =
-        simulate_augmented(toys::LeakyTank{}, toys::machine({1, 1}, {rate_in_tank}, straight), recording).outputs;
-    for (double& level : recording.outputs.reshaped()) level += 0.01 * rng.normal();
-  }
+  bench.read_with_straight_inputs({rate_in_tank});
   Search search = bench.search();
   search.problem.structured = [](const Hypothesis&, const FitProblem& fit) {
     return fit.integration.inputs.empty() || fit.integration.inputs[0] != InputHold::linear;

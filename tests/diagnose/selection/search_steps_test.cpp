@@ -29,14 +29,7 @@ TEST_CASE("an input that was found not to be held is held again where nothing ne
   CHECK(names_in(pool[best_of(pool, bench.problem.criteria)]) == "constant_rate");
   CHECK_FALSE(take_back_holds(search, pool));
 
-  Rng rng(2);
-  Integration straight;
-  straight.inputs = {InputHold::linear};
-  for (Recording& recording : bench.bound.recordings) {
-    recording.outputs =
-        simulate_augmented(toys::LeakyTank{}, toys::machine({1, 1}, {rate_in_tank}, straight), recording).outputs;
-    for (double& level : recording.outputs.reshaped()) level += 0.01 * rng.normal();
-  }
+  bench.read_with_straight_inputs({rate_in_tank});
   Search needed = bench.search();
   std::vector<EvaluatedHypothesis> as_it_is{bench.with({}), bench.with({"constant_rate"})};
   CHECK_FALSE(take_back_holds(needed, as_it_is));
