@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
-#include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/selection/children.hpp"

@@ -189,8 +189,6 @@ SUREFOOT_ONCE void extend(Search& search, const EvaluatedHypothesis& parent, con
     if (settle_alone(search, children)) return;
     if (problem.scatter) fit_from_everywhere(search, children);
     if (!children.empty() && explains(search, children[best_of(children, problem.criteria)])) return;
-  }
-  if (first) {
     for (const EvaluatedHypothesis& child : next_tied_pairs(search, parent, proposals, effort.pairs)) {
       keep_best_form(children, child, problem.criteria);
     }
