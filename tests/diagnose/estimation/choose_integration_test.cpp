@@ -39,6 +39,24 @@ TEST_CASE("the error of an integration that is chosen is small against the resid
   }
 }
 
+TEST_CASE("fits that are only compared are integrated as coarsely as a quarter of the residuals allows") {
+  const BoundSimulator bound = bind_simulator(toys::LeakyTank{}, {toys::tank_recording(0, 100)});
+  const Hypothesis nominal = nominal_hypothesis(bound);
+  const auto error_of = [&](const Integration& one) {
+    const SimulatedRun run = simulate(bound, nominal, 0, one), exact = simulate(bound, nominal, 0, {.step = 0.001});
+    return root_mean_square(run.outputs.row(0) - exact.outputs.row(0));
+  };
+  const Integration coarsest = chosen(0.1, 1);
+  const double size = 10 * error_of(coarsest);
+  const auto [fitting, screening] = choose_integrations(bound, nominal, Vec<1>(size), {}, {0}, serially());
+  CHECK(is_finer(fitting, screening));
+  CHECK(screening.order == coarsest.order);
+  CHECK(screening.step == coarsest.step);
+  const auto small = choose_integrations(bound, nominal, Vec<1>(size / 10), {}, {0}, serially());
+  CHECK(is_finer(small.screening, screening));
+  CHECK(error_of(small.screening) < 0.3 * size / 10);
+}
+
 TEST_CASE("the integration is fine enough for the recording that needs it most, wherever it stands") {
   Recording calm = toys::tank_recording(0, 100), lively = calm;
   calm.initial.setZero();

@@ -83,6 +83,25 @@ TEST_CASE("a start that is too bold to be simulated is followed by a weak one") 
   CHECK(fitted.hypothesis.values[0][0] == doctest::Approx(0.2).epsilon(0.1));
 }
 
+TEST_CASE("what cannot grow from nothing goes on from the start that leaves least when all else is settled") {
+  const TankBench bench({rate_in_tank});
+  Effect valley = effects::constant_rate();  // at 0.2, of which nothing is seen from below 0.1
+  valley.parameters[0].strength = false;
+  valley.force = [](const EffectContext&, Values p, Values) { return p[0] < 0.1 ? 0.0 : p[0]; };
+  Proposal one = proposals_without_effects(bench).at(0);
+  one.effect.effect = std::make_shared<const Effect>(valley);
+  const auto fitted_from = [&](double start, double other) {
+    one.start[0] = start;
+    one.more_starts = {one.start};
+    one.more_starts[0][0] = other;
+    return fit_child(bench.bound, bench.with({}).hypothesis, {one}, bench.problem);
+  };
+  for (const Fit& fitted : {fitted_from(0.05, 0.3), fitted_from(0.3, 0.05)}) {
+    REQUIRE(fitted.ok);
+    CHECK(fitted.hypothesis.values[0][0] == doctest::Approx(0.2).epsilon(0.1));
+  }
+}
+
 TEST_CASE("of all children the best are finished, and what cannot be simulated is given up") {
   const TankBench bench({rate_in_tank});
   std::vector<std::vector<Proposal>> additions{{explosion()}};

@@ -278,6 +278,19 @@ TEST_CASE("structures are the same with their effects in another order or form, 
   CHECK_FALSE(same_structure(one, {}));
 }
 
+TEST_CASE("effects are the same in the same forms, in any order") {
+  Hypothesis one, other;
+  one.effects = {named_at("lag", "", "valve"), named_at("leak", "", "level")};
+  other.effects = {one.effects[1], one.effects[0]};
+  CHECK(same_effects(one, other));
+  CHECK(is_among(one, {{}, other}));
+  other.effects[0] = named_at("leak", "hole", "level");
+  CHECK_FALSE(same_effects(one, other));
+  CHECK_FALSE(is_among(one, {{}, other}));
+  other.effects = {one.effects[0], one.effects[0]};
+  CHECK_FALSE(same_effects(one, other));
+}
+
 TEST_CASE("an effect is idle if a structure without it is as close") {
   EvaluatedHypothesis small, large;
   small.hypothesis.effects = {named_at("leak", "", "level")};

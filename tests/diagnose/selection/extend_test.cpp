@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "tests/diagnose/selection/tank_bench.hpp"
 
 namespace surefoot::diagnosis {
@@ -71,11 +72,16 @@ TEST_CASE("what effects explain is integrated more finely, never more coarsely")
   search.problem.fit.weighting.sigma[0] = 1e-6;
   CHECK(refine_integration(search, best));
   CHECK((now.order == 4 || now.step < 0.07));
-  const Integration fine = now;
+  REQUIRE(search.problem.screening.has_value());
+  const Integration fine = now, screening = screening_fit(search.problem, 4).integration;
+  CHECK_FALSE(is_finer(screening, fine));
   search.problem.fit.weighting.sigma[0] = 1;
   CHECK_FALSE(refine_integration(search, best));
   CHECK(now.order == fine.order);
   CHECK(now.step == fine.step);
+  CHECK(is_finer(screening, screening_fit(search.problem, 4).integration));
+  choose_screening(search, best);
+  CHECK(is_finer(fine, screening_fit(search.problem, 4).integration));
 }
 
 TEST_CASE("the best structures are fitted again, always with the model without effects, and none gets worse") {

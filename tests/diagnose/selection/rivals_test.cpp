@@ -30,13 +30,40 @@ TEST_CASE("effects of the best structure are taken away and replaced in turn") {
   const TankBench bench({rate_in_tank, drift_in_tank});
   const SelectionCriteria& criteria = bench.problem.criteria;
   std::vector<EvaluatedHypothesis> pool{bench.with({}), bench.with({"sensor_drift", "sensor_bias"})};
-  swap_effects(bench.search(), pool);
+  std::vector<Hypothesis> done;
+  swap_effects(bench.search(), pool, done);
   CHECK(names_in(pool[best_of(pool, criteria)]) == "constant_rate, sensor_drift");
   const auto has = [&](const std::string& names) {
     return std::ranges::any_of(pool, [&](const EvaluatedHypothesis& one) { return names_in(one) == names; });
   };
   CHECK(has("sensor_drift"));
   CHECK(has("sensor_bias"));
+}
+
+TEST_CASE("what is left of the best structure is extended once") {
+  const TankBench bench({rate_in_tank, drift_in_tank});
+  const SelectionCriteria& criteria = bench.problem.criteria;
+  const std::vector<EvaluatedHypothesis> before{bench.with({}), bench.with({"sensor_drift", "sensor_bias"})};
+  std::vector<EvaluatedHypothesis> pool = before;
+  std::vector<Hypothesis> done;
+  swap_effects(bench.search(), pool, done);
+  CHECK(done.size() == 2);  // each of the two alone
+  pool = before;
+  swap_effects(bench.search(), pool, done);
+  CHECK(done.size() == 2);
+  CHECK(names_in(pool[best_of(pool, criteria)]) == names_in(before[1]));
+}
+
+TEST_CASE("a rival must promise what makes it as probable, but no more than the effect in its place does") {
+  const TankBench bench({rate_in_tank});
+  const Search search = bench.search();
+  const EvaluatedHypothesis best = bench.with({"constant_rate"}), rest = bench.with({});
+  std::vector<Proposal> proposals = proposals_for(search, rest);
+  const double needed = needed_gain(search, rest, best, 1);
+  CHECK(needed_instead(search, rest, best, 0, proposals) == std::min(needed, proposals.at(0).gain));
+  proposals[0].gain = 0.01;  // as of friction that holds a machine, which no linear prediction sees
+  CHECK(needed_instead(search, rest, best, 0, proposals) == 0.01);
+  CHECK(needed_instead(search, rest, best, 0, {}) == 0);
 }
 
 TEST_CASE("what an effect may be confused with is tried in its place, beside the parameters found with it") {

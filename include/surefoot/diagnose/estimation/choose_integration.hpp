@@ -17,6 +17,20 @@ Integration choose_integration(const BoundSimulator& bound, const Hypothesis& hy
                                const Eigen::VectorXd& residual_size, const Integration& now,
                                const std::vector<std::size_t>& recordings, const Parallel& parallel);
 
+/// An integration for fits, and one as coarse as those may be that are only compared.
+struct ChosenIntegration {
+  Integration fitting, screening;
+};
+
+/// The same with the cheapest integration whose error is a quarter of the residuals: what screening compares differs by
+/// more. No coarser than `fitting` where that is the cheapest.
+ChosenIntegration choose_integrations(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                      const Eigen::VectorXd& residual_size, const Integration& now,
+                                      const std::vector<std::size_t>& recordings, const Parallel& parallel);
+
+/// Whether an integration is finer than another one.
+bool is_finer(const Integration& one, const Integration& other);
+
 /// The coarsest step at which any of the recordings can be simulated at all: one row, or a power of two shorter, where
 /// the model holds something much faster than rows, such as the current of a coil. As it is now where none helps, and
 /// in maps. Cost: mostly a simulation of each recording.
@@ -32,6 +46,9 @@ double shortest_interval(const BoundSimulator& bound, const std::vector<std::siz
 
 /// Share of the residuals that the way of simulating may add: lost in them.
 inline constexpr double lost_in_residuals = 0.05;
+
+/// The same of fits that are only compared, of which the best are continued with less: 0.06 of the mean square.
+inline constexpr double lost_in_screening = 0.25;
 
 /// Root mean square of the differences between runs of the same recordings, by output; infinite where one ran away.
 /// Recordings that cannot be simulated exactly either count for nothing.

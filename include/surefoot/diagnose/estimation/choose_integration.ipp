@@ -82,31 +82,49 @@ SUREFOOT_ONCE Integration integration_that_runs(const BoundSimulator& bound, con
   return coarsest_that_runs(bound, hypothesis, bound.integration, shortest_interval(bound, all), all, parallel);
 }
 
-SUREFOOT_ONCE Integration choose_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                             const Eigen::VectorXd& residual_size, const Integration& now,
-                                             const std::vector<std::size_t>& recordings, const Parallel& parallel) {
+SUREFOOT_ONCE bool below(const Eigen::VectorXd& off, double share, const Eigen::VectorXd& residual_size) {
+  for (Eigen::Index k = 0; k < off.size(); ++k) {
+    if (!(off[k] < share * residual_size[k])) return false;
+  }
+  return true;
+}
+
+SUREFOOT_ONCE ChosenIntegration choose_integrations(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                    const Eigen::VectorXd& residual_size, const Integration& now,
+                                                    const std::vector<std::size_t>& recordings,
+                                                    const Parallel& parallel) {
   constexpr double one_step = 1.5;  // a little longer than a row, so that rounding does not add one
-  if (bound.info.kind == SimulatorKind::map) return now;
+  if (bound.info.kind == SimulatorKind::map) return {now, now};
   const double row = shortest_interval(bound, recordings);
   Integration fine = now;
   fine.order = 4;
   const Integration runs = coarsest_that_runs(bound, hypothesis, fine, row, recordings, parallel);
   fine.step = (runs.step > 0 ? std::min(row, runs.step) : row) / reference_steps;
   const std::vector<SimulatedRun> exact = simulate_all(bound, hypothesis, recordings, fine, parallel);
-  if (!any_is_finite(exact)) return fine;
+  if (!any_is_finite(exact)) return {fine, fine};
   std::vector<std::pair<int, double>> coarser{{2, one_step * row}, {4, one_step * row}};
   for (double more = 2; row / more > 1.5 * fine.step; more *= 2) coarser.emplace_back(4, row / (more - step_slack));
+  std::optional<Integration> screening;
   for (const auto& [order, step] : coarser) {
     Integration coarse = now;
     coarse.order = order;
     coarse.step = step;
-    const auto runs = simulate_all(bound, hypothesis, recordings, coarse, parallel);
-    const Eigen::VectorXd off = differences_of_runs(runs, exact, residual_size.size());
-    bool good = true;
-    for (Eigen::Index k = 0; k < off.size(); ++k) good = good && off[k] < lost_in_residuals * residual_size[k];
-    if (good) return coarse;
+    const auto tried = simulate_all(bound, hypothesis, recordings, coarse, parallel);
+    const Eigen::VectorXd off = differences_of_runs(tried, exact, residual_size.size());
+    if (!screening && below(off, lost_in_screening, residual_size)) screening = coarse;
+    if (below(off, lost_in_residuals, residual_size)) return {coarse, *screening};
   }
-  return fine;
+  return {fine, screening.value_or(fine)};
+}
+
+SUREFOOT_ONCE Integration choose_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                             const Eigen::VectorXd& residual_size, const Integration& now,
+                                             const std::vector<std::size_t>& recordings, const Parallel& parallel) {
+  return choose_integrations(bound, hypothesis, residual_size, now, recordings, parallel).fitting;
+}
+
+SUREFOOT_ONCE bool is_finer(const Integration& one, const Integration& other) {
+  return one.order > other.order || one.step < other.step;
 }
 
 SUREFOOT_ONCE std::optional<Integration> finer_integration(const BoundSimulator& bound, const Hypothesis& hypothesis,
@@ -115,8 +133,7 @@ SUREFOOT_ONCE std::optional<Integration> finer_integration(const BoundSimulator&
                                                            const std::vector<std::size_t>& recordings,
                                                            const Parallel& parallel) {
   const Integration chosen = choose_integration(bound, hypothesis, residual_size, now, recordings, parallel);
-  if (chosen.order <= now.order && chosen.step >= now.step) return std::nullopt;
-  return chosen;
+  return is_finer(chosen, now) ? std::optional(chosen) : std::nullopt;
 }
 
 }  // namespace surefoot::diagnosis

@@ -31,55 +31,78 @@ SUREFOOT_ONCE EvaluatedHypothesis Search::without(const EvaluatedHypothesis& who
   return evaluate_fit(bound, rest, problem, parallel);
 }
 
-SUREFOOT_ONCE Fit fit_child(const BoundSimulator& bound, const Hypothesis& parent,
-                            const std::vector<Proposal>& additions, const SearchProblem& problem) {
-  const SearchEffort& effort = problem.effort;
-  FitProblem quick = problem.fit;
-  quick.recordings = problem.screened;
-  quick.max_iterations = effort.first_iterations;
-  Fit best;
-  const FitFunctions without(bound, parent, quick, serially());
-  const double parent_loss = mean_loss(without.residuals(without.start()), quick.weighting.robust);
-  const auto attempt = [&](const std::vector<Eigen::VectorXd>& starts, bool settle = false) {
-    Hypothesis child = parent;
-    for (std::size_t k = 0; k < starts.size(); ++k) {
-      std::size_t before = additions[k].before;  // where the parent has it
-      for (std::size_t j = 0; j < k; ++j) before += additions[j].before <= additions[k].before ? 1 : 0;
-      child = with_effect(std::move(child), additions[k].effect, starts[k], before);
-    }
-    if (settle) {
-      FitProblem around = quick;
-      around.free = Free::all_but_effects;
-      const Fit settled = fit(bound, child, around, serially());
-      if (best.ok && !(settled.loss < parent_loss)) return;  // worse than none with all else settled: another valley
-      child = settled.hypothesis;
-    }
-    const Fit one = fit(bound, child, quick, serially());
-    if (one.ok && one.loss < best.loss) best = one;
-  };
+/// A parent with some effects more, beginning at these parameters.
+SUREFOOT_ONCE Hypothesis begun(Hypothesis parent, const std::vector<Proposal>& additions,
+                               const std::vector<Eigen::VectorXd>& starts) {
+  for (std::size_t k = 0; k < starts.size(); ++k) {
+    std::size_t before = additions[k].before;  // where the parent has it
+    for (std::size_t j = 0; j < k; ++j) before += additions[j].before <= additions[k].before ? 1 : 0;
+    parent = with_effect(std::move(parent), additions[k].effect, starts[k], before);
+  }
+  return parent;
+}
+
+/// What can grow from nothing: from what the signatures promise, and weaker where that was too bold.
+SUREFOOT_ONCE Fit fit_grown(const BoundSimulator& bound, const Hypothesis& parent,
+                            const std::vector<Proposal>& additions, const FitProblem& quick, double parent_loss,
+                            const SearchEffort& effort) {
   std::vector<Eigen::VectorXd> predicted, weak;
+  double promised = 1 - effort.bold_loss;  // much of it is enough, or half of what the signatures say
   for (const Proposal& addition : additions) {
     predicted.push_back(addition.start);
     weak.push_back(addition.start);
     for (const Eigen::Index k : strengths_of(*addition.effect.effect)) weak.back()[k] *= effort.weak_start;
+    promised = std::min(promised, std::max(0.0, addition.gain) / 2);
   }
-  const bool scalable = predicted != weak;
-  attempt(predicted, !scalable);  // what cannot grow from nothing begins with everything else settled around it
-  double promised = 1 - effort.bold_loss;  // much of it is enough, or half of what the signatures say
-  for (const Proposal& addition : additions) promised = std::min(promised, std::max(0.0, addition.gain) / 2);
-  if (scalable && !(best.loss < (1 - promised) * parent_loss)) attempt(weak);
-  if (!scalable && additions.size() == 1) {
+  const Fit bold = fit(bound, begun(parent, additions, predicted), quick, serially());
+  if (bold.ok && bold.loss < (1 - promised) * parent_loss) return bold;
+  const Fit timid = fit(bound, begun(parent, additions, weak), quick, serially());
+  return timid.ok && (!bold.ok || timid.loss < bold.loss) ? timid : bold;
+}
+
+/// What cannot grow from nothing begins with everything else settled around it: where that leaves least is the best
+/// place to go on, and what leaves more than the parent is in another valley.
+SUREFOOT_ONCE Fit fit_settled(const BoundSimulator& bound, const Hypothesis& parent,
+                              const std::vector<Proposal>& additions, const FitProblem& quick, double parent_loss,
+                              const SearchEffort& effort) {
+  FitProblem around = quick;
+  around.free = Free::all_but_effects;
+  std::vector<Eigen::VectorXd> predicted;
+  for (const Proposal& addition : additions) predicted.push_back(addition.start);
+  std::vector<Fit> settled{fit(bound, begun(parent, additions, predicted), around, serially())};
+  if (additions.size() == 1) {
     const auto& others = additions.front().more_starts;
-    for (std::size_t k = 0; k < std::min(effort.more_starts, others.size()); ++k) attempt({others[k]}, true);
+    for (std::size_t k = 0; k < std::min(effort.more_starts, others.size()); ++k) {
+      settled.push_back(fit(bound, begun(parent, additions, {others[k]}), around, serially()));
+    }
+  }
+  drop_items(settled, [](const Fit& one) { return !one.ok; });
+  sort_items(settled, [](const Fit& a, const Fit& b) { return a.loss < b.loss; });
+  Fit best;
+  for (const Fit& start : settled) {
+    if (best.ok && (!(start.loss < parent_loss) || best.loss < effort.bold_loss * parent_loss)) break;
+    const Fit one = fit(bound, start.hypothesis, quick, serially());
+    if (one.ok && one.loss < best.loss) best = one;
   }
   return best;
+}
+
+SUREFOOT_ONCE Fit fit_child(const BoundSimulator& bound, const Hypothesis& parent,
+                            const std::vector<Proposal>& additions, const SearchProblem& problem) {
+  const FitProblem quick = screening_fit(problem, problem.effort.first_iterations);
+  const FitFunctions without(bound, parent, quick, serially());
+  const double parent_loss = mean_loss(without.residuals(without.start()), quick.weighting.robust);
+  const bool grows = holds_for_any(additions, [](const Proposal& one) {
+    return holds_for_any(strengths_of(*one.effect.effect), [&](Eigen::Index k) { return one.start[k] != 0; });
+  });
+  const auto fitted = grows ? fit_grown : fit_settled;
+  return fitted(bound, parent, additions, quick, parent_loss, problem.effort);
 }
 
 /// Effects that a parent has not yet, best first.
 SUREFOOT_ONCE std::vector<Proposal> proposals_for(const Search& search, const EvaluatedHypothesis& parent) {
   const auto& [bound, problem, candidates, parallel] = search;
-  FitProblem screened = problem.fit;
-  screened.recordings = problem.screened;
+  const FitProblem screened = screening_fit(problem, 0);
   std::vector<AttachedEffect> open;
   for (const AttachedEffect& candidate : candidates) {
     const bool used = holds_for_any(parent.hypothesis.effects,
@@ -102,9 +125,7 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> finished(const Search& search, st
   };
   if (fits.size() > problem.effort.second_look * keep) {
     keep_best(problem.effort.second_look * keep);
-    FitProblem quick = problem.fit;
-    quick.recordings = problem.screened;
-    quick.max_iterations = problem.effort.second_iterations;
+    const FitProblem quick = screening_fit(problem, problem.effort.second_iterations);
     parallel(fits.size(), [&](std::size_t i) {
       if (!problem.stopped()) fits[i] = fit(bound, fits[i].hypothesis, quick, serially());
     });
@@ -222,9 +243,7 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> combined(const Search& search,
       fits.push_back({half_of_each(best[i].hypothesis, best[j].hypothesis, problem.known)});
     }
   }
-  FitProblem quick = problem.fit;
-  quick.recordings = problem.screened;
-  quick.max_iterations = problem.effort.first_iterations;
+  const FitProblem quick = screening_fit(problem, problem.effort.first_iterations);
   parallel(fits.size(), [&](std::size_t i) {
     if (!problem.stopped()) fits[i] = fit(bound, fits[i].hypothesis, quick, serially());
   });

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -105,6 +106,7 @@ struct SearchProblem {
   Eigen::VectorXd least;              // as in ErrorSquares, for all hypotheses
   Eigen::VectorXd noise = {};         // mean square of the noise by output, in the unit of errors; 0: not known
   std::vector<std::size_t> screened;  // recordings that screen proposals
+  std::optional<Integration> screening = {};  // of these fits, where coarser than that of `fit`
   Hypothesis nominal;                 // the same without calibration: a second place to start from
   std::vector<std::vector<std::size_t>> folds = {};  // of the recordings, each to be predicted from the others
   bool scatter = true;                // start the model's parameters from elsewhere too, beside a first effect
@@ -122,6 +124,9 @@ struct SearchProblem {
   SelectionCriteria criteria = {};
   SearchEffort effort = {};
 };
+
+/// A fit that is only compared with others, of so many iterations: on the recordings that screen, in coarser steps.
+FitProblem screening_fit(const SearchProblem& problem, int iterations);
 
 /// Mean squares over all recordings, by output.
 Eigen::VectorXd pooled(const ErrorSquares& errors);
@@ -190,6 +195,12 @@ std::vector<std::string> structure_of(const Hypothesis& hypothesis);
 
 /// The same effects at the same places, perhaps in another form or order.
 bool same_structure(const Hypothesis& a, const Hypothesis& b);
+
+/// The same effects at the same places, in the same forms.
+bool same_effects(const Hypothesis& a, const Hypothesis& b);
+
+/// Whether one of the others has the same effects.
+bool is_among(const Hypothesis& one, const std::vector<Hypothesis>& others);
 
 /// Whether all effects of one structure are in another one, which has more.
 bool is_part_of(const Hypothesis& part, const Hypothesis& whole);

@@ -13,6 +13,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
 
@@ -44,6 +45,17 @@ SUREFOOT_INLINE Eigen::VectorXd pooled(const ErrorSquares& errors) {
     if (count > 0) result[k] = sum / count;
   }
   return result;
+}
+
+SUREFOOT_ONCE FitProblem screening_fit(const SearchProblem& problem, int iterations) {
+  FitProblem quick = problem.fit;
+  quick.recordings = problem.screened;
+  quick.max_iterations = iterations;
+  if (problem.screening && is_finer(quick.integration, *problem.screening)) {
+    quick.integration.order = problem.screening->order;
+    quick.integration.step = problem.screening->step;
+  }
+  return quick;
 }
 
 SUREFOOT_ONCE Eigen::VectorXd negligible_beside(const ErrorSquares& errors, const SearchProblem& problem) {
@@ -297,6 +309,18 @@ SUREFOOT_ONCE std::vector<double> probabilities(const std::vector<EvaluatedHypot
 
 SUREFOOT_ONCE bool same_structure(const Hypothesis& a, const Hypothesis& b) {
   return structure_of(a) == structure_of(b);
+}
+
+SUREFOOT_ONCE bool same_effects(const Hypothesis& a, const Hypothesis& b) {
+  const auto as_often_in_both = [&](const AttachedEffect& one) {
+    const auto is_same = [&](const AttachedEffect& other) { return same_effect(one, other); };
+    return count_items(a.effects, is_same) == count_items(b.effects, is_same);
+  };
+  return a.effects.size() == b.effects.size() && holds_for_all(a.effects, as_often_in_both);
+}
+
+SUREFOOT_ONCE bool is_among(const Hypothesis& one, const std::vector<Hypothesis>& others) {
+  return holds_for_any(others, [&](const Hypothesis& other) { return same_effects(one, other); });
 }
 
 SUREFOOT_ONCE bool is_part_of(const Hypothesis& part, const Hypothesis& whole) {

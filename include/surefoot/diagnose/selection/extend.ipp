@@ -58,10 +58,19 @@ SUREFOOT_ONCE void reweight(Search& search, const EvaluatedHypothesis& best) {
 
 SUREFOOT_ONCE bool refine_integration(Search& search, const EvaluatedHypothesis& best) {
   FitProblem& problem = search.problem.fit;
-  const auto finer = finer_integration(search.bound, best.hypothesis, problem.weighting.sigma, problem.integration,
-                                       problem.recordings, search.parallel);
-  if (finer) problem.integration = *finer;
-  return finer.has_value();
+  const auto [fitting, screening] = choose_integrations(search.bound, best.hypothesis, problem.weighting.sigma,
+                                                        problem.integration, problem.recordings, search.parallel);
+  const bool finer = is_finer(fitting, problem.integration);
+  if (finer) problem.integration = fitting;
+  search.problem.screening = screening;
+  return finer;
+}
+
+SUREFOOT_ONCE void choose_screening(Search& search, const EvaluatedHypothesis& best) {
+  const FitProblem& problem = search.problem.fit;
+  search.problem.screening = choose_integrations(search.bound, best.hypothesis, problem.weighting.sigma,
+                                                 problem.integration, problem.recordings, search.parallel)
+                                 .screening;
 }
 
 SUREFOOT_ONCE bool leaves_structure(const Search& search, const EvaluatedHypothesis& one) {
@@ -100,9 +109,7 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> fitted_again(const Search& search
 SUREFOOT_ONCE void try_around(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
   constexpr std::uint64_t restart_seed = 1;
   const SearchProblem& problem = search.problem;
-  FitProblem quick = problem.fit;
-  quick.recordings = problem.screened;
-  quick.max_iterations = problem.effort.restart_iterations;
+  const FitProblem quick = screening_fit(problem, problem.effort.restart_iterations);
   constexpr double none_is_hopeless = std::numeric_limits<double>::infinity();
   for (const EvaluatedHypothesis& one :
        best_structures(pool, problem.effort.restarted, none_is_hopeless, problem.criteria)) {

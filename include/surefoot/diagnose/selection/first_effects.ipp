@@ -45,6 +45,7 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> extended_under_guidance(Search& s
   const double follow = problem.integration.follow;
   problem.integration = followed.problem.fit.integration;
   problem.integration.follow = follow;
+  search.problem.screening = followed.problem.screening;
   search.parallel(children.size(), [&](std::size_t i) {
     if (problem.stopped()) return;
     children[i] = refitted(search, guided(search.bound, children[i].hypothesis, problem, far, serially()));

@@ -44,15 +44,6 @@ SUREFOOT_ONCE bool yields(const Search& search, const std::vector<EvaluatedHypot
   return none != nullptr && log_odds(pool[best_of(pool, criteria)], *none, criteria) < search.problem.rival;
 }
 
-/// Whether two hypotheses have the same effects in the same forms.
-SUREFOOT_ONCE bool same_effects(const Hypothesis& a, const Hypothesis& b) {
-  const auto as_often_in_both = [&](const AttachedEffect& one) {
-    const auto is_same = [&](const AttachedEffect& other) { return same_effect(one, other); };
-    return count_items(a.effects, is_same) == count_items(b.effects, is_same);
-  };
-  return a.effects.size() == b.effects.size() && holds_for_all(a.effects, as_often_in_both);
-}
-
 /// With the parameters of effects that are at bounds a tenth of their range inside, and all else fitted around them.
 SUREFOOT_ONCE std::optional<Hypothesis> drawn_inside(const Search& search, Hypothesis one) {
   constexpr double inside = 0.1, middle = 0.5;  // of its range
@@ -132,8 +123,7 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool, 
     const EvaluatedHypothesis best = pool[best_of(pool, criteria)];
     const auto most = static_cast<std::size_t>(criteria.max_effects);
     drop_items(beam, [&](const EvaluatedHypothesis& one) {
-      return search.effects(one) >= most ||
-             holds_for_any(done, [&](const Hypothesis& other) { return same_effects(one.hypothesis, other); });
+      return search.effects(one) >= most || is_among(one.hypothesis, done);
     });
     for (const EvaluatedHypothesis& one : beam) done.push_back(one.hypothesis);
     const bool first = search.effects(best) == 0 && depth == 0;

@@ -74,7 +74,7 @@ SUREFOOT_ONCE Hypothesis with_form(const Search& search, const Hypothesis& found
   return best;
 }
 
-/// A fit with the integration that it began with.
+/// A fit with the integration that it is to be finished with.
 struct IntegratedFit {
   Fit fit;
   Integration integration;
@@ -97,9 +97,7 @@ SUREFOOT_ONCE std::vector<IntegratedFit> best_of_forms(std::vector<IntegratedFit
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> in_other_forms(const Search& search, const EvaluatedHypothesis& found,
                                                               std::size_t e, std::size_t keep, bool finely) {
   constexpr double stiffer = 0.2;  // of the starts, which are where steps of a row can go
-  FitProblem quick = search.problem.fit;
-  quick.recordings = search.problem.screened;
-  quick.max_iterations = search.problem.effort.first_iterations;
+  const FitProblem quick = screening_fit(search.problem, search.problem.effort.first_iterations);
   const AttachedEffect& present = found.hypothesis.effects[e];
   std::vector<Hypothesis> starts;
   for (const AttachedEffect& one : search.candidates) {
@@ -115,12 +113,14 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> in_other_forms(const Search& sear
   search.parallel(starts.size(), [&](std::size_t i) {
     if (search.problem.stopped()) return;
     FitProblem problem = quick;
+    Integration finishing = search.problem.fit.integration;
     if (finely) {
-      problem.integration = finer_integration(search.bound, starts[i], quick.weighting.sigma, quick.integration,
-                                              quick.recordings, serially())
-                                .value_or(quick.integration);
+      const auto [fitting, screening] =
+          choose_integrations(search.bound, starts[i], quick.weighting.sigma, finishing, quick.recordings, serially());
+      if (is_finer(fitting, finishing)) finishing = fitting;
+      if (is_finer(screening, problem.integration)) problem.integration = screening;
     }
-    fits[i] = {fit(search.bound, starts[i], problem, serially()), problem.integration};
+    fits[i] = {fit(search.bound, starts[i], problem, serially()), finishing};
   });
   std::vector<IntegratedFit> best = best_of_forms(std::move(fits), e);
   if (best.size() > keep) best.resize(keep);

@@ -1,6 +1,7 @@
 // Rivals of the best structure: what may stand in the place of its effects.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "surefoot/diagnose/selection/children.hpp"
@@ -8,8 +9,15 @@
 
 namespace surefoot::diagnosis {
 
-/// Takes each effect of the best structure away, and puts others in its place.
-void swap_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool);
+/// Share of the squared residuals that a rival must promise to stand in the place of an effect of the best structure:
+/// as much as makes it as probable, but no more than that effect itself promises among `proposals`. Signatures say
+/// little where friction holds a machine, and as little of all. `rest` is the best structure without that effect.
+double needed_instead(const Search& search, const EvaluatedHypothesis& rest, const EvaluatedHypothesis& best,
+                      std::size_t effect, const std::vector<Proposal>& proposals);
+
+/// Takes each effect of the best structure away, and puts others in its place; not where what is left is one of those
+/// that are `done`, which were extended already. It is done after that.
+void swap_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool, std::vector<Hypothesis>& done);
 
 /// The same of two effects on inputs or signals at once, by one that is like them and acts on two inputs: two wheels
 /// that are limited are no limited speed and turn, but neither one of them is better alone.

@@ -18,7 +18,18 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_ONCE void swap_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
+SUREFOOT_ONCE double needed_instead(const Search& search, const EvaluatedHypothesis& rest,
+                                    const EvaluatedHypothesis& best, std::size_t effect,
+                                    const std::vector<Proposal>& proposals) {
+  double promised = 0;
+  for (const Proposal& one : proposals) {
+    if (same_but_for_form(one.effect, best.hypothesis.effects[effect])) promised = std::max(promised, one.gain);
+  }
+  return std::min(promised, needed_gain(search, rest, best, 1));
+}
+
+SUREFOOT_ONCE void swap_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool,
+                                std::vector<Hypothesis>& done) {
   constexpr double progress = 0.8;  // of the search
   const SearchProblem& problem = search.problem;
   const EvaluatedHypothesis best = pool[best_of(pool, problem.criteria)];
@@ -26,9 +37,11 @@ SUREFOOT_ONCE void swap_effects(const Search& search, std::vector<EvaluatedHypot
     problem.on_progress("comparing alternatives", progress);
     const EvaluatedHypothesis rest = search.without(best, e);
     keep_best_form(pool, rest, problem.criteria);
-    if (search.effects(best) == 1) continue;  // its rivals were evaluated when it was chosen
+    const bool extended = search.effects(best) == 1 || is_among(rest.hypothesis, done);
+    if (extended) continue;  // in an earlier step: all single effects have been compared, too
+    done.push_back(rest.hypothesis);
     std::vector<Proposal> proposals = proposals_for(search, rest);
-    drop_what_cannot_pay(proposals, needed_gain(search, rest, best, 1), problem.effort);
+    drop_what_cannot_pay(proposals, needed_instead(search, rest, best, e, proposals), problem.effort);
     const std::string& name = best.hypothesis.effects[e].effect->name;  // the right name may be at a wrong place
     put_first(proposals, [&](const Proposal& one) { return one.effect.effect->name == name; });
     for (const EvaluatedHypothesis& other :
@@ -75,6 +88,7 @@ SUREFOOT_ONCE void weigh_with_its_own_steps(Search& search, const EvaluatedHypot
   const bool form = same_structure(again.hypothesis, before.hypothesis);
   if (!((form ? log_odds_of_forms(again, before, criteria) : log_odds(again, before, criteria)) > 0)) return;
   search.problem.fit.integration = fine.problem.fit.integration;
+  search.problem.screening = fine.problem.screening;
   pool = fitted_again(search, pool);
   keep_best_form(pool, again, criteria);
 }
@@ -93,32 +107,55 @@ SUREFOOT_ONCE void try_other_forms(Search& search, const EvaluatedHypothesis& be
   }
 }
 
+/// Leaves out what cannot explain `needed`, but for effects without a strength: their signatures say little.
+SUREFOOT_ONCE void drop_growing_that_cannot_pay(std::vector<Proposal>& proposals, double needed,
+                                                const SearchEffort& effort) {
+  drop_items(proposals, [&](const Proposal& one) {
+    return !strengths_of(*one.effect.effect).empty() && one.gain * effort.underestimated < needed;
+  });
+}
+
+/// Other effects that an effect of the best structure may be confused with, and the same elsewhere.
+SUREFOOT_ONCE void try_in_its_place(Search& search, const EvaluatedHypothesis& best, std::size_t e,
+                                    std::vector<EvaluatedHypothesis>& pool) {
+  const AttachedEffect& found = best.hypothesis.effects[e];
+  std::vector<AttachedEffect> others, elsewhere;  // each get their own finalists: forms would crowd the others out
+  for (const AttachedEffect& one : search.candidates) {
+    if (may_be_confused(*one.effect, *found.effect)) others.push_back(one);
+    if (one.effect->name == found.effect->name && !same_but_for_form(one, found)) elsewhere.push_back(one);
+  }
+  const Fit without{without_effect(best.hypothesis, e), 0, true};
+  for (const std::vector<AttachedEffect>& rivals : {others, elsewhere}) {
+    if (search.problem.stopped()) return;
+    const SearchProblem problem = search.problem;  // in the steps that the rivals before may have needed
+    const EvaluatedHypothesis rest = evaluate_fit(search.bound, without, problem, search.parallel);
+    std::vector<AttachedEffect> measured = rivals;  // by what the effect itself promises
+    for (const AttachedEffect& one : search.candidates) {
+      if (same_but_for_form(one, found)) measured.push_back(one);
+    }
+    const Search among{search.bound, problem, measured, search.parallel};
+    std::vector<Proposal> proposals = proposals_for(among, rest);
+    const double needed = needed_instead(search, rest, best, e, proposals);
+    drop_items(proposals, [&](const Proposal& one) { return same_but_for_form(one.effect, found); });
+    drop_growing_that_cannot_pay(proposals, needed, problem.effort);
+    std::vector<EvaluatedHypothesis> fitted =
+        next_effects(among, rest, std::move(proposals), rivals.size(), problem.effort.compared_finalists);
+    enrich(search, fitted, std::numeric_limits<double>::infinity());
+    for (const EvaluatedHypothesis& one : fitted) {
+      keep_best_form(pool, one, problem.criteria);
+      weigh_with_its_own_steps(search, one, best, pool);
+    }
+  }
+}
+
 SUREFOOT_ONCE void try_confusable(Search& search, std::vector<EvaluatedHypothesis>& pool) {
   const EvaluatedHypothesis chosen = pool[best_of(pool, search.problem.criteria)];
   for (std::size_t e = search.problem.known; e < chosen.hypothesis.effects.size() && !search.problem.stopped(); ++e) {
     try_other_forms(search, chosen, e, pool);
   }
-  const SearchProblem problem = search.problem;
-  const EvaluatedHypothesis best = pool[best_of(pool, problem.criteria)];
-  for (std::size_t e = problem.known; e < best.hypothesis.effects.size() && !problem.stopped(); ++e) {
-    const AttachedEffect& found = best.hypothesis.effects[e];
-    std::vector<AttachedEffect> others, elsewhere;  // each get their own finalists: forms would crowd the others out
-    for (const AttachedEffect& one : search.candidates) {
-      if (may_be_confused(*one.effect, *found.effect)) others.push_back(one);
-      if (one.effect->name == found.effect->name && !same_but_for_form(one, found)) elsewhere.push_back(one);
-    }
-    const Fit without{without_effect(best.hypothesis, e), 0, true};
-    const EvaluatedHypothesis rest = evaluate_fit(search.bound, without, problem, search.parallel);
-    for (const std::vector<AttachedEffect>& rivals : {others, elsewhere}) {
-      const Search among{search.bound, problem, rivals, search.parallel};
-      std::vector<EvaluatedHypothesis> fitted =
-          next_effects(among, rest, proposals_for(among, rest), rivals.size(), problem.effort.compared_finalists);
-      enrich(search, fitted, std::numeric_limits<double>::infinity());
-      for (const EvaluatedHypothesis& one : fitted) {
-        keep_best_form(pool, one, problem.criteria);
-        weigh_with_its_own_steps(search, one, best, pool);
-      }
-    }
+  const EvaluatedHypothesis best = pool[best_of(pool, search.problem.criteria)];
+  for (std::size_t e = search.problem.known; e < best.hypothesis.effects.size(); ++e) {
+    try_in_its_place(search, best, e, pool);
   }
 }
 

@@ -125,6 +125,7 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
   search.problem.fit.recordings = informative(bound, calibrated.hypothesis, search.problem, parallel);
   std::vector<EvaluatedHypothesis> pool{evaluate_fit(bound, calibrated, search.problem, parallel)};
   search.problem.least = pool.front().errors.least = negligible_differences(pool.front().errors, criteria);
+  choose_screening(search, pool.front());
   take_up(search, begun, pool);
   std::vector<Hypothesis> done;
   grow(search, pool, done);
@@ -143,7 +144,7 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
     take_effects_away(search, pool);
     const Hypothesis compared = pool[best_of(pool, criteria)].hypothesis;
     const auto unchanged = [&] { return same_structure(pool[best_of(pool, criteria)].hypothesis, compared); };
-    swap_effects(search, pool);
+    swap_effects(search, pool, done);
     swap_pairs_of_inputs(search, pool);
     try_confusable(search, pool);
     begin_anew(search, pool);
