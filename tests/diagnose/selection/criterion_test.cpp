@@ -136,6 +136,7 @@ TEST_CASE("what acts on the same, along a coupling, or is like another effect ma
   const AttachedEffect drift = attached(effects::sensor_drift(), 0, "y");
   CHECK(may_mend(attached(effects::sensor_bias(), 0, "y"), drift));
   CHECK_FALSE(may_mend(attached(effects::quantization(), 0, "y"), drift));  // its steps show in the readings
+  CHECK_FALSE(may_mend(attached(effects::sharpened(effects::quantization()), 0, "y"), drift));
 }
 
 TEST_CASE("the scale of a recording is its own in part: errors that differ from one to the next are no worse for it") {

@@ -74,5 +74,28 @@ TEST_CASE("parameters that only fine steps can simulate are not lost to others t
   CHECK(found.parameters[0] == doctest::Approx(2).epsilon(0.02));
 }
 
+TEST_CASE("a calibration is no worse than its start where a sensor rounds and recordings begin anywhere") {
+  const std::vector<NamedEffect> steps{{"quantization", "level_m", "sharp", {}, {0.02}}};
+  std::vector<Recording> recordings;
+  Rng rng(3);
+  for (int r = 0; r < 6; ++r) {
+    Recording recording = toys::tank_recording(r, 120);
+    recording.initial[0] = 2 * rng.normal();
+    recording.outputs = simulate_augmented(toys::LeakyTank{}, toys::machine({1, 1}, steps), recording).outputs;
+    recording.initial[0] = 0;
+    recording.initial_scale[0] = 1;
+    recordings.push_back(std::move(recording));
+  }
+  DiagnoseOptions options;
+  options.starts = 2;
+  options.known = steps;
+  const Parallel parallel = serially();
+  const RunContext run{options, parallel};
+  EstimationSetup setup = hold_out_recordings(toys::bind_tank, std::move(recordings), run);
+  const Hypothesis found = calibrate_model(setup, run).calibrated.hypothesis;
+  CHECK(found.values[0][0] == doctest::Approx(0.02).epsilon(0.001));
+  CHECK(found.parameters[1] == doctest::Approx(1).epsilon(0.001));
+}
+
 }  // namespace
 }  // namespace surefoot::diagnosis

@@ -101,6 +101,7 @@ struct Effect {
   bool needs_conserved_state =
       false;  // needs a state of which there is more or less (Place::state): no angle, and rates depend on it
   bool needs_suggestion = false;     // is not tried unless readings suggest where (suggest)
+  bool rounds = false;               // readings, to steps: what is inside of a step tells no fit which way to go
   bool is_constant = false;          // has a size and no form: nothing that another effect could mend
   bool has_overflow_target = false;  // also tried with each other state as `other` (limit)
 

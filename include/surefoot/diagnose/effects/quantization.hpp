@@ -33,6 +33,7 @@ inline double soft_round(double x, double sharpness = soft_edge) {
           .confusable_with = names_of({"backlash"}),
           .experiment = "the slowest motion possible through many steps of the sensor",
           .needs_suggestion = true,
+          .rounds = true,
           .suggest = +[](Values readings, Values simulated) { return sensor_steps(readings, simulated, 0.5); },
           .sensor =
               +[](const Series& series, Values p) {

@@ -218,7 +218,7 @@ SUREFOOT_ONCE bool may_mend_form_of(const AttachedEffect& one, const AttachedEff
   const auto forces = [](const Effect& effect) { return effect.place == Place::velocity || effect.needs_coupling; };
   const bool on_same = a.place == b.place && one.at == other.at;
   const bool along_coupling = (a.needs_coupling || b.needs_coupling) && forces(a) && forces(b);
-  return !b.is_constant && !a.needs_suggestion && (on_same || along_coupling || is_like(a, b));
+  return !b.is_constant && !a.rounds && (on_same || along_coupling || is_like(a, b));
 }
 
 SUREFOOT_ONCE bool may_mend_form(const Hypothesis& larger, const Hypothesis& smaller) {

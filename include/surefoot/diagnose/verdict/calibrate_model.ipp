@@ -12,6 +12,7 @@
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/sensor_noise.hpp"
+#include "surefoot/diagnose/selection/children.hpp"
 #include "surefoot/diagnose/selection/choose_holds.hpp"
 #include "surefoot/diagnose/selection/choose_initial_states.hpp"
 #include "surefoot/diagnose/verdict/calibrate_model.hpp"
@@ -88,8 +89,22 @@ SUREFOOT_ONCE FreedTogether free_what_is_left(const EstimationSetup& setup, cons
   return free_together(setup.bound, calibrated, problem, run.options.starts, run.seed, run.parallel);
 }
 
-/// A calibration, or the fit from the nominal parameters on if that is better with the steps that were chosen since:
-/// where the model is stiff, such parameters may have run away with coarser ones.
+/// With initial states fitted to recordings, by readings that no sensor rounds: what is rounded tells little of which
+/// way a state should go.
+SUREFOOT_ONCE Hypothesis with_fitted_beginnings(const BoundSimulator& bound, Hypothesis one, FitProblem problem,
+                                                const Parallel& parallel) {
+  problem.free = Free::initial_only;
+  Hypothesis smooth = one;
+  for (std::size_t e = smooth.effects.size(); e-- > 0;) {
+    if (smooth.effects[e].effect->rounds) smooth = without_effect(smooth, e);
+  }
+  one.initial = fit(bound, smooth, problem, parallel).hypothesis.initial;
+  return fit(bound, one, problem, parallel).hypothesis;
+}
+
+/// A calibration, or the fit from the nominal parameters on if these are better with the steps and weights that were
+/// chosen since, each beginning where that suits it: a stiff model may have run away from them with coarser steps, and
+/// what a sensor rounds hardly leads back to where it was.
 SUREFOOT_ONCE Fit no_worse_than(const Hypothesis& nominal, const Fit& calibrated, const EstimationSetup& setup,
                                 const Parallel& parallel) {
   const FitProblem& problem = setup.problem;
@@ -99,8 +114,9 @@ SUREFOOT_ONCE Fit no_worse_than(const Hypothesis& nominal, const Fit& calibrated
     return all_finite(residuals) ? mean_loss(residuals, problem.weighting.robust)
                                  : std::numeric_limits<double>::infinity();
   };
-  if (!(loss_of(nominal) < loss_of(calibrated.hypothesis))) return calibrated;
-  const Fit again = fit(setup.bound, nominal, problem, parallel);
+  const Hypothesis begun = with_fitted_beginnings(setup.bound, nominal, problem, parallel);
+  if (!(loss_of(begun) < loss_of(calibrated.hypothesis))) return calibrated;
+  const Fit again = fit(setup.bound, begun, problem, parallel);
   return again.ok ? again : calibrated;
 }
 
