@@ -32,8 +32,8 @@ SUREFOOT_ONCE EvaluatedHypothesis Search::without(const EvaluatedHypothesis& who
 }
 
 /// A parent with some effects more, beginning at these parameters.
-SUREFOOT_ONCE Hypothesis begun(Hypothesis parent, const std::vector<Proposal>& additions,
-                               const std::vector<Eigen::VectorXd>& starts) {
+SUREFOOT_ONCE Hypothesis with_effects(Hypothesis parent, const std::vector<Proposal>& additions,
+                                      const std::vector<Eigen::VectorXd>& starts) {
   for (std::size_t k = 0; k < starts.size(); ++k) {
     std::size_t before = additions[k].before;  // where the parent has it
     for (std::size_t j = 0; j < k; ++j) before += additions[j].before <= additions[k].before ? 1 : 0;
@@ -54,9 +54,9 @@ SUREFOOT_ONCE Fit fit_grown(const BoundSimulator& bound, const Hypothesis& paren
     for (const Eigen::Index k : strengths_of(*addition.effect.effect)) weak.back()[k] *= effort.weak_start;
     promised = std::min(promised, std::max(0.0, addition.gain) / 2);
   }
-  const Fit bold = fit(bound, begun(parent, additions, predicted), quick, serially());
+  const Fit bold = fit(bound, with_effects(parent, additions, predicted), quick, serially());
   if (bold.ok && bold.loss < (1 - promised) * parent_loss) return bold;
-  const Fit timid = fit(bound, begun(parent, additions, weak), quick, serially());
+  const Fit timid = fit(bound, with_effects(parent, additions, weak), quick, serially());
   return timid.ok && (!bold.ok || timid.loss < bold.loss) ? timid : bold;
 }
 
@@ -69,11 +69,11 @@ SUREFOOT_ONCE Fit fit_settled(const BoundSimulator& bound, const Hypothesis& par
   around.free = Free::all_but_effects;
   std::vector<Eigen::VectorXd> predicted;
   for (const Proposal& addition : additions) predicted.push_back(addition.start);
-  std::vector<Fit> settled{fit(bound, begun(parent, additions, predicted), around, serially())};
+  std::vector<Fit> settled{fit(bound, with_effects(parent, additions, predicted), around, serially())};
   if (additions.size() == 1) {
     const auto& others = additions.front().more_starts;
     for (std::size_t k = 0; k < std::min(effort.more_starts, others.size()); ++k) {
-      settled.push_back(fit(bound, begun(parent, additions, {others[k]}), around, serially()));
+      settled.push_back(fit(bound, with_effects(parent, additions, {others[k]}), around, serially()));
     }
   }
   drop_items(settled, [](const Fit& one) { return !one.ok; });

@@ -38,7 +38,7 @@ SUREFOOT_ONCE void swap_effects(const Search& search, std::vector<EvaluatedHypot
     const EvaluatedHypothesis rest = search.without(best, e);
     keep_best_form(pool, rest, problem.criteria);
     const bool extended = search.effects(best) == 1 || is_among(rest.hypothesis, done);
-    if (extended) continue;  // in an earlier step: all single effects have been compared, too
+    if (extended) continue;  // before; from no effects at all, when the first one was chosen
     done.push_back(rest.hypothesis);
     std::vector<Proposal> proposals = proposals_for(search, rest);
     drop_what_cannot_pay(proposals, needed_instead(search, rest, best, e, proposals), problem.effort);
