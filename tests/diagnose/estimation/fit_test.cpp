@@ -11,6 +11,7 @@
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/effects/leak.hpp"
+#include "surefoot/diagnose/effects/quantization.hpp"
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/selection/candidates.hpp"
@@ -120,6 +121,47 @@ TEST_CASE("an initial angle that strayed a whole turn away is read off again") {
   const Fit fitted = fit(bound, start, problem, serially());
   CHECK(fitted.hypothesis.initial[0][0] == doctest::Approx(0));
   CHECK(fitted.loss < 1e-12);
+}
+
+TEST_CASE("recordings begin where the truth does though a sensor rounds") {
+  constexpr double step = 0.05;
+  auto recordings = tanks(12, 120, 1, 1);
+  const NamedEffect steps{"quantization", "level_m", "sharp", {}, {step}};
+  const Augmented truth = toys::machine({1, 1}, {steps});
+  std::vector<double> begun;
+  Rng rng(3);
+  for (Recording& recording : recordings) {
+    begun.push_back(recording.initial[0] = 2 * rng.normal());
+    recording.outputs = simulate_augmented(LeakyTank{}, truth, recording).outputs;
+    recording.initial[0] = 0;
+    recording.initial_scale[0] = 1;
+  }
+  const BoundSimulator bound = bind_simulator(LeakyTank{}, recordings);
+  Hypothesis known = nominal_hypothesis(bound);
+  known.effects.push_back(attach(bound.info, steps, {effects::sharpened(effects::quantization())}));
+  known.values.push_back(Vec<1>(step));
+  const FitProblem problem = problem_of(12, 0.01);
+  const Hypothesis found = with_estimated_initial_states(bound, known, problem.recordings, problem, serially());
+  for (std::size_t r = 0; r < begun.size(); ++r) CHECK(std::abs(found.initial[r][0] - begun[r]) < step / 4);
+}
+
+TEST_CASE("parameters are found though a sensor rounds") {
+  constexpr double step = 0.05;
+  const NamedEffect steps{"quantization", "level_m", "sharp", {}, {step}};
+  auto recordings = tanks(3, 120, 1, 1);
+  for (Recording& recording : recordings) {
+    recording.outputs = simulate_augmented(LeakyTank{}, toys::machine({1, 1}, {steps}), recording).outputs;
+  }
+  const BoundSimulator bound = bind_simulator(LeakyTank{}, recordings);
+  for (const double off : {0.8, 1.2}) {
+    Hypothesis known = nominal_hypothesis(bound);
+    known.parameters = Vec<2>(off, 1 / off);
+    known.effects.push_back(attach(bound.info, steps, {effects::sharpened(effects::quantization())}));
+    known.values.push_back(Vec<1>(step));
+    const Hypothesis found = fit(bound, known, problem_of(3, 0.01), serially()).hypothesis;
+    CHECK(found.parameters[0] == doctest::Approx(1).epsilon(0.01));
+    CHECK(found.parameters[1] == doctest::Approx(1).epsilon(0.01));
+  }
 }
 
 TEST_CASE("a start that is no number gives no fit") {

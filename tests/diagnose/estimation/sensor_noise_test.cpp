@@ -32,6 +32,16 @@ TEST_CASE("the noise of a sensor is seen through motion that is smooth") {
   CHECK(fast_noise(bind_simulator(toys::LeakyTank{}, {toys::tank_recording(0, 20)}), {}, 0) == 0);
 }
 
+TEST_CASE("the resolution of a sensor is the least step between readings") {
+  Recording recording = toys::blank_recording(toys::LeakyTank{}.info(), 100, 0.02);
+  for (Eigen::Index i = 0; i < recording.rows(); ++i) {
+    recording.outputs(0, i) = 0.003 * std::round(100 * std::sin(0.1 * static_cast<double>(i)));
+  }
+  CHECK(resolution(bind_simulator(toys::LeakyTank{}, {recording}), {0}, 0) == doctest::Approx(0.003));
+  recording.outputs.setConstant(1);
+  CHECK(resolution(bind_simulator(toys::LeakyTank{}, {recording}), {0}, 0) == 0);
+}
+
 TEST_CASE("an initial state that was read off a sensor is known as well as that sensor reads") {
   auto recordings = toys::servo_recordings(toys::machine({1.4, 3.9, 0.014}), 3, 20);
   for (const std::size_t r : {0U, 1U}) recordings[r].initial[0] = recordings[r].outputs(0, 0);

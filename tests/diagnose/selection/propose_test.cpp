@@ -128,6 +128,18 @@ TEST_CASE("a reading that was rounded before it drifted is rounded in front of t
   CHECK(both.values[1][0] == drift.values[0]);
 }
 
+TEST_CASE("what parameters can do is no effect, though they do nothing inside of the steps of a sensor") {
+  constexpr double step = 0.02;
+  const NamedEffect steps{"quantization", "theta_rad", {}, {}, {step}};
+  Bench b = bench({steps});
+  for (double& parameter : b.base.parameters) parameter *= 1.01;
+  b.problem.weighting.sigma.setConstant(1, 0.3 * step);
+  b.base.effects.push_back(attach(b.bound.info, steps, all_effects()));
+  b.base.values.push_back(Vec<1>(step));
+  const auto candidates = attachments(b.bound, all_effects(), distinct_inputs(b.bound, b.base, {0, 1}, b.runs));
+  CHECK(propose(b.bound, b.base, b.problem, candidates, 0, serially()).front().gain < 0.1);
+}
+
 TEST_CASE("beside another effect, one without a strength counts as it was tried") {
   const Bench b = bench({{"rate_limit", "duty", {}, {}, {2}}});
   auto candidates = attachments(b.bound, all_effects(), distinct_inputs(b.bound, b.base, {0, 1}, b.runs));

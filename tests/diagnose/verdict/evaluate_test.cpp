@@ -68,17 +68,24 @@ TEST_CASE("the noise of an output is what no lag predicts, unless it is stated")
   EstimationSetup setup = toys::tank_setup(toys::noisy_tanks({}, 0.01));
   const auto noise = [&](double predicted, double p, double typical = 0.03) {
     const WhitenessTest residuals{.share = 0.2, .predicted = predicted, .p_value = p, .typical = typical};
-    return output_noise(setup.bound, setup.split.training, 0, residuals, 0.2);
+    return output_noise(setup.bound, setup.split.training, 0, residuals, {}, 0.2);
   };
   CHECK(noise(0.75, 1e-6) == doctest::Approx(0.015));
   CHECK(noise(0.75, 0.5) == doctest::Approx(0.03));             // by chance
   CHECK(noise(1, 1e-6) == doctest::Approx(0.01).epsilon(0.2));  // what differs from row to row is left
   CHECK(noise(0, 0.5, 0.1) == doctest::Approx(0.04).epsilon(0.2));  // no more than four times that
+  const auto with_spectrum = [&](double power, double error) {
+    const FastSpectrum white{.frequency = {1, 2, 3}, .power = {power, power, power}};
+    return output_noise(setup.bound, setup.split.training, 0, {.typical = 0.1}, white, error);
+  };
+  CHECK(with_spectrum(0.0004, 0.2) == doctest::Approx(0.02));
   for (Recording& one : setup.bound.recordings) {
     for (double& level : one.outputs.reshaped()) level = std::round(level);  // a sensor that rarely moves
   }
   CHECK(noise(0, 0.5, 0.1) == doctest::Approx(0.1));
-  CHECK(output_noise(setup.bound, setup.split.training, 0, {.typical = 0.1}, 0.02) == 0.02);  // never more than the error
+  CHECK(with_spectrum(0.0004, 0.01) == 0.01);  // never more than the error
+  CHECK(with_spectrum(0.0004, 2) == doctest::Approx(1 / std::sqrt(12.0)));  // readings are whole numbers
+  CHECK(with_spectrum(0, 0.02) == 0.02);
   setup.bound.info.outputs[0].noise = 0.03;
   CHECK(noise(0.75, 1e-6) == 0.03);
 }

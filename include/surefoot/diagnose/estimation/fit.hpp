@@ -56,10 +56,11 @@ class FitFunctions {
   Eigen::VectorXd start() const;
   Box<Eigen::Dynamic> box() const;
   Hypothesis at(const Eigen::VectorXd& z) const;
-  Eigen::VectorXd residuals(const Eigen::VectorXd& z) const;
+  Eigen::VectorXd residuals(const Eigen::VectorXd& z) const { return residuals_at(at(z)); }
 
   /// Forward differences from z, where the residuals are `here`. A free initial state moves the residuals of its own
-  /// recording only.
+  /// recording only. Where a sensor rounds, those of what it reads before: what is inside of a step would tell no fit
+  /// which way to go. (Differences of the steps themselves are of the readings.)
   Eigen::MatrixXd jacobian(const Eigen::VectorXd& z, const Eigen::VectorXd& here) const {
     return differences(z, here, false);
   }
@@ -72,7 +73,8 @@ class FitFunctions {
  private:
   Eigen::MatrixXd differences(const Eigen::VectorXd& z, const Eigen::VectorXd& here, bool central) const;
 
-  Eigen::VectorXd residuals_of(const Hypothesis& hypothesis, std::size_t i) const;
+  Eigen::VectorXd residuals_at(const Hypothesis& hypothesis) const;
+  Eigen::VectorXd residuals_of(const Hypothesis& hypothesis, std::size_t i) const;  // of one recording
 
   const BoundSimulator& bound_;
   Hypothesis base_;

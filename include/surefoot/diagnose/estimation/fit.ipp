@@ -67,14 +67,18 @@ SUREFOOT_INLINE Hypothesis FitFunctions::at(const Eigen::VectorXd& z) const {
   return hypothesis;
 }
 
-SUREFOOT_INLINE Eigen::VectorXd FitFunctions::residuals(const Eigen::VectorXd& z) const {
-  const Hypothesis hypothesis = at(z);
+SUREFOOT_INLINE Eigen::VectorXd FitFunctions::residuals_at(const Hypothesis& hypothesis) const {
   Eigen::VectorXd all(begin_.back());
   parallel_(cells_.size(), [&](std::size_t i) {
     const Eigen::VectorXd one = residuals_of(hypothesis, i);
     std::copy_n(one.data(), one.size(), all.data() + begin_[i]);
   });
   return all;
+}
+
+/// Whether it is a step of a sensor that rounds.
+SUREFOOT_INLINE bool is_of_rounding(const Hypothesis& hypothesis, const Variable& variable) {
+  return variable.kind == Variable::Kind::effect && hypothesis.effects[variable.index].effect->rounds;
 }
 
 SUREFOOT_INLINE Eigen::MatrixXd FitFunctions::differences(const Eigen::VectorXd& z, const Eigen::VectorXd& here,
@@ -88,8 +92,14 @@ SUREFOOT_INLINE Eigen::MatrixXd FitFunctions::differences(const Eigen::VectorXd&
       if (v < shared_ || variables_[v].item == problem_.recordings[i]) jobs.emplace_back(v, i);
     }
   }
+  const bool rounds = holds_for_any(base_.effects, [](const AttachedEffect& one) { return one.effect->rounds; });
+  const Eigen::VectorXd smooth = rounds ? residuals_at(without_rounding(at(z))) : Eigen::VectorXd();
   parallel_(jobs.size(), [&](std::size_t j) {
     const auto [v, i] = jobs[j];
+    const bool as_read = !rounds || is_of_rounding(base_, variables_[v]);
+    const auto moved_to = [&, i = i](const Eigen::VectorXd& to) {
+      return residuals_of(as_read ? at(to) : without_rounding(at(to)), i);
+    };
     const auto k = static_cast<Eigen::Index>(v);
     const double low = to_search(variables_[v], variables_[v].low), high = to_search(variables_[v], variables_[v].high);
     const double step = z[k] + 2 * difference > high ? -difference : difference;
@@ -97,11 +107,11 @@ SUREFOOT_INLINE Eigen::MatrixXd FitFunctions::differences(const Eigen::VectorXd&
     Eigen::VectorXd moved = z;
     moved[k] = z[k] + step;
     const Eigen::Index length = begin_[i + 1] - begin_[i];
-    const Eigen::VectorXd there = residuals_of(at(moved), i);
+    const Eigen::VectorXd there = moved_to(moved);
     moved[k] = z[k] - step;
-    const Eigen::VectorXd back = both_sides ? residuals_of(at(moved), i) : Eigen::VectorXd();
+    const Eigen::VectorXd back = both_sides ? moved_to(moved) : Eigen::VectorXd();
     for (Eigen::Index n = 0; n < length; ++n) {
-      const double behind = both_sides ? back[n] : here[begin_[i] + n];
+      const double behind = both_sides ? back[n] : (as_read ? here : smooth)[begin_[i] + n];
       jacobian(begin_[i] + n, k) = (there[n] - behind) / (both_sides ? 2 * step : step);
     }
   });

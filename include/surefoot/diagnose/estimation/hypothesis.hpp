@@ -32,6 +32,12 @@ std::vector<SimulatedRun> simulate_all(const BoundSimulator& bound, const Hypoth
                                        const std::vector<std::size_t>& recordings, const Integration& integration,
                                        const Parallel& parallel);
 
+/// All but one of the effects.
+Hypothesis without_effect(const Hypothesis& whole, std::size_t effect);
+
+/// As if no sensor rounded: what is inside of a step tells no fit which way to go.
+Hypothesis without_rounding(Hypothesis hypothesis);
+
 /// The parameters among the values of an effect, with nothing known yet of how it begins in each of the recordings.
 Eigen::VectorXd values_before_starts(const Effect& effect, const Eigen::VectorXd& values, std::size_t recordings);
 

@@ -36,6 +36,20 @@ SUREFOOT_INLINE std::vector<SimulatedRun> simulate_all(const BoundSimulator& bou
   return result;
 }
 
+SUREFOOT_ONCE Hypothesis without_effect(const Hypothesis& whole, std::size_t effect) {
+  Hypothesis rest = whole;
+  rest.effects.erase(rest.effects.begin() + static_cast<std::ptrdiff_t>(effect));
+  rest.values.erase(rest.values.begin() + static_cast<std::ptrdiff_t>(effect));
+  return rest;
+}
+
+SUREFOOT_ONCE Hypothesis without_rounding(Hypothesis hypothesis) {
+  for (std::size_t e = hypothesis.effects.size(); e-- > 0;) {
+    if (hypothesis.effects[e].effect->rounds) hypothesis = without_effect(hypothesis, e);
+  }
+  return hypothesis;
+}
+
 SUREFOOT_INLINE Eigen::VectorXd values_before_starts(const Effect& effect, const Eigen::VectorXd& values,
                                                      std::size_t recordings) {
   const auto parameters = static_cast<Eigen::Index>(effect.parameters.size());

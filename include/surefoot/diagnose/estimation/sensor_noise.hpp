@@ -1,4 +1,4 @@
-// Noise of sensors, from readings alone; and initial states that were read off a sensor.
+// Noise and resolution of sensors, from readings alone; and initial states that were read off a sensor.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,6 +12,9 @@ namespace surefoot::diagnosis {
 /// Standard deviation of noise that differs from row to row, from third differences of what was measured (they remove
 /// motion that is smooth over four rows); noise that is correlated from row to row is underestimated.
 double fast_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings, Eigen::Index output);
+
+/// Least step between readings of one output that differ, in the recordings; 0 if none do.
+double resolution(const BoundSimulator& bound, const std::vector<std::size_t>& recordings, Eigen::Index output);
 
 /// Standard deviation of the noise of one output: as stated, or as far as it is fast.
 inline double noise_of(const BoundSimulator& bound, const std::vector<std::size_t>& recordings, Eigen::Index output) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -28,6 +29,20 @@ SUREFOOT_ONCE double fast_noise(const BoundSimulator& bound, const std::vector<s
   const auto middle = third.begin() + static_cast<std::ptrdiff_t>(third.size() / 2);
   std::nth_element(third.begin(), middle, third.end());
   return *middle / 0.6745 / std::sqrt(20.0);
+}
+
+SUREFOOT_ONCE double resolution(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                Eigen::Index output) {
+  constexpr double rounding = 1e-9;  // of a reading: no step of a sensor
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::size_t r : recordings) {
+    const Eigen::VectorXd y = surefoot::detail::row_of(bound.recordings[r].outputs, output);
+    for (Eigen::Index i = 1; i < y.size(); ++i) {
+      const double step = std::abs(y[i] - y[i - 1]);
+      if (step > rounding * std::abs(y[i])) least = std::min(least, step);
+    }
+  }
+  return std::isfinite(least) ? least : 0;
 }
 
 SUREFOOT_ONCE void free_measured_initial_states(BoundSimulator& bound, const std::vector<std::size_t>& training) {

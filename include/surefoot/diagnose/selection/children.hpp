@@ -16,8 +16,6 @@ namespace surefoot::diagnosis {
 Fit fit_child(const BoundSimulator& bound, const Hypothesis& parent, const std::vector<Proposal>& additions,
               const SearchProblem& problem);
 
-Hypothesis without_effect(const Hypothesis& whole, std::size_t effect);
-
 /// A search under way.
 struct Search {
   const BoundSimulator& bound;

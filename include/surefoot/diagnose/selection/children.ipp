@@ -19,13 +19,6 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_ONCE Hypothesis without_effect(const Hypothesis& whole, std::size_t effect) {
-  Hypothesis rest = whole;
-  rest.effects.erase(rest.effects.begin() + static_cast<std::ptrdiff_t>(effect));
-  rest.values.erase(rest.values.begin() + static_cast<std::ptrdiff_t>(effect));
-  return rest;
-}
-
 SUREFOOT_ONCE EvaluatedHypothesis Search::without(const EvaluatedHypothesis& whole, std::size_t effect) const {
   const Fit rest = fit(bound, without_effect(whole.hypothesis, effect), problem.fit, parallel);
   return evaluate_fit(bound, rest, problem, parallel);

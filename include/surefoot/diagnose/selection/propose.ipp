@@ -284,6 +284,10 @@ SUREFOOT_ONCE std::vector<Proposal> propose(const BoundSimulator& bound, const H
                                             std::size_t known, const Parallel& parallel,
                                             const ProposalCriteria& criteria) {
   const OpenResiduals open = open_residuals(bound, base, problem, parallel);
+  const Hypothesis smooth = without_rounding(base);  // what is inside of a step would hide what an effect does
+  const FitFunctions unrounded(bound, smooth, problem, parallel);
+  const bool rounds = smooth.effects.size() < base.effects.size();
+  const Eigen::VectorXd smooth_residuals = rounds ? unrounded.residuals(unrounded.start()) : open.residuals;
   const std::vector<Trial> trials = trials_of(bound, base, problem, candidates, known, parallel);
   std::vector<Proposal> tried(trials.size());
   const std::vector<std::size_t> begin = groups_of(trials);
@@ -291,8 +295,10 @@ SUREFOOT_ONCE std::vector<Proposal> propose(const BoundSimulator& bound, const H
     Eigen::VectorXd sizes;  // multiples of the strengths of a start, as the start before has found them
     for (std::size_t j = begin[group]; j < begin[group + 1]; ++j) {
       const auto& [c, before, start] = trials[j];
+      const bool beside_others = first_on_the_same(base, candidates[c], known) < base.effects.size();
       const auto signatures_of = [&, c = c, before = before](const Eigen::VectorXd& values) {
-        return signatures(bound, base, problem, open.residuals, candidates[c], values, before);
+        if (beside_others) return signatures(bound, base, problem, open.residuals, candidates[c], values, before);
+        return signatures(bound, smooth, problem, smooth_residuals, candidates[c], values, smooth.effects.size());
       };
       Eigen::VectorXd values = start;
       for (Eigen::Index k = 0; k < sizes.size(); ++k) values[k] *= sizes[k];

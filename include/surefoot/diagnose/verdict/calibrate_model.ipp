@@ -89,18 +89,6 @@ SUREFOOT_ONCE FreedTogether free_what_is_left(const EstimationSetup& setup, cons
   return free_together(setup.bound, calibrated, problem, run.options.starts, run.seed, run.parallel);
 }
 
-/// With initial states estimated, by readings that no sensor rounds and then by all: what is rounded tells little of
-/// which way a state should go.
-SUREFOOT_ONCE Hypothesis begun_from_smooth_readings(const BoundSimulator& bound, Hypothesis one,
-                                                    const FitProblem& problem, const Parallel& parallel) {
-  Hypothesis smooth = one;
-  for (std::size_t e = smooth.effects.size(); e-- > 0;) {
-    if (smooth.effects[e].effect->rounds) smooth = without_effect(smooth, e);
-  }
-  one.initial = with_estimated_initial_states(bound, smooth, problem.recordings, problem, parallel).initial;
-  return with_estimated_initial_states(bound, one, problem.recordings, problem, parallel);
-}
-
 /// A calibration, or the fit from the nominal parameters on if these are better with the steps and weights that were
 /// chosen since, each beginning where that suits it: a stiff model may have run away from them with coarser steps, and
 /// what a sensor rounds hardly leads back to where it was.
@@ -113,7 +101,7 @@ SUREFOOT_ONCE Fit no_worse_than(const Hypothesis& nominal, const Fit& calibrated
     return all_finite(residuals) ? mean_loss(residuals, problem.weighting.robust)
                                  : std::numeric_limits<double>::infinity();
   };
-  const Hypothesis begun = begun_from_smooth_readings(setup.bound, nominal, problem, parallel);
+  const Hypothesis begun = with_estimated_initial_states(setup.bound, nominal, problem.recordings, problem, parallel);
   if (!(loss_of(begun) < loss_of(calibrated.hypothesis))) return calibrated;
   const Fit again = fit(setup.bound, begun, problem, parallel);
   return again.ok ? again : calibrated;

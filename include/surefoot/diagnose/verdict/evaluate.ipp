@@ -99,11 +99,15 @@ SUREFOOT_ONCE ForestResidual offer_forest(const EstimationSetup& setup, const Fi
 }
 
 SUREFOOT_ONCE double output_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                  Eigen::Index output, const WhitenessTest& residuals, double error) {
+                                  Eigen::Index output, const WhitenessTest& residuals,
+                                  const FastSpectrum& spectrum, double error) {
   constexpr double significance = 0.01;  // of structure in the residuals
   constexpr double remembering = 4;      // times as large as what differs from row to row: noise of which 0.9 remains
   const double stated = bound.info.outputs[static_cast<std::size_t>(output)].noise;
   if (stated > 0) return stated;
+  const double by_spectrum = noise_from_spectrum(spectrum);
+  const double by_rounding = resolution(bound, recordings, output) / std::sqrt(12.0);  // evenly within a step
+  if (by_spectrum > 0) return std::min(std::max(by_spectrum, by_rounding), error);
   const double structured = residuals.p_value < significance ? residuals.predicted : 0;
   const double unpredictable = residuals.typical * std::sqrt(1 - structured);
   const double fast = fast_noise(bound, recordings, output);
@@ -142,10 +146,14 @@ SUREFOOT_ONCE std::vector<ChannelMismatch> mismatch_by_output(const EstimationSe
     channel.rmse_nominal = std::sqrt(sums[0] / count);
     channel.rmse_calibrated = std::sqrt(sums[1] / count);
     channel.rmse_after = std::sqrt(sums[2] / count);
-    channel.noise =
-        setup.noise == NoiseKind::measurement
-            ? output_noise(bound, setup.split.training, output, models.chosen.by_output[k], channel.rmse_after)
-            : noise_of_steps(bound, setup.split.training, output, channel.rmse_after);
+    const auto& training = setup.split.training;
+    if (setup.noise == NoiseKind::measurement) {
+      const auto left = filled_series(bound, training, models.chosen.runs.training, output);
+      channel.noise = output_noise(bound, training, output, models.chosen.by_output[k], fast_spectrum(left),
+                                   channel.rmse_after);
+    } else {
+      channel.noise = noise_of_steps(bound, training, output, channel.rmse_after);
+    }
     channel.noise_stated = bound.info.outputs[k].noise > 0;
     channel.p_value = models.calibrated.by_output[k].p_value;
     result.push_back(std::move(channel));
