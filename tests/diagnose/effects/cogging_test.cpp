@@ -61,5 +61,10 @@ TEST_CASE("cogging of a rotor that turns round is found by its number per turn")
   }
 }
 
+TEST_CASE("what never repeats within the travel is no cogging") {
+  const double travel_of_even_motion = std::sqrt(12.0);  // in deviations of the position
+  CHECK(effects::cogging().parameters[2].high < 1.2 * travel_of_even_motion);
+}
+
 }  // namespace
 }  // namespace surefoot

@@ -47,7 +47,8 @@ std::vector<Recording> exact_walks(int count) {
 TEST_CASE("steps that are noisy are noise of the process, poses that are noise of the measurement") {
   const BoundSimulator walking = bind_simulator(WalkingRobot{}, walks(false, 20, 1)),
                        measuring = bind_simulator(WalkingRobot{}, exact_walks(20));
-  for (const Vec<3>& gains : {Vec<3>(1.2, 0.9, 1.1), Vec<3>(1, 1, 1)}) {  // also before the gains are known
+  for (const Vec<3>& gains :
+       {Vec<3>(1.2, 0.9, 1.1), Vec<3>(1, 1, 1), Vec<3>(1.7, 0.5, 0.6)}) {  // also before these are known
     CHECK(noise_kind(walking, with_gains(walking, gains), first(0, 20)) == NoiseKind::process);
     CHECK(noise_kind(measuring, with_gains(measuring, gains), first(0, 20)) == NoiseKind::measurement);
   }

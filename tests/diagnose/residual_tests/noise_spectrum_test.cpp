@@ -55,7 +55,9 @@ TEST_CASE("errors that walk at random are no noise of a sensor") {
 }
 
 TEST_CASE("too few rows tell nothing") {
-  CHECK(fast_spectrum(noisy(0, [](auto) { return 0.0; }, 66)).power.empty());
+  CHECK(fast_spectrum(noisy(
+                          0, [](auto) { return 0.0; }, 66))
+            .power.empty());
   CHECK(noise_of_series({}) == 0);
   CHECK(noise_of_series({Eigen::VectorXd::Zero(1000)}) == 0);
 }

@@ -83,7 +83,7 @@ TEST_CASE("the noise of an output is what no lag predicts, unless it is stated")
     for (double& level : one.outputs.reshaped()) level = std::round(level);  // a sensor that rarely moves
   }
   CHECK(noise(0, 0.5, 0.1) == doctest::Approx(0.1));
-  CHECK(with_spectrum(0.0004, 0.01) == 0.01);  // never more than the error
+  CHECK(with_spectrum(0.0004, 0.01) == 0.01);                               // never more than the error
   CHECK(with_spectrum(0.0004, 2) == doctest::Approx(1 / std::sqrt(12.0)));  // readings are whole numbers
   CHECK(with_spectrum(0, 0.02) == 0.02);
   setup.bound.info.outputs[0].noise = 0.03;

@@ -62,7 +62,8 @@ TEST_CASE("of long recordings fewer screen proposals") {
     const Parallel parallel = serially();
     EstimationSetup setup = hold_out_recordings(toys::bind_tank, std::move(recordings), {options, parallel});
     const Calibration calibration = calibrate_model(setup, {options, parallel});
-    CHECK(search_problem(setup, calibration, {options, parallel}).screened.size() == static_cast<std::size_t>(screened));
+    CHECK(search_problem(setup, calibration, {options, parallel}).screened.size() ==
+          static_cast<std::size_t>(screened));
   }
 }
 

@@ -29,7 +29,7 @@ namespace surefoot::effects {
                          {.name = "period",
                           .measure = {.position = 1},
                           .low = 0.02,
-                          .high = 10,
+                          .high = 4,  // about the whole travel: what never repeats is no cogging
                           .starts = {0.2, 0.217, 0.235, 0.253, 0.274, 0.3, 0.33, 0.364, 0.41, 0.465, 0.54, 0.645, 0.8,
                                      1.05, 1.5, 2.9}}},
           .confusable_with = names_of({"gravity_offset", "stribeck_friction", "cubic_stiffness"}),

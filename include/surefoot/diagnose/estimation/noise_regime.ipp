@@ -15,6 +15,7 @@
 #include "surefoot/diagnose/estimation/fit.hpp"
 #include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/noise_regime.hpp"
+#include "surefoot/diagnose/estimation/typical_sizes.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
@@ -78,6 +79,19 @@ SUREFOOT_ONCE bool few_readings(const BoundSimulator& bound, const std::vector<s
   return recordings.empty() || with_few > recordings.size() / 2;
 }
 
+/// With parameters that suit single steps best: what others are off by goes with the commands, and is no noise.
+SUREFOOT_ONCE Hypothesis fitted_to_steps(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                         const std::vector<std::size_t>& recordings) {
+  FitProblem steps;
+  steps.recordings = recordings;
+  steps.integration = bound.integration;
+  steps.integration.restart = 1;
+  steps.weighting.sigma = output_deviations(bound, recordings);
+  steps.free = Free::all_but_effects;
+  const Fit fitted = fit(bound, hypothesis, steps, serially());
+  return fitted.ok ? fitted.hypothesis : hypothesis;
+}
+
 SUREFOOT_ONCE NoiseKind noise_kind(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                    const std::vector<std::size_t>& recordings) {
   if (bound.info.kind != SimulatorKind::map) return NoiseKind::measurement;
@@ -85,7 +99,7 @@ SUREFOOT_ONCE NoiseKind noise_kind(const BoundSimulator& bound, const Hypothesis
   if (!bound.structure.all_states_measured) return NoiseKind::measurement;
   const auto states_it = [](const OutputInfo& output) { return output.process_noise > 0; };
   if (holds_for_all(bound.info.outputs, states_it)) return NoiseKind::process;
-  const Eigen::MatrixXd apart = step_correlations(bound, hypothesis, recordings);
+  const Eigen::MatrixXd apart = step_correlations(bound, fitted_to_steps(bound, hypothesis, recordings), recordings);
   constexpr double alternating = 0.3;    // a correlation two or three rows apart: such steps differ in turn, no noise
   constexpr double differenced = -0.25;  // half way between noise of the process (0) and of measurement (-1/2)
   bool in_turn = false;

@@ -25,8 +25,8 @@ struct FastSpectrum {
 FastSpectrum fast_spectrum(const std::vector<Eigen::VectorXd>& series);
 
 /// Standard deviation of noise x' = rho x + e, white or fading from row to row, whose power s^2 / |1 - rho e^(-iw)|^2
-/// fits best in logarithms. Where rho would be more than 0.9, what falls so is the model's error, and the noise as if it
-/// were white, by the fastest frequency. 0 if the spectrum is empty, or nothing is left at some frequency.
+/// fits best in logarithms. Where rho would be more than 0.9, what falls so is the model's error, and the noise as if
+/// it were white, by the fastest frequency. 0 if the spectrum is empty, or nothing is left at some frequency.
 double noise_from_spectrum(const FastSpectrum& spectrum);
 
 }  // namespace surefoot::diagnosis

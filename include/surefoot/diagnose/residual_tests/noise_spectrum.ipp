@@ -61,7 +61,8 @@ SUREFOOT_ONCE FastSpectrum fast_spectrum(const std::vector<Eigen::VectorXd>& ser
       std::array<double, rows> chunk = {};
       for (Eigen::Index i = 0; i < rows; ++i) {
         const double* at = y.data() + from + i;
-        chunk[static_cast<std::size_t>(i)] = taper[static_cast<std::size_t>(i)] * (at[3] - 3 * at[2] + 3 * at[1] - at[0]);
+        chunk[static_cast<std::size_t>(i)] =
+            taper[static_cast<std::size_t>(i)] * (at[3] - 3 * at[2] + 3 * at[1] - at[0]);
       }
       for (std::size_t k = 0; k < powers.size(); ++k) {
         double real = 0, imaginary = 0;

@@ -99,14 +99,15 @@ SUREFOOT_ONCE ForestResidual offer_forest(const EstimationSetup& setup, const Fi
 }
 
 SUREFOOT_ONCE double output_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                  Eigen::Index output, const WhitenessTest& residuals,
-                                  const FastSpectrum& spectrum, double error) {
+                                  Eigen::Index output, const WhitenessTest& residuals, const FastSpectrum& spectrum,
+                                  double error) {
   constexpr double significance = 0.01;  // of structure in the residuals
+  constexpr double evenly = 1 / 3.4641;  // of a step: the deviation of what is anywhere in it, 1 / sqrt(12)
   constexpr double remembering = 4;      // times as large as what differs from row to row: noise of which 0.9 remains
   const double stated = bound.info.outputs[static_cast<std::size_t>(output)].noise;
   if (stated > 0) return stated;
   const double by_spectrum = noise_from_spectrum(spectrum);
-  const double by_rounding = resolution(bound, recordings, output) / std::sqrt(12.0);  // evenly within a step
+  const double by_rounding = resolution(bound, recordings, output) * evenly;
   if (by_spectrum > 0) return std::min(std::max(by_spectrum, by_rounding), error);
   const double structured = residuals.p_value < significance ? residuals.predicted : 0;
   const double unpredictable = residuals.typical * std::sqrt(1 - structured);
@@ -149,8 +150,8 @@ SUREFOOT_ONCE std::vector<ChannelMismatch> mismatch_by_output(const EstimationSe
     const auto& training = setup.split.training;
     if (setup.noise == NoiseKind::measurement) {
       const auto left = filled_series(bound, training, models.chosen.runs.training, output);
-      channel.noise = output_noise(bound, training, output, models.chosen.by_output[k], fast_spectrum(left),
-                                   channel.rmse_after);
+      channel.noise =
+          output_noise(bound, training, output, models.chosen.by_output[k], fast_spectrum(left), channel.rmse_after);
     } else {
       channel.noise = noise_of_steps(bound, training, output, channel.rmse_after);
     }
