@@ -9,7 +9,8 @@
 
 namespace surefoot::diagnosis {
 
-/// Residuals of one output in each recording that misses few of its readings; these are filled in between.
+/// Residuals of one output in each recording that misses few of its readings, and whose run is finite; what is missing
+/// is filled in between.
 std::vector<Eigen::VectorXd> filled_series(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
                                            const std::vector<SimulatedRun>& runs, Eigen::Index output);
 

@@ -23,6 +23,7 @@ SUREFOOT_ONCE std::vector<Eigen::VectorXd> filled_series(const BoundSimulator& b
   constexpr double few = 0.2;  // of the rows
   std::vector<Eigen::VectorXd> result;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
+    if (!runs[i].finite) continue;
     const Eigen::MatrixXd& readings = bound.recordings[recordings[i]].outputs;
     Eigen::VectorXd series = series_of(bound, recordings[i], runs[i], output);
     std::vector<Eigen::Index> read;

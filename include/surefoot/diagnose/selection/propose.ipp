@@ -212,8 +212,7 @@ SUREFOOT_ONCE std::vector<Observed> observe_before(const BoundSimulator& bound, 
   Hypothesis first = base;
   for (std::size_t e = base.effects.size(); e-- > before;) {
     if (base.effects[e].effect->place != Place::output || base.effects[e].at != candidate.at) continue;
-    first.effects.erase(first.effects.begin() + static_cast<std::ptrdiff_t>(e));
-    first.values.erase(first.values.begin() + static_cast<std::ptrdiff_t>(e));
+    first = without_effect(first, e);
   }
   const auto runs = simulate_all(bound, first, problem.recordings, problem.integration, serially());
   const std::vector<Observed> bare = observe(bound, problem.recordings, runs);
