@@ -159,9 +159,7 @@ TEST_CASE("a search in many recordings looks at some that differ, and fits to al
   CHECK(some.size() == 4);
   CHECK(std::ranges::is_sorted(some));
   bench.problem.effort.rows = 1;
-  bench.problem.effort.screening = 2;
-  CHECK(informative(bench.bound, nominal, bench.problem, bench.parallel).size() ==
-        2);  // as many as may screen proposals
+  CHECK(informative(bench.bound, nominal, bench.problem, bench.parallel).size() == 2);  // as many as are screened
   const Selection selection = bench.found();
   CHECK(names_in(selection.chosen) == "constant_rate");
   CHECK(selection.fit.recordings.size() == 6);

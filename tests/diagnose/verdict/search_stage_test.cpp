@@ -53,20 +53,6 @@ TEST_CASE("small problems get a longer list of proposals, and the search ends wh
   CHECK(search_problem(setup, calibration, {options, parallel}).stopped());
 }
 
-TEST_CASE("of long recordings fewer screen proposals") {
-  for (const auto& [rows, screened] : std::vector<std::pair<int, int>>{{200, 5}, {900, 4}, {2000, 3}, {4000, 3}}) {
-    std::vector<Recording> recordings;
-    for (int r = 0; r < 6; ++r) recordings.push_back(toys::tank_recording(r, rows));
-    DiagnoseOptions options;
-    options.starts = 1;
-    const Parallel parallel = serially();
-    EstimationSetup setup = hold_out_recordings(toys::bind_tank, std::move(recordings), {options, parallel});
-    const Calibration calibration = calibrate_model(setup, {options, parallel});
-    CHECK(search_problem(setup, calibration, {options, parallel}).screened.size() ==
-          static_cast<std::size_t>(screened));
-  }
-}
-
 TEST_CASE("residuals are searched for more as long as they hold what noise does not") {
   DiagnoseOptions options;
   options.starts = 2;

@@ -67,8 +67,7 @@ struct SearchEffort {
   std::size_t further_finalists = 5;   // the same beside effects that were found
   std::size_t beam = 3;                // structures that are each extended by a further effect
   double hopeless = 15;                // [nat] behind the best one: not extended, not fitted again
-  std::size_t screening = 5;           // recordings that proposals are made from,
-  std::size_t fewest_screening = 3;    // or as few as this if these have more rows than the search looks at
+  std::size_t screening = 5;           // recordings that proposals are made from
   std::size_t screening_final_poses = 1000;  // the same where each has a pose only
   int first_iterations = 4;                  // of a fit, before the weakest are given up
   std::size_t second_look = 2;               // times as many fits as are finished are continued before that choice,

@@ -45,7 +45,7 @@ SUREFOOT_ONCE std::vector<std::size_t> informative(const BoundSimulator& bound, 
   if (share >= 1) return all;
   const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(all.size())));
   const auto runs = simulate_all(bound, calibrated, all, problem.fit.integration, parallel);
-  return some_by_error(bound, all, runs, std::max(std::min(problem.effort.screening, all.size()), count));
+  return some_by_error(bound, all, runs, std::max(std::min(problem.screened.size(), all.size()), count));
 }
 
 /// Weights by what the chosen effects leave, and the fit with these, in turn: as a model without effects is calibrated,

@@ -79,10 +79,8 @@ SUREFOOT_ONCE SearchProblem search_problem(const EstimationSetup& setup, const C
   effort.shortlist = static_cast<std::size_t>(std::clamp(fewest * effort.shortlist_rows / rows, fewest, most));
   effort.compared_shortlist = effort.compared_shortlist * effort.shortlist / static_cast<std::size_t>(fewest);
   const bool final_poses = setup.noise == NoiseKind::final_pose;
-  const auto in_these_rows = static_cast<std::size_t>(static_cast<double>(effort.rows * training.size()) / rows);
-  const std::size_t screened = std::clamp(in_these_rows, effort.fewest_screening, effort.screening);
   problem.screened = some_by_error(setup.bound, training, calibration.training_runs,
-                                   final_poses ? effort.screening_final_poses : screened);
+                                   final_poses ? effort.screening_final_poses : effort.screening);
   problem.on_progress = [run](const std::string& stage, double share) {
     run.progress(stage, progress_search + (progress_evaluation - progress_search) * share);
   };
