@@ -64,19 +64,5 @@ TEST_CASE("an effect that is not worth its parameters once all has settled is ta
   CHECK(worth.evidence.size() == 1);
 }
 
-TEST_CASE("of effects that are not worth their parameters the least needed goes first, whatever their order") {
-  const TankBench bench({rate_in_tank});
-  const Search search = bench.search();
-  Selection selection;
-  selection.nominal = bench.with({});
-  for (const auto& some : std::vector<std::vector<std::string>>{{"sensor_bias", "constant_rate", "sensor_drift"},
-                                                                {"sensor_drift", "constant_rate", "sensor_bias"}}) {
-    selection.chosen = bench.with(some);
-    const auto fewer = weigh_effects(search, selection);
-    REQUIRE(fewer);
-    CHECK(names_in(*fewer) == "constant_rate, sensor_bias");
-  }
-}
-
 }  // namespace
 }  // namespace surefoot::diagnosis

@@ -22,8 +22,8 @@ void refit_best(const Search& search, std::vector<EvaluatedHypothesis>& pool);
 /// Takes each effect of the structures next to the best away: what only led to the others is not needed any more.
 void take_effects_away(const Search& search, std::vector<EvaluatedHypothesis>& pool);
 
-/// The evidence of each chosen effect into the selection. If some are not worth their parameters once all has settled
-/// (a size may have gone to zero): the structure without the one that is needed least.
+/// The evidence of each chosen effect into the selection. If one is not worth its parameters once all has settled (its
+/// size may have gone to zero): the structure without it.
 std::optional<EvaluatedHypothesis> weigh_effects(const Search& search, Selection& selection);
 
 /// Recordings that the search looks at: of many only some, which differ in how far the calibrated model misses them.

@@ -60,18 +60,14 @@ SUREFOOT_ONCE void settle(Search& search, EvaluatedHypothesis& chosen) {
 
 SUREFOOT_ONCE std::optional<EvaluatedHypothesis> weigh_effects(const Search& search, Selection& selection) {
   const EvaluatedHypothesis& chosen = selection.chosen;
-  std::optional<EvaluatedHypothesis> fewer;
-  double least = 0;
   for (std::size_t e = search.problem.known; e < chosen.hypothesis.effects.size(); ++e) {
     const bool only = search.effects(chosen) == 1;
     const EvaluatedHypothesis rest = only ? selection.nominal : search.without(chosen, e);
     const double odds = log_odds(chosen, rest, search.problem.criteria);
+    if (!only && odds < 0) return rest;
     selection.evidence.push_back(gain_of(rest.errors, chosen.errors, odds));
-    if (only || !(odds < least)) continue;
-    least = odds;
-    fewer = rest;
   }
-  return fewer;
+  return std::nullopt;
 }
 
 /// A structure, fitted again, or that without one of its effects if it is as probable.
