@@ -19,7 +19,7 @@ std::vector<Eigen::VectorXd> filled_series(const BoundSimulator& bound, const st
 /// of the mean (a jump of the model's error is in few of them). Empty if there are fewer than eight chunks.
 struct FastSpectrum {
   std::vector<double> frequency;  // [rad per row]
-  std::vector<double> power;      // a row of white noise: its variance
+  std::vector<double> power;      // of white noise: its variance, at each
 };
 
 /// Of series without NaN. Cost: 50 rows * 64.

@@ -294,9 +294,9 @@ SUREFOOT_ONCE std::vector<Proposal> propose(const BoundSimulator& bound, const H
     Eigen::VectorXd sizes;  // multiples of the strengths of a start, as the start before has found them
     for (std::size_t j = begin[group]; j < begin[group + 1]; ++j) {
       const auto& [c, before, start] = trials[j];
-      const bool beside_others = first_on_the_same(base, candidates[c], known) < base.effects.size();
+      const bool shares_its_place = first_on_the_same(base, candidates[c], known) < base.effects.size();
       const auto signatures_of = [&, c = c, before = before](const Eigen::VectorXd& values) {
-        if (beside_others) return signatures(bound, base, problem, open.residuals, candidates[c], values, before);
+        if (shares_its_place) return signatures(bound, base, problem, open.residuals, candidates[c], values, before);
         return signatures(bound, smooth, problem, smooth_residuals, candidates[c], values, smooth.effects.size());
       };
       Eigen::VectorXd values = start;

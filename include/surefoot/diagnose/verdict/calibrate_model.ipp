@@ -12,7 +12,6 @@
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/sensor_noise.hpp"
-#include "surefoot/diagnose/selection/children.hpp"
 #include "surefoot/diagnose/selection/choose_holds.hpp"
 #include "surefoot/diagnose/selection/choose_initial_states.hpp"
 #include "surefoot/diagnose/verdict/calibrate_model.hpp"

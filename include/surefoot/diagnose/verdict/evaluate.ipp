@@ -102,13 +102,14 @@ SUREFOOT_ONCE double output_noise(const BoundSimulator& bound, const std::vector
                                   Eigen::Index output, const WhitenessTest& residuals, const FastSpectrum& spectrum,
                                   double error) {
   constexpr double significance = 0.01;  // of structure in the residuals
-  constexpr double evenly = 1 / 3.4641;  // of a step: the deviation of what is anywhere in it, 1 / sqrt(12)
+  constexpr double of_a_step = 1 / 3.4641;  // the deviation of what is anywhere in it, 1 / sqrt(12)
   constexpr double remembering = 4;      // times as large as what differs from row to row: noise of which 0.9 remains
   const double stated = bound.info.outputs[static_cast<std::size_t>(output)].noise;
   if (stated > 0) return stated;
   const double by_spectrum = noise_from_spectrum(spectrum);
-  const double by_rounding = resolution(bound, recordings, output) * evenly;
-  if (by_spectrum > 0) return std::min(std::max(by_spectrum, by_rounding), error);
+  if (by_spectrum > 0) {
+    return std::min(std::max(by_spectrum, of_a_step * resolution(bound, recordings, output)), error);
+  }
   const double structured = residuals.p_value < significance ? residuals.predicted : 0;
   const double unpredictable = residuals.typical * std::sqrt(1 - structured);
   const double fast = fast_noise(bound, recordings, output);
@@ -147,15 +148,17 @@ SUREFOOT_ONCE std::vector<ChannelMismatch> mismatch_by_output(const EstimationSe
     channel.rmse_nominal = std::sqrt(sums[0] / count);
     channel.rmse_calibrated = std::sqrt(sums[1] / count);
     channel.rmse_after = std::sqrt(sums[2] / count);
+    channel.noise_stated = bound.info.outputs[k].noise > 0;
     const auto& training = setup.split.training;
     if (setup.noise == NoiseKind::measurement) {
-      const auto left = filled_series(bound, training, models.chosen.runs.training, output);
-      channel.noise =
-          output_noise(bound, training, output, models.chosen.by_output[k], fast_spectrum(left), channel.rmse_after);
+      FastSpectrum left;
+      if (!channel.noise_stated) {
+        left = fast_spectrum(filled_series(bound, training, models.chosen.runs.training, output));
+      }
+      channel.noise = output_noise(bound, training, output, models.chosen.by_output[k], left, channel.rmse_after);
     } else {
       channel.noise = noise_of_steps(bound, training, output, channel.rmse_after);
     }
-    channel.noise_stated = bound.info.outputs[k].noise > 0;
     channel.p_value = models.calibrated.by_output[k].p_value;
     result.push_back(std::move(channel));
   }
