@@ -245,17 +245,28 @@ TEST_CASE("an elastic joint knows when dry friction holds it") {
 TEST_CASE("a joint with a gap moves as two masses do") {
   const effects::TwoMasses masses{.ratio = 0.5, .frequency = 60, .damping = 0.2, .half_width = 0.05};
   const Eigen::VectorXd truth = two_masses(masses, 0, 201, 0.005, 0.3, 1);
-  const auto x = simulated(effects::backlash_gap(), {0.5, 0.05, 60}, recording_of(201, 0.005, 0.3, 1)).states;
+  const auto x = simulated(effects::backlash_gap(), {0.5, 0.05, 60, 0.2}, recording_of(201, 0.005, 0.3, 1)).states;
   CHECK((x.row(0).transpose() - truth).cwiseAbs().maxCoeff() < 0.02);
 }
 
 TEST_CASE("a load behind a gap is left alone until the gap is crossed") {
   Recording recording = recording_of(1001, 0.001, 0, 0);
   recording.inputs(0, 0) = 1000;  // then free, at 1 rad/s
-  const auto x = simulated(effects::backlash_gap(), {1, 0.2, 100}, recording, {.stiffness = 0}).states;
+  const auto x = simulated(effects::backlash_gap(), {1, 0.2, 100, 0.2}, recording, {.stiffness = 0}).states;
   CHECK(x(1, 190) == doctest::Approx(1.0));
   CHECK(x(1, 260) < 0.5);  // hit the load
   for (Eigen::Index i = 0; i <= 1000; ++i) CHECK(std::abs(x(1, i)) < 1.001);
+}
+
+TEST_CASE("what a load behind a gap gives back is by the damping of the contact") {
+  Recording recording = recording_of(1001, 0.001, 0, 0);
+  recording.inputs(0, 0) = 1000;  // then free, at 1 rad/s, against a load of the same inertia
+  const auto after_one_hit = [&](double damping) {
+    return simulated(effects::backlash_gap(), {1, 0.2, 100, damping}, recording, {.stiffness = 0}).states(1, 300);
+  };
+  CHECK(std::abs(after_one_hit(0.02)) < 0.06);  // elastic: the load takes all
+  CHECK(after_one_hit(0.6) > 0.35);             // both go on at nearly the same speed
+  CHECK(after_one_hit(0.6) < 0.55);
 }
 
 TEST_CASE("a motor moves its load once it has crossed the play, and both as one then") {

@@ -102,6 +102,17 @@ TEST_CASE("what is much faster than rows is integrated in as many steps as it ta
   CHECK(chosen.step > row / 128);
 }
 
+TEST_CASE("steps are so short that all recordings run, not only the calmest") {
+  Recording calm = toys::tank_recording(0, 1000), lively = calm;
+  calm.initial.setZero();
+  calm.inputs.setZero();  // an empty tank stays empty, however coarsely
+  BoundSimulator bound = bind_simulator(toys::LeakyTank{}, {calm, lively});
+  Hypothesis hypothesis = nominal_hypothesis(bound);
+  hypothesis.parameters[1] = 600;
+  bound.integration = integration_that_runs(bound, hypothesis, serially());
+  CHECK(simulate(bound, hypothesis, 1, bound.integration).finite);
+}
+
 TEST_CASE("a map is left as it is") {
   const auto walks = toys::walk_recordings([](Pose2 moved, Pose2) { return moved; }, false, 1, 1);
   const BoundSimulator bound = bind_simulator(toys::WalkingRobot{}, walks);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
+#include <vector>
 
 #include "tests/diagnose/log_doctor/servo_log.hpp"
 
@@ -70,6 +72,22 @@ TEST_SUITE("log_doctor") {
     REQUIRE(found);
     CHECK_FALSE(found->recording);
     CHECK(found->repairs[0].kind == LogFaultKind::degrees);
+  }
+
+  TEST_CASE("that a model cannot be simulated in steps of a row is no fault of the clock") {
+    struct StiffServo : toys::Servo {
+      surefoot::SimulatorInfo info() const {
+        surefoot::SimulatorInfo info = Servo::info();
+        info.parameters[0] = {"stiffness", "1/s^2", 4e5, 4e5, 4e5};
+        return info;
+      }
+    };
+    const Parallel parallel = serially();
+    LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    inputs.bind = [](std::vector<surefoot::Recording> some) { return bind_simulator(StiffServo{}, std::move(some)); };
+    const LogFit fit = fit_log(inputs, toys::servo_log());
+    CHECK_FALSE(fit.error[0] < 1e4);  // in milliseconds it stands still instead, which explains nothing
+    CHECK_FALSE(find_fault_of_all(inputs, fit));
   }
 
   TEST_CASE("the effect of a repair is the odds for it") {

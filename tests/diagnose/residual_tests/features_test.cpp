@@ -42,13 +42,14 @@ double value(const FeatureTable& table, const std::string& name, Eigen::Index sa
 }
 
 TEST_CASE("features are states, speeds without sign, reversals, inputs, time and constants that differ") {
-  CHECK(feature_names(motion().bound) == std::vector<std::string>{"x", "v", "abs(v)", "since_reversal(v)", "push",
-                                                                  "since_change(push)", "time", "load"});
+  CHECK(
+      feature_names(motion().bound, InputsOf::own_row) ==
+      std::vector<std::string>{"x", "v", "abs(v)", "since_reversal(v)", "push", "since_change(push)", "time", "load"});
 }
 
 TEST_CASE("times since a reversal or a change count from the row in which it happened") {
   const auto [bound, runs] = motion();
-  const FeatureTable table = make_features(bound, {0, 1}, runs, 1);
+  const FeatureTable table = make_features(bound, {0, 1}, runs, 1, InputsOf::own_row);
   REQUIRE(table.values.cols() == 20);
   CHECK(value(table, "since_reversal(v)", 3) == doctest::Approx(0.3));
   CHECK(value(table, "since_reversal(v)", 4) == 0);
@@ -59,9 +60,26 @@ TEST_CASE("times since a reversal or a change count from the row in which it hap
   CHECK(value(table, "abs(v)", 5) == 3);
 }
 
+TEST_CASE("of inputs that acted until a row, those of the row before are features, and called so") {
+  const auto [bound, runs] = motion();
+  const FeatureTable table = make_features(bound, {0}, runs, 1, InputsOf::row_before);
+  CHECK(value(table, "last(push)", 0) == 0);
+  CHECK(value(table, "last(push)", 6) == 0);  // pushed from there on
+  CHECK(value(table, "last(push)", 7) == 1);
+  CHECK(value(table, "since_change(last(push))", 6) == doctest::Approx(0.6));
+  CHECK(value(table, "since_change(last(push))", 7) == doctest::Approx(0.1));
+  CHECK(value(table, "abs(v)", 5) == 3);
+  BoundSimulator other = bound;
+  other.info.inputs[0].hold = InputHold::before;  // of its own row it acted until then
+  CHECK(value(make_features(other, {0}, runs, 1, InputsOf::row_before), "push", 6) == 1);
+  other = bound;
+  other.structure.shown_at_once[0] = true;
+  CHECK(value(make_features(other, {0}, runs, 1, InputsOf::row_before), "push", 6) == 1);
+}
+
 TEST_CASE("a stride leaves rows out but sees what happens in them") {
   const auto [bound, runs] = motion();
-  const FeatureTable table = make_features(bound, {1}, {runs[1]}, 3);
+  const FeatureTable table = make_features(bound, {1}, {runs[1]}, 3, InputsOf::own_row);
   CHECK(table.row == std::vector<Eigen::Index>{0, 3, 6, 9});
   CHECK(table.recording == std::vector<std::size_t>(4, 0));
   CHECK(value(table, "since_reversal(v)", 2) == doctest::Approx(0.2));

@@ -63,7 +63,7 @@ TEST_CASE("it learns what depends on the motion, and takes it off recordings it 
   const std::vector<SimulatedRun> some_runs(b.runs.begin(), b.runs.end() - 1);
   const ResidualModel model = train_residual_model(b.bound, some, some_runs, serially(), 1);
   CHECK(model.outputs == std::vector<std::string>{"x_m", "v_mps"});
-  CHECK(model.features == feature_names(b.bound));
+  CHECK(model.features == feature_names(b.bound, InputsOf::row_before));
   CHECK(error(b.bound, 7, corrected(b.bound, 7, b.runs[7], model)) < 0.5 * error(b.bound, 7, b.runs[7]));
   CHECK(corrected(b.bound, 7, b.runs[7], model).states == b.runs[7].states);
   const Comparison unseen = cross_validate_residual(b.bound, b.all, b.runs, b.folds, b.weighting, serially(), 1);
@@ -75,6 +75,21 @@ TEST_CASE("on noise alone it gains nothing") {
   const Bench b = bench(block_recordings(0, 0.01));
   const Comparison unseen = cross_validate_residual(b.bound, b.all, b.runs, b.folds, b.weighting, serially(), 1);
   CHECK(unseen.gain < 0.01);
+}
+
+TEST_CASE("inputs that a controller makes from its readings do not tell their noise") {
+  std::vector<Recording> recordings = block_recordings(0, 0.01);
+  for (Recording& recording : recordings) {
+    const Eigen::MatrixXd exact = simulate_augmented(SlidingBlock{}, {}, recording).outputs;
+    const Eigen::MatrixXd noise = recording.outputs - exact;
+    recording.inputs.row(0) += 50 * noise.row(0);  // moves the block by far less than the noise
+    recording.outputs = simulate_augmented(SlidingBlock{}, {}, recording).outputs + noise;
+  }
+  const Bench b = bench(std::move(recordings));
+  const std::vector<std::size_t> some(b.all.begin(), b.all.end() - 1);
+  const std::vector<SimulatedRun> some_runs(b.runs.begin(), b.runs.end() - 1);
+  const ResidualModel model = train_residual_model(b.bound, some, some_runs, serially(), 1);
+  CHECK(error(b.bound, 7, corrected(b.bound, 7, b.runs[7], model)) > 0.95 * error(b.bound, 7, b.runs[7]));
 }
 
 TEST_CASE("rows without a measurement teach nothing") {

@@ -94,7 +94,7 @@ TEST_CASE("the stretches with most of a mismatch come first, with the time they 
   for (const Recording& recording : bound.recordings)
     runs.push_back({recording.outputs, Eigen::MatrixXd::Zero(1, 401)});
   runs[1].outputs.middleCols(145, 12).array() += 0.5;  // 7.25 s to 7.8 s of 20 s
-  const FeatureTable table = make_features(bound, {0, 1}, runs, 2);
+  const FeatureTable table = make_features(bound, {0, 1}, runs, 2, InputsOf::own_row);
   const Eigen::VectorXd energy = mismatch_energy(bound, {0, 1}, runs, Vec<1>(0.1), table, 0);
   CHECK(energy.sum() == doctest::Approx(6 * 25));
   const auto intervals = find_intervals(bound, {0, 1}, table, energy, 3);
@@ -110,7 +110,7 @@ TEST_CASE("energy of changes belongs to where the error arises, not to where it 
   const BoundSimulator bound = bind_simulator(toys::LeakyTank{}, {toys::tank_recording(0, 101)});
   std::vector<SimulatedRun> runs{{bound.recordings[0].outputs, Eigen::MatrixXd::Zero(1, 101)}};
   runs[0].outputs.rightCols(50).array() += 0.2;  // from row 51 on
-  const FeatureTable table = make_features(bound, {0}, runs, 1);
+  const FeatureTable table = make_features(bound, {0}, runs, 1, InputsOf::own_row);
   const Eigen::VectorXd energy = mismatch_energy(bound, {0}, runs, Vec<1>(0.1), table, 5);
   for (Eigen::Index row = 0; row < 101; ++row) CHECK(energy[row] == doctest::Approx(row >= 51 && row < 56 ? 4 : 0));
   CHECK(mismatch_energy(bound, {0}, runs, Vec<1>(0.001), table, 0).maxCoeff() == 50);  // no sample decides alone

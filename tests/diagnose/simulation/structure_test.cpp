@@ -74,6 +74,26 @@ TEST_CASE("signals count as driven even where orders far away saturate them") {
   }
 }
 
+/// Shows the force of its second input, as a load cell does.
+struct WeighedBlock : toys::SlidingBlock {
+  using Input = Vec<2>;
+  using Output = Vec<2>;
+  SimulatorInfo info() const {
+    SimulatorInfo info = SlidingBlock::info();
+    info.inputs.push_back({"weight", "N"});
+    return info;
+  }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& p) const {
+    return SlidingBlock::derivative(x, u.head<1>(), p);
+  }
+  Output observe(const State& x, const Input& u, const Eigen::VectorXd&) const { return {x[0], x[1] + u[1]}; }
+};
+
+TEST_CASE("inputs that an output shows at once are known") {
+  const auto weighed = facts_of(WeighedBlock{}, toys::blank_recording(WeighedBlock{}.info(), 5, 1));
+  CHECK(weighed.shown_at_once == std::vector<bool>{false, true});
+}
+
 // A motor with a coil, behind an amplifier with a lag, and a battery that nothing of it drains.
 struct MotorWithCoil {
   using State = Vec<5>;

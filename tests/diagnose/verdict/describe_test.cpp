@@ -92,6 +92,9 @@ TEST_CASE("every verdict has its sentence") {
   CHECK(verdict_sentence(diagnosis, {}) ==
         "The model leaves something out that no known effect explains; a part of it: a leak; it shows where level > 2 "
         "m. With that, the error on held-out recordings falls by 75 %, to 4 times the noise; 1 of 2 agree.");
+  diagnosis.held_out_after = 2.02;
+  CHECK(verdict_sentence(diagnosis, {}).find("error on held-out recordings rises by 1 %") != std::string::npos);
+  diagnosis.held_out_after = 0.5;
   diagnosis.verdict = Verdict::unfinished;
   CHECK(verdict_sentence(diagnosis, {}).starts_with("The search was not finished, so that nothing is concluded; the"));
   diagnosis.noise_ratio = 1.2;

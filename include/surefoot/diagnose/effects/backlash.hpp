@@ -48,10 +48,9 @@ inline double behind_gap(double driven, double driver, double half_width) {
 }
 
 inline TwoMasses gap_joint(Values p) {
-  return TwoMasses{.ratio = p[0], .frequency = p[2], .damping = 0.2, .half_width = p[1]};
+  return TwoMasses{.ratio = p[0], .frequency = p[2], .damping = p[3], .half_width = p[1]};
 }
 
-/// Damping ratio 0.2 in contact.
 [[gnu::cold]] inline Effect backlash_gap() {
   return {.name = "backlash",
           .sentence = "a load of {ratio} times the inertia behind backlash of {half_width} to either side at {at}",
@@ -62,8 +61,13 @@ inline TwoMasses gap_joint(Values p) {
                {.name = "frequency",  // of the two inertias in contact [rad/s]
                 .measure = {.time = -1},
                 .low = 15,
-                .high = 200,
-                .starts = {40, 90}}}),
+                .high = 600,  // about half a turn per row: no faster one is seen
+                .starts = {40, 90}},
+               {.name = "damping",  // share of the critical one, of the contact
+                .measure = {},
+                .low = 0.02,
+                .high = 1,
+                .starts = {0.2}}}),
           .confusable_with = names_of({"joint_elasticity", "hysteresis", "input_delay"}),
           .experiment = "quick reversals at two amplitudes, small ones inside the gap",
           .form = "gap",

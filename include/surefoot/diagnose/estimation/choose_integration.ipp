@@ -61,17 +61,23 @@ SUREFOOT_ONCE bool any_is_finite(const std::vector<SimulatedRun>& runs) {
 /// Slack of a step, so that rounding does not add one.
 inline constexpr double step_slack = 0.1;  // of a step
 
-/// `now` with as few steps of a row as these recordings can be simulated with at all; as it is where none helps.
+/// `now` with as few steps of a row as it takes to simulate as many of these recordings as can be; as it is where that
+/// is none.
 SUREFOOT_ONCE Integration coarsest_that_runs(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                              const Integration& now, double row,
                                              const std::vector<std::size_t>& recordings, const Parallel& parallel) {
-  Integration coarse = now;
+  Integration coarse = now, best = now;
   coarse.step = 0;
+  std::ptrdiff_t most = 0;
   for (double steps = 1; steps <= most_steps; steps *= 2) {
     if (steps > 1) coarse.step = row / (steps - step_slack);
-    if (any_is_finite(simulate_all(bound, hypothesis, recordings, coarse, parallel))) return coarse;
+    const std::ptrdiff_t run = count_items(simulate_all(bound, hypothesis, recordings, coarse, parallel),
+                                           [](const SimulatedRun& one) { return one.finite; });
+    if (run > most) best = coarse;
+    most = std::max(most, run);
+    if (most == static_cast<std::ptrdiff_t>(recordings.size())) break;
   }
-  return now;
+  return best;
 }
 
 SUREFOOT_ONCE Integration integration_that_runs(const BoundSimulator& bound, const Hypothesis& hypothesis,

@@ -242,11 +242,16 @@ SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs&
 /// How much less the error of all recordings together is, as a logarithm; 0 unless it halves, and is less in most.
 SUREFOOT_ONCE double common_gain(const LogFit& before, const LogFit& after, const Repairs& repairs,
                                  const LogDoctorCriteria& criteria) {
-  constexpr double least = 1e-12, most = 1e12;  // of an output's variance: as good as no error; ran away
+  constexpr double least = 1e-12;                                   // of an output's variance: as good as no error
+  constexpr double nothing = 1;                                     // is explained of it
+  const double ran_away = criteria.runs_away * criteria.runs_away;  // for its steps, which says nothing of the log
+  const auto error_of = [&](const LogFit& fit, std::size_t r) {
+    const double error = mean_square(touched(fit.residuals[r], repairs), fit.size);
+    return error < ran_away ? std::max(error, least) : nothing;
+  };
   double better = 0, sum_before = 0, sum_after = 0;
   for (std::size_t r = 0; r < before.error.size(); ++r) {
-    const double error = std::min(mean_square(touched(before.residuals[r], repairs), before.size), most);
-    const double now = std::clamp(mean_square(touched(after.residuals[r], repairs), after.size), least, most);
+    const double error = error_of(before, r), now = error_of(after, r);
     better += now < error ? 1 : 0;
     sum_before += error;
     sum_after += now;

@@ -15,7 +15,13 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_ONCE std::vector<std::string> feature_names(const BoundSimulator& bound) {
+/// Whether what an input does until a row is that of the row before.
+SUREFOOT_ONCE bool is_of_row_before(const BoundSimulator& bound, std::size_t input, InputsOf inputs) {
+  const bool acts_before = bound.info.inputs[input].hold == InputHold::before;
+  return inputs == InputsOf::row_before && !acts_before && !bound.structure.shown_at_once[input];
+}
+
+SUREFOOT_ONCE std::vector<std::string> feature_names(const BoundSimulator& bound, InputsOf inputs) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < bound.info.states.size(); ++i) {
     names.push_back(bound.info.states[i].name);
@@ -23,9 +29,10 @@ SUREFOOT_ONCE std::vector<std::string> feature_names(const BoundSimulator& bound
     names.push_back("abs(" + bound.info.states[i].name + ")");
     names.push_back("since_reversal(" + bound.info.states[i].name + ")");
   }
-  for (const InputInfo& input : bound.info.inputs) {
-    names.push_back(input.name);
-    names.push_back("since_change(" + input.name + ")");
+  for (std::size_t k = 0; k < bound.info.inputs.size(); ++k) {
+    const std::string& input = bound.info.inputs[k].name;
+    names.push_back(is_of_row_before(bound, k, inputs) ? "last(" + input + ")" : input);
+    names.push_back("since_change(" + names.back() + ")");
   }
   names.emplace_back("time");
   if (bound.info.kind == SimulatorKind::map) {
@@ -43,9 +50,13 @@ SUREFOOT_ONCE std::vector<std::string> feature_names(const BoundSimulator& bound
 }
 
 SUREFOOT_ONCE FeatureTable make_features(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                         const std::vector<SimulatedRun>& trajectories, Eigen::Index stride) {
+                                         const std::vector<SimulatedRun>& trajectories, Eigen::Index stride,
+                                         InputsOf inputs) {
   FeatureTable table;
-  table.names = feature_names(bound);
+  table.names = feature_names(bound, inputs);
+  const auto row_of_input = [&](std::size_t k, Eigen::Index row) {
+    return is_of_row_before(bound, k, inputs) ? std::max<Eigen::Index>(row - 1, 0) : row;
+  };
   std::vector<std::vector<double>> rows;
   const auto n = bound.info.states.size(), m = bound.info.inputs.size();
   for (std::size_t i = 0; i < recordings.size(); ++i) {
@@ -60,7 +71,8 @@ SUREFOOT_ONCE FeatureTable make_features(const BoundSimulator& bound, const std:
       }
       for (std::size_t k = 0; row > 0 && k < m; ++k) {
         const auto s = static_cast<Eigen::Index>(k);
-        if (recording.inputs(s, row) != recording.inputs(s, row - 1)) changed[k] = now;
+        const Eigen::Index at = row_of_input(k, row);
+        if (recording.inputs(s, at) != recording.inputs(s, row_of_input(k, row - 1))) changed[k] = recording.time[at];
       }
       if (row % stride != 0) continue;
       std::vector<double> one;
@@ -72,7 +84,7 @@ SUREFOOT_ONCE FeatureTable make_features(const BoundSimulator& bound, const std:
         one.push_back(now - reversed[k]);
       }
       for (std::size_t k = 0; k < m; ++k) {
-        one.push_back(recording.inputs(static_cast<Eigen::Index>(k), row));
+        one.push_back(recording.inputs(static_cast<Eigen::Index>(k), row_of_input(k, row)));
         one.push_back(now - changed[k]);
       }
       one.push_back(now - recording.time[0]);

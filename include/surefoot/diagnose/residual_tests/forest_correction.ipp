@@ -61,7 +61,8 @@ SUREFOOT_ONCE ResidualModel train_residual_model(const BoundSimulator& bound,
                                                  std::uint64_t seed) {
   Eigen::Index rows = 0;
   for (const std::size_t r : recordings) rows += bound.recordings[r].rows();
-  const FeatureTable table = make_features(bound, recordings, runs, std::max<Eigen::Index>(1, rows / 8000));
+  const FeatureTable table =
+      make_features(bound, recordings, runs, std::max<Eigen::Index>(1, rows / 8000), InputsOf::row_before);
   ResidualModel model{table.names, {}, residual_sizes(bound, recordings, runs), {}};
   for (const OutputInfo& output : bound.info.outputs) model.outputs.push_back(output.name);
   for (double& size : model.scale) size = std::isfinite(size) ? size : 1;
@@ -96,7 +97,7 @@ SUREFOOT_ONCE SimulatedRun corrected(const BoundSimulator& bound, std::size_t re
     throw DiagnoseError("the residual model has " + std::to_string(model.outputs.size()) +
                         " outputs, the simulator has " + std::to_string(run.outputs.rows()));
   }
-  const FeatureTable table = make_features(bound, {recording}, {run}, 1);
+  const FeatureTable table = make_features(bound, {recording}, {run}, 1, InputsOf::row_before);
   ResidualForest::Batch inputs(static_cast<Eigen::Index>(model.features.size()), run.outputs.cols());
   for (std::size_t k = 0; k < model.features.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(k);

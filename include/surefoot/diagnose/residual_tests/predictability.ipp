@@ -81,7 +81,7 @@ SUREFOOT_ONCE Comparison residual_predictability(const BoundSimulator& bound, co
   std::vector<Eigen::MatrixXd> residuals;
   for (const auto& fold : folds) {
     const auto runs = simulate_all(bound, hypothesis, fold, problem.integration, parallel);
-    tables.push_back(make_features(bound, fold, runs, stride));
+    tables.push_back(make_features(bound, fold, runs, stride, InputsOf::row_before));
     residuals.push_back(residual_table(bound, fold, runs, problem.weighting.sigma, tables.back(), limit));
   }
   Comparison best;

@@ -25,6 +25,7 @@ struct SimulatorStructure {
   std::vector<bool> driven_signal;  // by signal: changes with the inputs, at once or by way of an actuator's states
   std::vector<bool> coupling;       // by signal: not driven, and a force on several bodies: what holds them together
   bool all_states_measured = false;  // but for those that only keep inputs, and are known with them
+  std::vector<bool> shown_at_once;   // by input: some output reads it in its own row
   std::vector<bool> actuator;        // by state: what inputs lead to, and neither a position nor a speed (a current)
 };
 

@@ -255,11 +255,25 @@ SUREFOOT_ONCE std::vector<bool> couplings(const SimulatorAnswers& answers, const
   return result;
 }
 
+SUREFOOT_ONCE void note_inputs_shown_at_once(const SimulatorAnswers& answers, const Eigen::VectorXd& x,
+                                             const Eigen::VectorXd& u, SimulatorStructure& structure) {
+  const Eigen::VectorXd before = answers.outputs(x, u);
+  for (Eigen::Index i = 0; i < u.size(); ++i) {
+    Eigen::VectorXd moved = u;
+    moved[i] += 0.1 * (1 + std::abs(u[i]));
+    const Eigen::VectorXd after = answers.outputs(x, moved);
+    for (Eigen::Index k = 0; k < after.size(); ++k) {
+      if (!nearly_equal(before[k], after[k])) structure.shown_at_once[static_cast<std::size_t>(i)] = true;
+    }
+  }
+}
+
 SUREFOOT_ONCE SimulatorStructure find_structure(const SimulatorAnswers& answers, const SimulatorInfo& info,
                                                 const Recording& example) {
   const auto n = info.states.size(), m = info.inputs.size(), k = info.outputs.size();
   SimulatorStructure structure;
   structure.driven_signal.assign(info.signals.size(), false);
+  structure.shown_at_once.assign(m, false);
   StructureSearch search{std::vector(n, std::vector<bool>(n, true)), std::vector(n, std::vector<bool>(k, true)),
                          std::vector(n, std::vector<bool>(n, false)), std::vector<bool>(n, false)};
   Rng rng(1);
@@ -289,6 +303,7 @@ SUREFOOT_ONCE SimulatorStructure find_structure(const SimulatorAnswers& answers,
     for (std::size_t i = 0; i < signals.size(); ++i) {
       if (!nearly_equal(first[i], signals[i])) structure.driven_signal[i] = true;
     }
+    note_inputs_shown_at_once(answers, x, u, structure);
   }
   conclude_structure(search, info, structure);
   const Eigen::VectorXd first = example.inputs.cols() > 0 && m > 0

@@ -210,10 +210,10 @@ SUREFOOT_ONCE std::string gain_sentence(const Diagnosis& diagnosis) {
   const auto better =
       count_items(diagnosis.per_recording, [](const RecordingFit& one) { return one.after < one.before; });
   const std::string noise = against_noise(diagnosis);
-  return " With that, the error on held-out recordings falls by " +
-         in_digits(100 * (1 - diagnosis.held_out_after / std::max(diagnosis.held_out_before, never_zero))) + " %" +
-         (noise.empty() ? "" : ", to " + noise) + "; " + std::to_string(better) + " of " +
-         std::to_string(diagnosis.per_recording.size()) + " agree.";
+  const double gain = 1 - diagnosis.held_out_after / std::max(diagnosis.held_out_before, never_zero);
+  return std::string(" With that, the error on held-out recordings ") + (gain < 0 ? "rises" : "falls") + " by " +
+         in_digits(100 * std::abs(gain)) + " %" + (noise.empty() ? "" : ", to " + noise) + "; " +
+         std::to_string(better) + " of " + std::to_string(diagnosis.per_recording.size()) + " agree.";
 }
 
 /// Whether all recordings are within what an explanation may leave.

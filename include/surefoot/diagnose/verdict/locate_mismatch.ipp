@@ -19,7 +19,7 @@ SUREFOOT_ONCE MismatchLocation locate_mismatch(const EstimationSetup& setup, con
   Eigen::Index rows = 0;
   for (const std::size_t r : recordings) rows += bound.recordings[r].rows();
   const Eigen::Index every = std::max<Eigen::Index>(1, rows / criteria.rows);
-  const FeatureTable table = make_features(bound, recordings, calibrated.runs.training, every);
+  const FeatureTable table = make_features(bound, recordings, calibrated.runs.training, every, InputsOf::own_row);
   const Eigen::Index horizon = setup.noise == NoiseKind::process ? 0 : criteria.horizon;
   const Eigen::VectorXd energy =
       mismatch_energy(bound, recordings, calibrated.runs.training, setup.problem.weighting.sigma, table, horizon);
