@@ -16,8 +16,7 @@ std::optional<EvaluatedHypothesis> in_richer_forms(const Search& search, const E
 
 /// A structure with its effect number `e` in its other forms that extend none, all else as it was found: the best
 /// `keep`, fitted and evaluated. `finely`: each with steps as fine as it needs where it begins, for a form that is
-/// stiffer than the one that was found would end where coarse steps do not run away; from stiffer starts as well, and
-/// so in forms that extend others, too.
+/// stiffer than the one that was found would end where coarse steps do not run away.
 std::vector<EvaluatedHypothesis> in_other_forms(const Search& search, const EvaluatedHypothesis& found, std::size_t e,
                                                 std::size_t keep, bool finely);
 

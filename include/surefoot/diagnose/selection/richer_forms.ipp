@@ -102,8 +102,7 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> in_other_forms(const Search& sear
   std::vector<Hypothesis> starts;
   for (const AttachedEffect& one : search.candidates) {
     const bool other = same_but_for_form(one, present) && !same_effect(one, present);
-    const bool of_its_own = one.effect->extends.empty() || (finely && !one.effect->starts_anywhere);
-    if (!other || !of_its_own) continue;
+    if (!other || !one.effect->extends.empty()) continue;
     for (const double factor : finely ? std::vector{1.0, stiffer} : std::vector{1.0}) {
       for (Hypothesis& start : starts_in_form(search, found.hypothesis, e, one, factor)) {
         starts.push_back(std::move(start));
