@@ -242,12 +242,10 @@ SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs&
 /// How much less the error of all recordings together is, as a logarithm; 0 unless it halves, and is less in most.
 SUREFOOT_ONCE double common_gain(const LogFit& before, const LogFit& after, const Repairs& repairs,
                                  const LogDoctorCriteria& criteria) {
-  constexpr double least = 1e-12;                                   // of an output's variance: as good as no error
-  constexpr double nothing = 1;                                     // is explained of it
-  const double ran_away = criteria.runs_away * criteria.runs_away;  // for its steps, which says nothing of the log
+  constexpr double least = 1e-12, whole = 1;  // of an output's variance: as good as no error; nothing is explained
   const auto error_of = [&](const LogFit& fit, std::size_t r) {
     const double error = mean_square(touched(fit.residuals[r], repairs), fit.size);
-    return error < ran_away ? std::max(error, least) : nothing;
+    return ran_away(error, criteria) ? whole : std::max(error, least);  // its steps may be to blame, not the log
   };
   double better = 0, sum_before = 0, sum_after = 0;
   for (std::size_t r = 0; r < before.error.size(); ++r) {

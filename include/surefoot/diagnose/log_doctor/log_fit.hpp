@@ -38,6 +38,10 @@ struct LogFit {
 /// Mean of the squared residuals, each output in its unit; infinite if any is.
 double mean_square(const ResidualRows& residuals, const Eigen::VectorXd& unit);
 
+/// Whether a mean square error says that a simulation left what was measured so far behind that it tells nothing of the
+/// recording.
+bool ran_away(double error, const LogDoctorCriteria& criteria);
+
 /// Share of the residuals that count as independent of each other for their mean square: less where they are correlated
 /// from row to row ((1 - r^2) / (1 + r^2) for a first-order autoregression).
 double independent_share(const ResidualRows& residuals, const Eigen::VectorXd& unit);

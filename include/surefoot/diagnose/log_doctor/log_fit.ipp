@@ -45,6 +45,10 @@ SUREFOOT_ONCE double mean_square(const ResidualRows& residuals, const Eigen::Vec
   return count > 0 ? sum / count : 0;
 }
 
+SUREFOOT_ONCE bool ran_away(double error, const LogDoctorCriteria& criteria) {
+  return !(error < criteria.runs_away * criteria.runs_away);
+}
+
 SUREFOOT_ONCE double independent_share(const ResidualRows& residuals, const Eigen::VectorXd& unit) {
   double squares = 0, products = 0, count = 0;
   for (Eigen::Index k = 0; k < residuals.rows(); ++k) {

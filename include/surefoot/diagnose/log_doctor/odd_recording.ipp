@@ -142,11 +142,6 @@ SUREFOOT_ONCE LogFit predicted_without(const LogDoctorInputs& inputs, const LogF
   return all;
 }
 
-/// Whether a simulation leaves what was measured so far behind that it says nothing of the recording.
-SUREFOOT_ONCE bool runs_away(const LogFit& predicted, std::size_t r, const LogDoctorCriteria& criteria) {
-  return !(predicted.error[r] < criteria.runs_away * criteria.runs_away);
-}
-
 /// How many times as far off a recording is as the worst of the others.
 SUREFOOT_ONCE double times_the_others(const std::vector<double>& errors, std::size_t r) {
   return std::sqrt(errors[r] / worst_of_others(errors, r));
@@ -163,7 +158,7 @@ SUREFOOT_ONCE std::optional<OddRecording> with_own_parameters(const LogDoctorInp
     return std::nullopt;
   }
   const LogFit predicted = predicted_without(inputs, fit, r);
-  if (runs_away(predicted, r, criteria)) return std::nullopt;
+  if (ran_away(predicted.error[r], criteria)) return std::nullopt;
   const double times = times_the_others(predicted.error, r);
   if (!(times > criteria.far_off) || !beyond_scatter(predicted.error, r, criteria)) return std::nullopt;
   const LogFit own = fit_log(inputs, {recording}, predicted.hypothesis.parameters);
@@ -181,7 +176,7 @@ SUREFOOT_ONCE std::optional<OddRecording> find_odd_recording(const LogDoctorInpu
     const auto odd = outstanding(errors_of(fit, fit, relative), inputs.criteria);
     if (!odd) continue;
     const LogFit predicted = predicted_without(inputs, fit, *odd);
-    if (runs_away(predicted, *odd, inputs.criteria)) continue;
+    if (ran_away(predicted.error[*odd], inputs.criteria)) continue;
     const std::vector<double> errors = errors_of(predicted, fit, relative);
     if (outstanding(errors, inputs.criteria) != odd) continue;
     if (!beyond_scatter(errors, *odd, inputs.criteria) && !is_unrelated(inputs, fit, predicted, *odd)) continue;

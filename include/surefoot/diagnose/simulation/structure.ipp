@@ -255,6 +255,7 @@ SUREFOOT_ONCE std::vector<bool> couplings(const SimulatorAnswers& answers, const
   return result;
 }
 
+/// Notes inputs with which some output changes while the states stay.
 SUREFOOT_ONCE void note_inputs_shown_at_once(const SimulatorAnswers& answers, const Eigen::VectorXd& x,
                                              const Eigen::VectorXd& u, SimulatorStructure& structure) {
   const Eigen::VectorXd before = answers.outputs(x, u);
