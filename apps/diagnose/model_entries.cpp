@@ -30,11 +30,13 @@ ModelInput read_input(const TomlTable& table, const TomlEntry& entry) {
     input.column = required_text(own, "column", "the column of the recordings");
     if (const toml::value* hold = find(own, "hold")) {
       const std::string text = to_text(*hold, place(own, *hold, "hold"));
-      for (const surefoot::InputHold one :
-           {surefoot::InputHold::zero_order, surefoot::InputHold::linear, surefoot::InputHold::before}) {
-        if (text == hold_name(one)) input.hold = one;
+      using enum surefoot::InputHold;
+      for (const surefoot::InputHold one : {zero_order, linear, before, band_limited}) {
+        if (text == surefoot::hold_name(one)) input.hold = one;
       }
-      if (!input.hold) fail(place(own, *hold, "hold"), R"("held", "linear" or "before" is expected)");
+      if (!input.hold) {
+        fail(place(own, *hold, "hold"), R"("held", "linear", "band-limited" or "before" is expected)");
+      }
     }
     if (const toml::value* unit = find(own, "unit")) input.unit = to_text(*unit, place(own, *unit, "unit"));
   }

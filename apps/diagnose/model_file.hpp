@@ -21,11 +21,6 @@ struct Formula {
   std::string place;  // "model.toml, line 12, [let] tau"
 };
 
-/// How a model file calls what an input is between rows.
-constexpr std::string_view hold_name(surefoot::InputHold hold) {
-  return hold == surefoot::InputHold::zero_order ? "held" : hold == surefoot::InputHold::linear ? "linear" : "before";
-}
-
 struct ModelInput {
   std::string name, column, unit;
   std::optional<surefoot::InputHold> hold = {};  // not said: as recordings show

@@ -39,7 +39,10 @@ std::string verdict_part(const Diagnosis& d) {
   if (effects) html += tile(rounded(d.held_out_after), "error after, with the effects");
   if (std::isfinite(d.held_out_forest))
     html += tile(rounded(d.held_out_forest), "error of a forest instead of effects");
-  if (std::isfinite(d.noise_ratio)) html += tile(rounded(d.noise_floor), "noise floor");
+  if (std::isfinite(d.noise_ratio)) {
+    html += tile(rounded(d.noise_floor), "noise floor");
+    html += tile(rounded(d.noise_ratio), "times the noise: of each output over its own, root mean square");
+  }
   html += tile(std::to_string(d.held_out.size()), "held-out recordings, for these figures");
   return html +
          "</div>\n<p class=\"note\">Errors are those of whole simulations, of each recording with parameters that were "

@@ -110,7 +110,7 @@ std::string model_text(const ModelFile& model) {
   if (!model.inputs.empty()) out << "\n[inputs]\n";
   for (const ModelInput& input : model.inputs) {
     out << key(input.name) << " = { column = " << toml_string(input.column)
-        << (input.hold ? ", hold = " + toml_string(std::string(hold_name(*input.hold))) : "")
+        << (input.hold ? ", hold = " + toml_string(std::string(surefoot::hold_name(*input.hold))) : "")
         << ", unit = " << toml_string(input.unit) << " }\n";
   }
   if (!model.lets.empty()) out << "\n[let]\n";

@@ -33,8 +33,10 @@ std::string one_line(std::string value) {
 }
 
 std::string hold_value(surefoot::InputHold hold) {
-  const bool zero_order = hold == surefoot::InputHold::zero_order;  // a model file calls it otherwise
-  return "surefoot::InputHold::" + (zero_order ? "zero_order" : std::string(hold_name(hold)));
+  std::string name(surefoot::hold_name(hold));
+  if (hold == surefoot::InputHold::zero_order) name = "zero_order";  // a model file calls these otherwise
+  if (hold == surefoot::InputHold::band_limited) name = "band_limited";
+  return "surefoot::InputHold::" + name;
 }
 
 void write_info(std::ostream& out, const ModelFile& model, const EquationPlan& plan) {

@@ -103,6 +103,7 @@ inline std::vector<Form> forms() {
        "as viscous friction, but only the fast parts of the motion fall short"},
       {"constant_force", "", "F = force", {0.03}, "an offset to one side wherever it rests"},
       {"cubic_stiffness", "", "F = -stiffness q^3", {0.8}, "only large deflections fall short"},
+      {"cubic_stiffness", "off center", "F = -stiffness (q - center)^3"},
       {"cubic_stiffness", "coupling", "u + hardening u^3, of a force u between two bodies"},
       {"hysteresis",
        "",

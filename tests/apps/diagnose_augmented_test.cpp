@@ -93,7 +93,8 @@ TEST_CASE("the augmented header compiles and simulates like the model file" * do
   diagnosis.parameters.push_back({{"kt", "N m/A", 1.5, 1.4, 1.6}, 1.6});
   diagnosis.effects.push_back({"coulomb_friction", "omega", "", {{"level", "N m", 0.12, 0.11, 0.13}}, {}, "", ""});
   diagnosis.effects.push_back({"saturation", "tau", "", {{"level", "1", 0.8, 0.7, 0.9}}, {}, "", ""});
-  for (const auto hold : {surefoot::InputHold::zero_order, surefoot::InputHold::linear, surefoot::InputHold::before}) {
+  using enum surefoot::InputHold;
+  for (const surefoot::InputHold hold : {zero_order, linear, before, band_limited}) {
     diagnosis.input_holds = {hold};
     const ModelFile model = augmented_model(parse_model_file(diagnose_test::servo_model, "servo.toml"), diagnosis);
     surefoot::Augmented augmented;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "surefoot/core/error.hpp"
@@ -14,9 +15,25 @@
 namespace surefoot {
 
 /// What an input is between rows: the value of a row until the next one (zero-order hold: a command that is logged as
-/// it is given), a straight line between both (something smooth that was measured), or the value of a row since the one
-/// before (a command that is logged after it acted).
-enum class InputHold : std::uint8_t { zero_order, linear, before };
+/// it is given), a straight line between both (first-order hold: something smooth that was measured), the value of a
+/// row since the one before (a command that is logged after it acted), or a smooth curve (a band-limited signal that
+/// was measured, by the cubic spline through its rows).
+enum class InputHold : std::uint8_t { zero_order, linear, before, band_limited };
+
+/// As model files call it.
+constexpr std::string_view hold_name(InputHold hold) {
+  switch (hold) {
+    case InputHold::linear:
+      return "linear";
+    case InputHold::before:
+      return "before";
+    case InputHold::band_limited:
+      return "band-limited";
+    case InputHold::zero_order:
+      break;
+  }
+  return "held";
+}
 
 /// One column per row of the recording (a context for an ODE, a step for a map). Units are those of the model.
 struct Recording {

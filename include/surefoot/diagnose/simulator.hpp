@@ -66,6 +66,15 @@ struct Integration {
   std::vector<InputHold> inputs = {};  // between rows, where the model does not say; empty: all held
 };
 
+/// What input i is between rows: as the model says, else as was found (empty: held). What it says to go straight may
+/// have been found to be band-limited.
+inline InputHold hold_of(const SimulatorInfo& info, const std::vector<InputHold>& found, std::size_t i) {
+  const std::optional<InputHold> said = info.inputs[i].hold;
+  const InputHold shown = i < found.size() ? found[i] : InputHold::zero_order;
+  const bool smoother = said == InputHold::linear && shown == InputHold::band_limited;
+  return smoother ? shown : said.value_or(shown);
+}
+
 /// A simulated recording; states are those before each restart.
 struct SimulatedRun {
   Eigen::MatrixXd outputs;  // output x row

@@ -143,7 +143,10 @@ TEST_CASE("a gradual saturation bends as sharply as it is told, up to clipping")
 
 TEST_CASE("a supply sags most where it is loaded most, and never turns round") {
   CHECK(through(effects::supply_sag(), -2, {0.1}) == doctest::Approx(-1.6));
-  CHECK(through(effects::supply_sag(), 20, {0.1}) == 0);
+  CHECK(through(effects::supply_sag(), 5, {0.1}) == doctest::Approx(2.5));  // the most that it gives
+  CHECK(through(effects::supply_sag(), 20, {0.1}) == doctest::Approx(2.5));
+  CHECK(through(effects::supply_sag(), -20, {0.1}) == doctest::Approx(-2.5));
+  CHECK(through(effects::supply_sag(), 20, {0}) == 20);
 }
 
 TEST_CASE("a delayed step comes later by exactly the delay") {

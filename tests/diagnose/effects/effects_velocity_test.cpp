@@ -181,7 +181,7 @@ TEST_CASE("a friction with presliding has all of its level after some travel, an
 TEST_CASE("damped bristles add to a friction while they bend, and nothing once it slides") {
   const Effect effect = effects::coulomb_friction_damped();
   CHECK(effect.form == "presliding, damped");
-  CHECK(effect.extends == std::vector<std::string>{"presliding"});
+  CHECK(effect.extends == std::vector<std::string>{"", "smooth", "presliding"});
   CHECK_NOTHROW(check(effect));
   const std::vector<double> p = {3, 0.01, 0.02};
   EffectContext m;
@@ -248,6 +248,19 @@ TEST_CASE("friction never adds energy") {
 TEST_CASE("a constant force accelerates evenly") {
   const auto x = states_of(effects::constant_force(), {-3}, driven(101, 0.01, 0, 0));
   CHECK(x(0, 100) == doctest::Approx(-0.5 * 3 / mass).epsilon(1e-9));
+}
+
+TEST_CASE("a spring off center is softest there, and at 0 the plain one") {
+  const Effect effect = effects::cubic_stiffness_off_center();
+  EffectContext context;
+  const auto force = [&](double position, double center) {
+    context.position = position;
+    return effect.force(context, std::vector{50.0, center}, {});
+  };
+  CHECK(force(0.3, 0) == doctest::Approx(-50 * 0.027));
+  CHECK(force(0.1, 0.1) == 0);
+  CHECK(force(0.4, 0.1) == doctest::Approx(force(0.3, 0)));
+  CHECK(force(-0.2, 0.1) == doctest::Approx(-force(0.3, 0)));
 }
 
 TEST_CASE("cubic stiffness and cogging are springs without losses") {

@@ -62,6 +62,20 @@ TEST_SUITE("log_doctor") {
     CHECK(is_odd(small, 0, flipped));
   }
 
+  TEST_CASE("the sign of what moves by less than the model is off is not asked for") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    auto log = toys::servo_log(toys::dry_friction());
+    const LogFit fit = fit_log(inputs, log);
+    const Repairs flipped{{.kind = LogFaultKind::sign, .channel = {false, 0}}},
+        swapped{{.kind = LogFaultKind::swap, .channel = {false, 0}, .other = {false, 1}}};
+    CHECK(moves_beyond_misfit(fit, 2, flipped));
+    LogFit still = fit;
+    still.bound.recordings[2].outputs.row(0) *= 0.5 * fit.typical[0] / log[2].outputs.row(0).norm();
+    CHECK_FALSE(moves_beyond_misfit(still, 2, flipped));
+    CHECK(moves_beyond_misfit(still, 2, swapped));
+  }
+
   TEST_CASE("a log that fits is not searched for faults of all recordings") {
     const Parallel parallel = serially();
     const LogDoctorInputs inputs = toys::servo_doctor(parallel);

@@ -32,6 +32,9 @@ TEST_SUITE("log_doctor") {
     };
     CHECK(lost_rows(without({})) == 0);
     CHECK(lost_rows(without({10, 20, 21})) == 3);
+    surefoot::Recording late = without({10});
+    late.time[50] += 0.03;  // alone: the next row is where it should be
+    CHECK(lost_rows(late) == 1);
     std::vector<int> every_third;
     for (int row = 3; row < 400; row += 3) every_third.push_back(row);
     CHECK(lost_rows(without(every_third)) == 0);  // its clock is not regular

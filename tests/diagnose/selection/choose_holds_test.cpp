@@ -33,7 +33,8 @@ std::vector<Recording> tank_logs(InputHold truth) {
   for (int r = 0; r < 4; ++r) {
     Recording recording = toys::tank_recording(r, 120);
     for (Eigen::Index i = 0; i < recording.rows(); ++i) {
-      recording.inputs(0, i) = std::sin((3 + 0.4 * r) * recording.time[i]) + 0.5 * std::sin(7 * recording.time[i]);
+      const double t = recording.time[i];
+      recording.inputs(0, i) = std::sin((3 + 0.4 * r) * t) + 0.5 * std::sin(7 * t) + 3 * std::sin(24 * t);
     }
     recording.outputs = simulate_augmented(SaidTank{{}, truth}, toys::machine({1.1, 0.9}, {}), recording).outputs;
     for (double& level : recording.outputs.reshaped()) level += 0.005 * rng.normal();
@@ -66,10 +67,29 @@ InputHold chosen(const SaidTank& tank, InputHold truth, InputHold from = InputHo
 
 TEST_CASE("recordings say what an input is between rows, where the model does not") {
   using enum InputHold;
-  for (const InputHold truth : {zero_order, linear, before}) {
-    for (const InputHold from : {zero_order, linear, before}) CHECK(chosen(SaidTank{}, truth, from) == truth);
+  for (const InputHold truth : {zero_order, linear, before, band_limited}) {
+    for (const InputHold from : {zero_order, linear, before, band_limited}) {
+      CHECK(chosen(SaidTank{}, truth, from) == truth);
+    }
     CHECK(chosen(SaidTank{{}, zero_order}, truth) == zero_order);
   }
+}
+
+TEST_CASE("what the model says to go straight may turn out to be smooth, and nothing else") {
+  using enum InputHold;
+  const auto said_linear = [](InputHold truth, InputHold from) {
+    const SaidTank tank{{}, linear};
+    const BoundSimulator bound = bind_simulator(tank, tank_logs(truth));
+    SearchProblem problem = tank_problem();
+    problem.fit.integration.inputs = {from};
+    Fit fitted = fit(bound, nominal_hypothesis(bound), problem.fit, serially());
+    choose_holds(bound, fitted, problem, serially());
+    return hold_of(bound.info, problem.fit.integration.inputs, 0);
+  };
+  CHECK(said_linear(band_limited, zero_order) == band_limited);
+  CHECK(said_linear(linear, zero_order) == linear);
+  CHECK(said_linear(linear, band_limited) == linear);
+  CHECK(said_linear(zero_order, zero_order) == linear);
 }
 
 /// A dancer roller between two rollers whose speeds are measured: only their difference moves it.

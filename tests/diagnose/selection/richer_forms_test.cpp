@@ -12,6 +12,8 @@
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/diagnose.hpp"
+#include "surefoot/diagnose/estimation/recording_error.hpp"
+#include "surefoot/diagnose/estimation/typical_sizes.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
 namespace surefoot {
@@ -94,31 +96,58 @@ TEST_CASE("a friction of damped bristles is found with the time of its damping")
   CHECK(found.noise_ratio < 1.1);
 }
 
+/// A search among the forms of one effect.
+struct FormSearch {
+  diagnosis::BoundSimulator bound;
+  std::vector<AttachedEffect> candidates;
+  diagnosis::SearchProblem problem;
+  diagnosis::Parallel alone = diagnosis::serially();
+
+  diagnosis::Search search() const { return {bound, problem, candidates, alone}; }
+
+  diagnosis::EvaluatedHypothesis fitted(const std::string& form, const Eigen::VectorXd& values) const {
+    using namespace diagnosis;
+    Hypothesis start = nominal_hypothesis(bound);
+    start.effects.push_back(*std::find_if(candidates.begin(), candidates.end(),
+                                          [&](const AttachedEffect& one) { return one.effect->form == form; }));
+    start.values.push_back(values);
+    return evaluate_fit(bound, fit(bound, start, problem.fit, alone), problem, alone);
+  }
+};
+
+FormSearch search_of(const NamedEffect& effect) {
+  using namespace diagnosis;
+  FormSearch result{.bound = bind_simulator(SprungBlock{}, block_logs(effect, 0)), .candidates = {}, .problem = {}};
+  std::vector<Effect> forms = all_effects();
+  std::erase_if(forms, [&](const Effect& one) { return one.name != effect.name; });
+  result.candidates = attachments(result.bound, forms, std::vector<bool>(1, true));
+  for (std::size_t r = 0; r < result.bound.recordings.size(); ++r) result.problem.fit.recordings.push_back(r);
+  result.problem.screened = result.problem.fit.recordings;
+  const Hypothesis nominal = nominal_hypothesis(result.bound);
+  const auto runs = simulate_all(result.bound, nominal, result.problem.fit.recordings, {}, serially());
+  result.bound.sizes = measure_sizes(result.bound, nominal, result.problem.fit.recordings, runs);
+  result.problem.fit.weighting.sigma.setConstant(2, 0.001);
+  result.problem.scale.sigma = error_scale(result.bound);
+  result.problem.candidates = result.candidates.size();
+  return result;
+}
+
+TEST_CASE("damped bristles are found beside plain friction, though undamped ones would leave more") {
+  using namespace diagnosis;
+  const FormSearch forms =
+      search_of({"load_dependent_friction", "v", "drive, presliding, damped", {}, {0.4, 0.03, 0.06}});
+  const EvaluatedHypothesis plain = forms.fitted("drive", Eigen::VectorXd::Constant(1, 0.4));
+  const auto richer = in_richer_forms(forms.search(), plain);
+  REQUIRE(richer.has_value());
+  CHECK(richer->hypothesis.effects[0].effect->form == "drive, presliding, damped");
+  CHECK(richer->errors.rms() < 0.1 * plain.errors.rms());
+}
+
 TEST_CASE("other forms of an effect are tried from the fit that was found, the best first") {
   using namespace diagnosis;
-  BoundSimulator bound =
-      bind_simulator(SprungBlock{}, block_logs({"coulomb_friction", "v", "smooth", {}, {4, 0.08}}, 0));
-  std::vector<Effect> forms = all_effects();
-  std::erase_if(forms, [](const Effect& one) { return one.name != "coulomb_friction"; });
-  const std::vector<AttachedEffect> candidates = attachments(bound, forms, std::vector<bool>(1, true));
-  SearchProblem problem;
-  for (std::size_t r = 0; r < bound.recordings.size(); ++r) problem.fit.recordings.push_back(r);
-  problem.screened = problem.fit.recordings;
-  const Hypothesis nominal = nominal_hypothesis(bound);
-  const auto runs = simulate_all(bound, nominal, problem.fit.recordings, {}, serially());
-  bound.sizes = measure_sizes(bound, nominal, problem.fit.recordings, runs);
-  problem.fit.weighting.sigma.setConstant(2, 0.001);
-  problem.scale.sigma = error_scale(bound);
-  problem.candidates = candidates.size();
-  const Parallel alone = serially();
-  const Search search{bound, problem, candidates, alone};
-  Hypothesis plain = nominal;
-  const auto one = std::find_if(candidates.begin(), candidates.end(),
-                                [](const AttachedEffect& form) { return form.effect->form.empty(); });
-  plain.effects.push_back(*one);
-  plain.values.emplace_back(Eigen::VectorXd::Constant(1, 3.8));
-  const EvaluatedHypothesis found = evaluate_fit(bound, fit(bound, plain, problem.fit, alone), problem, alone);
-  const auto others = in_other_forms(search, found, 0, 3, false);
+  FormSearch forms = search_of({"coulomb_friction", "v", "smooth", {}, {4, 0.08}});
+  const EvaluatedHypothesis found = forms.fitted("", Eigen::VectorXd::Constant(1, 3.8));
+  const auto others = in_other_forms(forms.search(), found, 0, 3, false);
   REQUIRE_FALSE(others.empty());
   CHECK(others[0].hypothesis.effects[0].effect->form == "smooth");
   CHECK(others[0].hypothesis.values[0][1] == doctest::Approx(0.08).epsilon(0.05));
@@ -130,8 +159,8 @@ TEST_CASE("other forms of an effect are tried from the fit that was found, the b
   }
 
   int asked = 0;
-  problem.stopped = [&asked] { return ++asked > 2; };  // some fits have not begun
-  CHECK(in_other_forms({bound, problem, candidates, alone}, found, 0, 3, false).size() <= 3);
+  forms.problem.stopped = [&asked] { return ++asked > 2; };  // some fits have not begun
+  CHECK(in_other_forms(forms.search(), found, 0, 3, false).size() <= 3);
 }
 
 TEST_CASE("friction that grows within a hundredth of the speed is found, though rows are too long to simulate it") {

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
@@ -60,6 +61,26 @@ TEST_CASE("what is logged after it acted acts since the row before, late or not"
   info.inputs[0].hold = InputHold::zero_order;
   CHECK(InputSignal<Vec<2>>(info, recording, {InputHold::before, InputHold::zero_order}).at_row(1)[0] ==
         -3);  // the model says
+}
+
+TEST_CASE("a band-limited input goes smoothly through its rows, late or not") {
+  SimulatorInfo info = two_inputs();
+  Recording recording;
+  recording.time.setLinSpaced(60, 0, 5.9);
+  recording.inputs.setZero(2, 60);
+  recording.inputs.row(1) = (6 * recording.time.array()).sin();
+  const std::vector<InputHold> found{InputHold::zero_order, InputHold::band_limited};
+  InputSignal<Vec<2>> u(info, recording, found);
+  u.go_to(30);
+  CHECK(u.between(3.0, 0.1, 0)[1] == doctest::Approx(std::sin(18.0)));
+  CHECK(std::abs(u.between(3.0, 0.1, 0.5)[1] - std::sin(18.3)) < 1e-3);
+  CHECK_FALSE(u.steady());
+  u.delay(1, 0.05);
+  CHECK(std::abs(u.between(3.0, 0.1, 0)[1] - std::sin(17.7)) < 1e-3);
+  info.inputs[1].hold = InputHold::zero_order;  // the model says so
+  InputSignal<Vec<2>> held(info, recording, found);
+  held.go_to(30);
+  CHECK(held.between(3.0, 0.1, 0.5)[1] == recording.inputs(1, 30));
 }
 
 TEST_CASE("inputs are steady during a step unless one is interpolated") {

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "surefoot/diagnose/diagnose.hpp"
+#include "surefoot/diagnose/log_doctor/log_repair.hpp"
 #include "surefoot/diagnose/verdict/pipeline.hpp"
 #include "tests/diagnose/log_doctor/servo_log.hpp"
 #include "tests/diagnose/verdict/tank_setup.hpp"
@@ -102,6 +103,15 @@ TEST_CASE("a repaired fault is named again only by the same kind in the same cha
   CHECK(is_named_again({stuck, slow}, {fast}));
   CHECK_FALSE(is_named_again({slow}, {other, stuck}));
   CHECK_FALSE(is_named_again({slow}, {}));
+}
+
+TEST_CASE("that a recording is unlike the others is withdrawn where nothing confirms it, and nothing else is") {
+  LogExamination log{{{.kind = name_of(LogFaultKind::odd), .recording = "a"},
+                      {.kind = name_of(LogFaultKind::sign), .recording = "b", .channel = "level_m"}},
+                     {}};
+  withdraw_odd_recording(log);
+  REQUIRE(log.faults.size() == 1);
+  CHECK(log.faults[0].recording == "b");
 }
 
 TEST_CASE("a fault that the model with what was found does not name again is withdrawn") {

@@ -92,6 +92,23 @@ TEST_CASE("the search leaves time for fits without each held-out recording, and 
   CHECK_FALSE(late.complete);
 }
 
+TEST_CASE("a fit that a search was too short for is finished") {
+  DiagnoseOptions options;
+  const Parallel parallel = serially();
+  const RunContext run{options, parallel};
+  EstimationSetup setup = hold_out_recordings(toys::bind_tank, toys::noisy_tanks({}, 0.01), run);
+  setup.problem.weighting.sigma.setConstant(1, 0.01);
+  Hypothesis chosen = nominal_hypothesis(setup.bound);
+  chosen.parameters[0] *= 1.3;
+  const auto error_of = [&](const Hypothesis& one) {
+    const FitFunctions functions(setup.bound, one, setup.problem, parallel);
+    return functions.residuals(functions.start()).squaredNorm();
+  };
+  const double cut_short = error_of(chosen);
+  finish_fit(setup, chosen, run);
+  CHECK(error_of(chosen) < 0.5 * cut_short);
+}
+
 TEST_CASE("by default every recording is for the fit, and held out once") {
   DiagnoseOptions options;
   const Parallel parallel = serially();

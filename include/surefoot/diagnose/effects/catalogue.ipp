@@ -61,6 +61,7 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
                              effects::quadratic_drag(),
                              effects::constant_force(),
                              effects::cubic_stiffness(),
+                             effects::cubic_stiffness_off_center(),
                              effects::hysteresis(),
                              effects::hysteresis_squared(),
                              effects::hysteresis_asymmetric(),
@@ -82,14 +83,13 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
     if (all[i].needs_drive) {
       const Effect presliding = effects::with_presliding(all[i]);
       all.push_back(presliding);
-      if (all[i].extends.empty()) all.push_back(effects::damped(presliding, all[i].dry));
+      if (all[i].extends.empty()) all.push_back(effects::damped(presliding, all[i]));
     }
     all.push_back(effects::smoothed(all[i]));
   }
   all.push_back(effects::with_presliding(effects::stribeck_friction()));
   all.back().extends = {"", "smooth"};
-  all.push_back(
-      effects::damped(effects::with_presliding(effects::stribeck_friction()), effects::stribeck_friction().dry));
+  all.push_back(effects::damped(effects::with_presliding(effects::stribeck_friction()), effects::stribeck_friction()));
   return all;
 }
 

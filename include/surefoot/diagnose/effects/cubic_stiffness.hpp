@@ -1,7 +1,8 @@
-// A spring that hardens (or, negative, softens) away from position 0: force = -stiffness * q^3. Form "coupling": a
-// force that the equations have between two bodies grows with its cube, force + hardening * force^3. G. Duffing:
-// "Erzwungene Schwingungen bei veraenderlicher Eigenfrequenz", 1918. Confusable with a linear spring of the model at
-// one amplitude, and with a soft end stop.
+// A spring that hardens (or, negative, softens) away from position 0: force = -stiffness * q^3. Form "off center": away
+// from another position, force = -stiffness * (q - center)^3, as where a sensor reads zero elsewhere than the spring is
+// at rest. Form "coupling": a force that the equations have between two bodies grows with its cube, force + hardening *
+// force^3. G. Duffing: "Erzwungene Schwingungen bei veraenderlicher Eigenfrequenz", 1918. Confusable with a linear
+// spring of the model at one amplitude, and with a soft end stop.
 #pragma once
 
 #include "surefoot/diagnose/effects/detail/constants.hpp"
@@ -23,6 +24,20 @@ namespace surefoot::effects {
       .confusable_with = names_of({"end_stop", "gravity_offset", "saturation"}),
       .experiment = "free oscillations, or slow sweeps, at a small and at the largest amplitude",
       .force = +[](const EffectContext& m, Values p, Values) { return -p[0] * m.position * m.position * m.position; }};
+}
+
+[[gnu::cold]] inline Effect cubic_stiffness_off_center() {
+  Effect effect = cubic_stiffness();
+  effect.sentence = "a spring that hardens with the cube of the position from {center} on, {stiffness}, at {at}";
+  effect.parameters.push_back(
+      {.name = "center", .measure = {.position = 1}, .low = -1, .high = 1, .starts = {-0.1, 0.1}});
+  effect.form = "off center";
+  effect.extends = {""};
+  effect.force = +[](const EffectContext& m, Values p, Values) {
+    const double from_center = m.position - p[1];
+    return -p[0] * from_center * from_center * from_center;
+  };
+  return effect;
 }
 
 [[gnu::cold]] inline Effect cubic_stiffness_coupling() {

@@ -18,8 +18,10 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/diagnose/effects/coulomb_friction.hpp"
 #include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
+#include "surefoot/diagnose/effects/smooth_friction.hpp"
 
 namespace surefoot::effects {
 
@@ -164,17 +166,18 @@ template <double (*Move)(double, double, double)>
   return friction;
 }
 
-/// A friction with presliding whose bristles are damped, where the plain one was found: the model of C. Canudas de Wit,
-/// H. Olsson, K. J. Astrom, P. Lischinsky, "A new model for control of systems with friction", IEEE Trans. Automatic
-/// Control 40(3), 1995, with the quotient of its damping and stiffness as a time.
-[[gnu::cold]] inline Effect damped(Effect effect, std::function<double(const EffectContext&, Values p)> level) {
+/// A friction with presliding whose bristles are damped, where a form of `plain` was found: the model of C. Canudas de
+/// Wit, H. Olsson, K. J. Astrom, P. Lischinsky, "A new model for control of systems with friction", IEEE Trans.
+/// Automatic Control 40(3), 1995, with the quotient of its damping and stiffness as a time. Bristles that are not
+/// damped may leave more than none at all.
+[[gnu::cold]] inline Effect damped(Effect effect, const Effect& plain) {
   effect.sentence += ", damped over {damping_time}";
-  effect.extends = {effect.form};
+  effect.extends = {plain.form, smoothed(plain).form, effect.form};
   effect.form += ", damped";
   const std::size_t width = effect.parameters.size() - 1;
   effect.parameters.push_back(
       {.name = "damping_time", .measure = {.time = 1}, .low = 0, .high = 0.05, .starts = {0.001, 0.005}});
-  effect.force = [level = std::move(level), width](const EffectContext& m, Values p, Values hidden) {
+  effect.force = [level = plain.dry, width](const EffectContext& m, Values p, Values hidden) {
     const double share = bouc_wen_1(hidden[0], m.position - hidden[1], p[width]) / p[width];
     const double rate = (m.value - std::abs(m.value) * share) / p[width];
     return -level(m, p) * (share + p[width + 1] * rate);
@@ -183,8 +186,7 @@ template <double (*Move)(double, double, double)>
 }
 
 [[gnu::cold]] inline Effect coulomb_friction_damped() {
-  return damped(
-      coulomb_friction_presliding(), +[](const EffectContext&, Values p) { return p[0]; });
+  return damped(coulomb_friction_presliding(), coulomb_friction());
 }
 
 [[gnu::cold]] inline Effect hysteresis_asymmetric() {

@@ -1,11 +1,13 @@
-// A supply that gives way under load: u (1 - sag |u|), never the other way round. For an input that is a duty or a
-// voltage, sag is what its source loses per unit of it (inner resistance times current per unit).
-// Form "current": at a current that is a state, drive (1 - sag |i|), as an inner resistance makes it.
-// Confusable with a limit of the input, which also costs most where it is largest, and with a lower gain.
+// A supply that gives way under load: u (1 - sag |u|), and no more than that gives at all, 1 / (4 sag), for whoever
+// asks more does not get less. For an input that is a duty or a voltage, sag is what its source loses per unit of it
+// (inner resistance times current per unit). Form "current": at a current that is a state, drive (1 - sag |i|), as an
+// inner resistance makes it. Confusable with a limit of the input, which also costs most where it is largest, and with
+// a lower gain.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "surefoot/diagnose/effects/detail/constants.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
@@ -22,7 +24,9 @@ namespace surefoot::effects {
       .confusable_with = names_of({"saturation", "input_gain", "quadratic_drag"}),
       .experiment = "long pushes of several strengths, with the supply's voltage recorded",
       .signal = +[](const EffectContext& m, Values p, Values) {
-        return m.value * std::max(0.0, 1 - p[0] * std::abs(m.value));
+        const double most = p[0] > 0 ? 1 / (2 * p[0]) : std::numeric_limits<double>::infinity();
+        const double asked = std::clamp(m.value, -most, most);
+        return asked * (1 - p[0] * std::abs(asked));
       }};
 }
 

@@ -14,7 +14,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE void append_losses(BlockLosses& losses, const Eigen::VectorXd& residuals, double robust) {
+SUREFOOT_ONCE void append_losses(BlockLosses& losses, const Eigen::VectorXd& residuals, double robust) {
   constexpr double diverged = 1e6;  // loss of a cell whose simulation ran away: much, but not everything
   const Eigen::Index cells = residuals.size(), blocks = blocks_of(cells);
   for (Eigen::Index b = 0; b < blocks; ++b) {
@@ -29,8 +29,8 @@ SUREFOOT_INLINE void append_losses(BlockLosses& losses, const Eigen::VectorXd& r
   losses.ends.push_back(losses.blocks.size());
 }
 
-SUREFOOT_INLINE BlockLosses block_losses(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                         const std::vector<SimulatedRun>& runs, const Weighting& weighting) {
+SUREFOOT_ONCE BlockLosses block_losses(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                       const std::vector<SimulatedRun>& runs, const Weighting& weighting) {
   BlockLosses result;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     const std::size_t r = recordings[i];
@@ -40,7 +40,7 @@ SUREFOOT_INLINE BlockLosses block_losses(const BoundSimulator& bound, const std:
   return result;
 }
 
-SUREFOOT_INLINE double t_value(const std::vector<double>& differences) {
+SUREFOOT_ONCE double t_value(const std::vector<double>& differences) {
   constexpr double largest = 1e3;  // of differences that are all alike
   const auto n = static_cast<double>(differences.size());
   if (n < 2) return 0;
@@ -54,8 +54,7 @@ SUREFOOT_INLINE double t_value(const std::vector<double>& differences) {
                                      : 0);
 }
 
-SUREFOOT_INLINE void test_losses(const std::vector<double>& before, const std::vector<double>& after,
-                                 Comparison& best) {
+SUREFOOT_ONCE void test_losses(const std::vector<double>& before, const std::vector<double>& after, Comparison& best) {
   std::vector<double> absolute, relative;
   for (std::size_t i = 0; i < before.size(); ++i) {
     const double d = before[i] - after[i], sum = before[i] + after[i];

@@ -21,8 +21,8 @@
 namespace surefoot::diagnosis {
 
 /// Errors of an output from the second row on, about their mean; 0 where nothing was measured.
-SUREFOOT_INLINE Eigen::VectorXd errors_of_steps(const BoundSimulator& bound, std::size_t r,
-                                                const SimulatedRun& trajectory, Eigen::Index output) {
+SUREFOOT_ONCE Eigen::VectorXd errors_of_steps(const BoundSimulator& bound, std::size_t r,
+                                              const SimulatedRun& trajectory, Eigen::Index output) {
   const Eigen::MatrixXd& measured = bound.recordings[r].outputs;
   const bool wrapped = bound.wrapped[static_cast<std::size_t>(output)];
   Eigen::VectorXd off(measured.cols() - 1);
@@ -112,7 +112,7 @@ SUREFOOT_ONCE NoiseKind noise_kind(const BoundSimulator& bound, const Hypothesis
 }
 
 /// Adds v v^T to `sum`.
-SUREFOOT_INLINE void add_outer_product(Eigen::MatrixXd& sum, const Eigen::VectorXd& v) {
+SUREFOOT_ONCE void add_outer_product(Eigen::MatrixXd& sum, const Eigen::VectorXd& v) {
   for (Eigen::Index j = 0; j < v.size(); ++j) {
     for (Eigen::Index i = 0; i < v.size(); ++i) sum(i, j) += v[i] * v[j];
   }
@@ -124,8 +124,8 @@ struct FinalResiduals {
   Eigen::MatrixXd by_position, by_heading, tape_position, tape_heading;  // covariances for unit variances
 };
 
-SUREFOOT_INLINE FinalResiduals final_residuals(const BoundSimulator& bound, std::size_t r,
-                                               const SimulatedRun& trajectory) {
+SUREFOOT_ONCE FinalResiduals final_residuals(const BoundSimulator& bound, std::size_t r,
+                                             const SimulatedRun& trajectory) {
   const PlanarInfo& planar = *bound.info.planar;
   const std::vector<Cell> cells = cells_of(bound.recordings[r]);
   const auto count = static_cast<Eigen::Index>(cells.size());
@@ -158,7 +158,7 @@ SUREFOOT_INLINE FinalResiduals final_residuals(const BoundSimulator& bound, std:
 }
 
 /// For the logarithms of the four variances.
-SUREFOOT_INLINE Eigen::MatrixXd covariance_of(const FinalResiduals& s, const Eigen::VectorXd& logarithms) {
+SUREFOOT_ONCE Eigen::MatrixXd covariance_of(const FinalResiduals& s, const Eigen::VectorXd& logarithms) {
   const Eigen::VectorXd v = exponentials(logarithms);
   Eigen::MatrixXd sum(s.by_position.rows(), s.by_position.cols());
   for (Eigen::Index j = 0; j < sum.cols(); ++j) {
@@ -171,7 +171,7 @@ SUREFOOT_INLINE Eigen::MatrixXd covariance_of(const FinalResiduals& s, const Eig
 }
 
 /// log |c| + off^T c^-1 off, for a covariance c.
-SUREFOOT_INLINE double deviance(const Eigen::MatrixXd& c, const Eigen::VectorXd& off) {
+SUREFOOT_ONCE double deviance(const Eigen::MatrixXd& c, const Eigen::VectorXd& off) {
   const auto factor = surefoot::detail::factorise_with_pivots(c);
   Eigen::VectorXd solved = off, diagonal(off.size());
   surefoot::detail::solve_factorised(factor, solved);
@@ -181,8 +181,8 @@ SUREFOOT_INLINE double deviance(const Eigen::MatrixXd& c, const Eigen::VectorXd&
 }
 
 /// Logarithms of the four variances with the highest likelihood, by a coordinate search.
-SUREFOOT_INLINE Eigen::VectorXd most_likely_variances(const std::vector<FinalResiduals>& sequences,
-                                                      const std::vector<std::size_t>& recordings) {
+SUREFOOT_ONCE Eigen::VectorXd most_likely_variances(const std::vector<FinalResiduals>& sequences,
+                                                    const std::vector<std::size_t>& recordings) {
   const auto cost = [&](const Eigen::VectorXd& logarithms) {
     double sum = 0;
     for (const std::size_t r : recordings) {

@@ -36,6 +36,10 @@ struct RepairEffect {
 /// Compares residuals as logged with those after repairs.
 RepairEffect effect_of(const LogFit& fit, std::size_t r, const Repairs& repairs, const ResidualRows& after);
 
+/// Whether the outputs whose sign is changed move by more than the model is typically off: else what they do is no sign
+/// of a fault.
+bool moves_beyond_misfit(const LogFit& fit, std::size_t r, const Repairs& repairs);
+
 /// Whether the model misses what some repairs would change in a recording by as much as in the median one, or more:
 /// what is small, as the sideways motion of a straight drive, is mended by anything.
 bool is_odd(const LogFit& fit, std::size_t r, const Repairs& repairs);

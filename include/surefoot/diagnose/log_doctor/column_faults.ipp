@@ -13,6 +13,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/log_doctor/column_faults.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -173,6 +174,14 @@ SUREFOOT_ONCE std::vector<Repairs> as_good(const std::vector<Repairs>& tried,
   return also;
 }
 
+SUREFOOT_ONCE bool moves_beyond_misfit(const LogFit& fit, std::size_t r, const Repairs& repairs) {
+  return holds_for_all(repairs, [&](const LogRepair& repair) {
+    if (repair.kind != LogFaultKind::sign || repair.channel.input) return true;
+    const Eigen::Index k = repair.channel.index;
+    return standard_deviation(surefoot::detail::row_of(fit.bound.recordings[r].outputs, k)) > fit.typical[k];
+  });
+}
+
 SUREFOOT_ONCE bool is_odd(const LogFit& fit, std::size_t r, const Repairs& repairs) {
   const auto missed = [&](std::size_t recording) {
     return mean_square(touched(fit.residuals[recording], repairs), fit.size);
@@ -221,7 +230,7 @@ SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs&
     for (std::size_t t = 0; t < tried[r].size(); ++t) {
       const RepairEffect& effect = effects[r][t];
       if (!(effect.log_odds > least_odds && effect.log_ratio > std::log(criteria.decisive))) continue;
-      if (!is_odd(fit, r, tried[r][t])) continue;
+      if (!is_odd(fit, r, tried[r][t]) || !moves_beyond_misfit(fit, r, tried[r][t])) continue;
       std::vector<double> of_others;
       for (std::size_t o = 0; o < count; ++o) {
         if (o != r && t < columns.size()) of_others.push_back(effects[o][t].log_ratio);

@@ -315,6 +315,9 @@ SUREFOOT_ONCE int lost_rows(const Recording& recording) {
   for (Eigen::Index row = 1; row < recording.rows(); ++row) {
     const double interval = recording.time[row] - recording.time[row - 1];
     if (interval < longer * usual) continue;
+    const bool last = row + 1 == recording.rows();
+    const double next = last ? usual : recording.time[row + 1] - recording.time[row];
+    if (interval + std::min(next, usual) < (1 + longer) * usual) continue;  // late, and the next one is not
     lost += static_cast<int>(std::round(interval / usual)) - 1;
     ++places;
   }

@@ -38,56 +38,79 @@ SUREFOOT_ONCE bool moves(const BoundSimulator& bound, const std::vector<std::siz
   return 2 * moving > rows;
 }
 
-/// The inputs of which the model does not say what they do between rows: each, and then all at once, since what comes
-/// late in one may be hidden by what comes late in another.
-SUREFOOT_ONCE std::vector<std::vector<std::size_t>> undeclared_inputs(const SimulatorInfo& info) {
-  std::vector<std::vector<std::size_t>> result;
-  std::vector<std::size_t> all;
+SUREFOOT_ONCE std::vector<std::size_t> undeclared_inputs(const SimulatorInfo& info) {
+  std::vector<std::size_t> result;
   for (std::size_t i = 0; i < info.inputs.size(); ++i) {
-    if (info.inputs[i].hold.has_value()) continue;
-    result.push_back({i});
-    all.push_back(i);
+    if (!info.inputs[i].hold.has_value()) result.push_back(i);
   }
-  if (all.size() > 1) result.push_back(all);
   return result;
 }
 
-SUREFOOT_ONCE bool choose_holds(const BoundSimulator& bound, Fit& fitted, SearchProblem& problem,
-                                const Parallel& parallel) {
-  if (bound.info.kind == SimulatorKind::map || few_readings(bound, problem.fit.recordings)) return false;
+SUREFOOT_ONCE bool is_smooth(InputHold hold) { return hold == InputHold::linear || hold == InputHold::band_limited; }
+
+/// Inputs that go from row to row, by the model or as was found.
+SUREFOOT_ONCE std::vector<std::size_t> smooth_inputs(const SimulatorInfo& info, const std::vector<InputHold>& found) {
+  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < info.inputs.size(); ++i) {
+    const bool declared_so = info.inputs[i].hold == InputHold::band_limited;
+    if (is_smooth(hold_of(info, found, i)) && !declared_so) result.push_back(i);
+  }
+  return result;
+}
+
+/// Some inputs in whichever of these ways predicts recordings best. True if that is another one than before.
+SUREFOOT_ONCE bool choose_hold_of(const BoundSimulator& bound, const std::vector<std::size_t>& some,
+                                  const std::vector<InputHold>& ways, Fit& fitted, SearchProblem& problem,
+                                  const Parallel& parallel) {
   const auto evaluate = [&](const Fit& one, const FitProblem& with) {
     return EvaluatedHypothesis{
         one.hypothesis, one.loss,
         error_squares(bound, one.hypothesis, with.recordings, with.integration, problem.scale, parallel)};
   };
+  const FitProblem before = problem.fit;
+  const Fit now = fitted;
+  double most = std::log(problem.criteria.named_odds);
   bool changed = false;
-  for (const std::vector<std::size_t>& some : undeclared_inputs(bound.info)) {
-    const FitProblem before = problem.fit;
-    const Fit now = fitted;
-    double most = std::log(problem.criteria.named_odds);
-    for (const InputHold hold : {InputHold::zero_order, InputHold::linear, InputHold::before}) {
-      if (problem.stopped()) return changed;
-      FitProblem other = before;
-      std::vector<InputHold>& inputs = other.integration.inputs;
-      inputs.resize(bound.info.inputs.size(), InputHold::zero_order);
-      bool otherwise = false, moving = true;
-      for (const std::size_t i : some) {
-        otherwise = otherwise || inputs[i] != hold;
-        moving = moving && moves(bound, before.recordings, i);
-        inputs[i] = hold;
-      }
-      if (!otherwise || (hold == InputHold::linear && !moving)) continue;
-      if (!differ(bound, now.hypothesis, before, other.integration, parallel)) continue;
-      const Fit then = fit(bound, now.hypothesis, other, parallel);
-      if (!then.ok) continue;
-      const double odds = log_odds(evaluate(then, other), evaluate(now, before), problem.criteria);
-      if (!(odds > most)) continue;
-      most = odds;
-      problem.fit.integration = other.integration;
-      fitted = then;
-      changed = true;
+  for (const InputHold hold : ways) {
+    if (problem.stopped()) return changed;
+    FitProblem other = before;
+    std::vector<InputHold>& inputs = other.integration.inputs;
+    inputs.resize(bound.info.inputs.size(), InputHold::zero_order);
+    bool otherwise = false, moving = true;
+    for (const std::size_t i : some) {
+      otherwise = otherwise || hold_of(bound.info, inputs, i) != hold;
+      moving = moving && moves(bound, before.recordings, i);
+      inputs[i] = hold;
     }
+    if (!otherwise || (is_smooth(hold) && !moving)) continue;
+    if (!differ(bound, now.hypothesis, before, other.integration, parallel)) continue;
+    const Fit then = fit(bound, now.hypothesis, other, parallel);
+    if (!then.ok) continue;
+    const double odds = log_odds(evaluate(then, other), evaluate(now, before), problem.criteria);
+    if (!(odds > most)) continue;
+    most = odds;
+    problem.fit.integration = other.integration;
+    fitted = then;
+    changed = true;
   }
+  return changed;
+}
+
+SUREFOOT_ONCE bool choose_holds(const BoundSimulator& bound, Fit& fitted, SearchProblem& problem,
+                                const Parallel& parallel) {
+  using enum InputHold;
+  if (bound.info.kind == SimulatorKind::map || few_readings(bound, problem.fit.recordings)) return false;
+  bool changed = false;
+  const auto choose_together = [&](const std::vector<std::size_t>& inputs, const std::vector<InputHold>& ways) {
+    changed = choose_hold_of(bound, inputs, ways, fitted, problem, parallel) || changed;
+  };
+  const auto choose = [&](const std::vector<std::size_t>& inputs, const std::vector<InputHold>& ways) {
+    for (const std::size_t i : inputs) choose_together({i}, ways);
+    // what comes late in one may be hidden by what comes late in another
+    if (inputs.size() > 1) choose_together(inputs, ways);
+  };
+  choose(undeclared_inputs(bound.info), {zero_order, linear, before});
+  choose(smooth_inputs(bound.info, problem.fit.integration.inputs), {linear, band_limited});
   return changed;
 }
 

@@ -19,13 +19,13 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE std::size_t EvaluatedHypothesis::parameter_count() const {
+SUREFOOT_ONCE std::size_t EvaluatedHypothesis::parameter_count() const {
   std::size_t count = 0;
   for (const AttachedEffect& one : hypothesis.effects) count += one.effect->parameters.size();
   return count;
 }
 
-SUREFOOT_INLINE double least_variance(const SearchProblem& problem) {
+SUREFOOT_ONCE double least_variance(const SearchProblem& problem) {
   double sum = 0;
   for (Eigen::Index k = 0; k < problem.scale.sigma.size(); ++k) {
     const double ratio = problem.criteria.least_error * problem.scale.sigma[k] / problem.fit.weighting.sigma[k];
@@ -34,7 +34,7 @@ SUREFOOT_INLINE double least_variance(const SearchProblem& problem) {
   return sum;
 }
 
-SUREFOOT_INLINE Eigen::VectorXd pooled(const ErrorSquares& errors) {
+SUREFOOT_ONCE Eigen::VectorXd pooled(const ErrorSquares& errors) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(errors.counts.cols());
   for (Eigen::Index k = 0; k < result.size(); ++k) {
     double sum = 0, count = 0;
@@ -116,8 +116,8 @@ SUREFOOT_ONCE double share_of_range(Hypothesis hypothesis, const Variable& varia
   return (to_search(variable, value_of(hypothesis, variable)) - low) / (high - low);
 }
 
-SUREFOOT_INLINE bool is_at_bound(const Hypothesis& hypothesis, const Variable& variable,
-                                 const SelectionCriteria& criteria) {
+SUREFOOT_ONCE bool is_at_bound(const Hypothesis& hypothesis, const Variable& variable,
+                               const SelectionCriteria& criteria) {
   constexpr double middle = 0.5;  // of a range
   const double share = share_of_range(hypothesis, variable);
   // a strength near zero is told by the densities, unless it still says how its input began
@@ -145,8 +145,8 @@ SUREFOOT_ONCE double log_prior(const BoundSimulator& bound, const Hypothesis& hy
   return sum;
 }
 
-SUREFOOT_INLINE Eigen::VectorXd negligible_differences(const ErrorSquares& without_effects,
-                                                       const SelectionCriteria& criteria) {
+SUREFOOT_ONCE Eigen::VectorXd negligible_differences(const ErrorSquares& without_effects,
+                                                     const SelectionCriteria& criteria) {
   Eigen::VectorXd least = pooled(without_effects);
   for (double& value : least) {
     value *= criteria.form_error * criteria.form_error;
@@ -155,18 +155,18 @@ SUREFOOT_INLINE Eigen::VectorXd negligible_differences(const ErrorSquares& witho
 }
 
 /// `value` nearer to zero by `margin`.
-SUREFOOT_INLINE double shrunk(double value, double margin) {
+SUREFOOT_ONCE double shrunk(double value, double margin) {
   return value > margin ? value - margin : value < -margin ? value + margin : 0;
 }
 
 /// Log density of n errors with a mean square, in units of the square of their scale, that scale being known to some
 /// degrees of freedom: Student's t; but for a constant.
-SUREFOOT_INLINE double log_density(double n, double mean_square, double degrees) {
+SUREFOOT_ONCE double log_density(double n, double mean_square, double degrees) {
   return -0.5 * (n + degrees) * std::log1p(n * mean_square / degrees);
 }
 
-SUREFOOT_INLINE std::vector<double> log_densities(const ErrorSquares& errors, const ErrorSquares& reference,
-                                                  const SelectionCriteria& criteria, bool fewer) {
+SUREFOOT_ONCE std::vector<double> log_densities(const ErrorSquares& errors, const ErrorSquares& reference,
+                                                const SelectionCriteria& criteria, bool fewer) {
   const Eigen::VectorXd& least =
       fewer || reference.least_of_as_many.size() == 0 ? reference.least : reference.least_of_as_many;
   const Eigen::VectorXd scale = pooled(reference);
@@ -246,8 +246,8 @@ SUREFOOT_ONCE const EvaluatedHypothesis& closest(const std::vector<EvaluatedHypo
                            [](const auto& a, const auto& b) { return a.errors.rms() < b.errors.rms(); });
 }
 
-SUREFOOT_INLINE std::size_t best_of(const std::vector<EvaluatedHypothesis>& evaluated,
-                                    const SelectionCriteria& criteria) {
+SUREFOOT_ONCE std::size_t best_of(const std::vector<EvaluatedHypothesis>& evaluated,
+                                  const SelectionCriteria& criteria) {
   if (evaluated.empty()) return 0;
   const EvaluatedHypothesis& reference = closest(evaluated);
   std::size_t best = 0;
@@ -262,8 +262,8 @@ SUREFOOT_INLINE std::size_t best_of(const std::vector<EvaluatedHypothesis>& eval
   return best;
 }
 
-SUREFOOT_INLINE double log_odds(const EvaluatedHypothesis& a, const EvaluatedHypothesis& b,
-                                const SelectionCriteria& criteria) {
+SUREFOOT_ONCE double log_odds(const EvaluatedHypothesis& a, const EvaluatedHypothesis& b,
+                              const SelectionCriteria& criteria) {
   const EvaluatedHypothesis& reference = a.errors.rms() < b.errors.rms() ? a : b;
   const auto of_a = log_densities_beside(a, reference, criteria), of_b = log_densities_beside(b, reference, criteria);
   double sum = a.log_prior - b.log_prior;

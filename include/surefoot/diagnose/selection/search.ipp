@@ -85,10 +85,11 @@ SUREFOOT_ONCE bool take_back_holds(Search& search, std::vector<EvaluatedHypothes
   const std::vector<InputHold> found = search.problem.fit.integration.inputs;
   bool changed = false;
   for (std::size_t i = 0; i < found.size() && !search.problem.stopped(); ++i) {
-    if (inputs[i].hold.has_value() || found[i] == InputHold::zero_order) continue;
+    const InputHold said = inputs[i].hold.value_or(InputHold::zero_order);
+    if (hold_of(search.bound.info, found, i) == said) continue;
     const EvaluatedHypothesis best = pool[best_of(pool, criteria)];
     Search held = search;
-    held.problem.fit.integration.inputs[i] = InputHold::zero_order;
+    held.problem.fit.integration.inputs[i] = said;
     const EvaluatedHypothesis without = refitted_or_smaller(held, best);
     if (log_odds(best, without, criteria) > std::log(criteria.named_odds)) continue;
     search.problem.fit.integration = held.problem.fit.integration;

@@ -7,8 +7,10 @@
 #include <cstddef>
 #include <vector>
 
+#include "surefoot/diagnose/simulation/cubic_spline.hpp"
 #include "surefoot/diagnose/simulation/small_vectors.hpp"
 #include "surefoot/diagnose/simulator.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -20,15 +22,21 @@ class InputSignal {
       : recording_(recording),
         late_(info.inputs.size(), 0.0),
         ahead_(info.inputs.size(), 0),
-        linear_(info.inputs.size()),
+        interpolated_(info.inputs.size()),
+        bends_(info.inputs.size()),
         from_rest_(info.inputs.size(), false),
         seen_(info.inputs.size(), 0) {
-    for (std::size_t i = 0; i < linear_.size(); ++i) {
-      const InputHold hold = info.inputs[i].hold.value_or(i < holds.size() ? holds[i] : InputHold::zero_order);
-      linear_[i] = hold == InputHold::linear;
+    for (std::size_t i = 0; i < interpolated_.size(); ++i) {
+      const InputHold hold = hold_of(info, holds, i);
+      const bool bends = hold == InputHold::band_limited;
+      interpolated_[i] = bends || hold == InputHold::linear;
+      if (bends) {
+        bends_[i] = second_derivatives(recording.time,
+                                       surefoot::detail::row_of(recording.inputs, static_cast<Eigen::Index>(i)));
+      }
       ahead_[i] = hold == InputHold::before ? 1 : 0;
-      any_special_ = any_special_ || linear_[i];
-      steady_ = steady_ && !linear_[i];
+      any_special_ = any_special_ || interpolated_[i];
+      steady_ = steady_ && !interpolated_[i];
     }
     held_ = at_row(0);
   }
@@ -41,7 +49,7 @@ class InputSignal {
     any_special_ = true;
     integral_.resize(late_.size());
     auto& sum = integral_[static_cast<std::size_t>(i)];
-    if (!sum.empty() || linear_[static_cast<std::size_t>(i)]) return;
+    if (!sum.empty() || interpolated_[static_cast<std::size_t>(i)]) return;
     sum.assign(static_cast<std::size_t>(recording_.rows()), 0.0);
     for (std::size_t row = 1; row < sum.size(); ++row) {
       const auto r = static_cast<Eigen::Index>(row);
@@ -67,7 +75,7 @@ class InputSignal {
     const double after = t + 1e-9 * (end - t);  // what is rounded to t has been
     double next = end;
     for (std::size_t i = 0; i < late_.size(); ++i) {
-      if (late_[i] == 0 || linear_[i]) continue;
+      if (late_[i] == 0 || interpolated_[i]) continue;
       const auto k = static_cast<Eigen::Index>(i);
       const double begin = recording_.time[0] + late_[i];
       if (from_rest_[i] && begin > after && logged(k, 0) != 0) next = std::min(next, begin);
@@ -97,7 +105,7 @@ class InputSignal {
     Input u = held_;
     for (std::size_t i = 0; i < late_.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
-      if (linear_[i]) {
+      if (interpolated_[i]) {
         u[k] = interpolated(k, t + share * h - late_[i]);
       } else if (late_[i] != 0) {
         u[k] = (integral(i, t + h - late_[i]) - integral(i, t - late_[i])) / h;
@@ -124,8 +132,14 @@ class InputSignal {
     if (rests(static_cast<std::size_t>(i), t)) return 0;
     if (t <= recording_.time[0]) return recording_.inputs(i, 0);
     if (row + 1 >= recording_.rows()) return recording_.inputs(i, row);
-    const double share = (t - recording_.time[row]) / (recording_.time[row + 1] - recording_.time[row]);
-    return recording_.inputs(i, row) + share * (recording_.inputs(i, row + 1) - recording_.inputs(i, row));
+    const double interval = recording_.time[row + 1] - recording_.time[row];
+    const double share = (t - recording_.time[row]) / interval;
+    const double straight =
+        recording_.inputs(i, row) + share * (recording_.inputs(i, row + 1) - recording_.inputs(i, row));
+    const std::vector<double>& bends = bends_[static_cast<std::size_t>(i)];
+    if (bends.empty()) return straight;
+    const auto r = static_cast<std::size_t>(row);
+    return straight + bend_between(bends[r], bends[r + 1], interval, share);
   }
 
   bool rests(std::size_t i, double t) const { return from_rest_[i] && t < recording_.time[0]; }
@@ -141,7 +155,9 @@ class InputSignal {
   const Recording& recording_;
   std::vector<double> late_;
   std::vector<Eigen::Index> ahead_;  // by input: the row that holds what is given from a row on, relative to it
-  std::vector<bool> linear_, from_rest_;
+  std::vector<bool> interpolated_;
+  std::vector<std::vector<double>> bends_;  // by input: second derivatives at rows; empty: straight between them
+  std::vector<bool> from_rest_;
   std::vector<std::vector<double>> integral_;
   std::vector<Eigen::Index> seen_;  // by input: the row it showed at the beginning of the present one
   Input held_;

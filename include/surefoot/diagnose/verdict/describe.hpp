@@ -43,7 +43,7 @@ std::string not_held_out_sentence();
 std::string freed_state_sentence(const StateInfo& state, double low, double high);
 
 /// For an input of which the recordings say that it is not held until the next row.
-std::string hold_sentence(const std::string& input, InputHold hold);
+std::string hold_sentence(const std::string& input, InputHold hold, InputHold said);
 
 /// That friction at one of these velocities may have to move the others too.
 std::string moved_together_sentence(const SimulatorInfo& info, const std::vector<int>& velocities);

@@ -130,14 +130,16 @@ SUREFOOT_ONCE std::string freed_state_sentence(const StateInfo& state, double lo
          "Recording::initial_scale)";
 }
 
-SUREFOOT_ONCE std::string hold_sentence(const std::string& input, InputHold hold) {
-  const bool linear = hold == InputHold::linear;
-  return "input " + input +
-         (linear ? " goes straight from row to row"
-                 : " of each row acts since the row before, not from its own row on,") +
-         " in what follows: recordings fit better so than with values held until the next row; say in the model which "
-         "it is (a model file by hold = " +
-         (linear ? "\"linear\"" : "\"before\"") + " or \"held\", C++ by InputInfo::hold)";
+SUREFOOT_ONCE std::string hold_sentence(const std::string& input, InputHold hold, InputHold said) {
+  const auto in_model = [](InputHold one) { return "\"" + std::string(hold_name(one)) + "\""; };
+  std::string way = " of each row acts since the row before, not from its own row on,";
+  if (hold == InputHold::linear) way = " goes straight from row to row";
+  if (hold == InputHold::band_limited) way = " goes smoothly from row to row, as a band-limited signal does,";
+  const bool line = said == InputHold::linear;
+  return "input " + input + way + " in what follows: recordings fit better so than with " +
+         (line ? "straight lines between rows" : "values held until the next row") +
+         "; say in the model which it is (a model file by hold = " + in_model(hold) + " or " + in_model(said) +
+         ", C++ by InputInfo::hold)";
 }
 
 SUREFOOT_ONCE std::string moved_together_sentence(const SimulatorInfo& info, const std::vector<int>& velocities) {

@@ -27,13 +27,16 @@ struct FoundModel {
 };
 
 /// The same by a model with the effects that were found: physics that was missing hides a clock that is some percent
-/// off, or one recording's sensor that sticks.
+/// off, or one recording's sensor that sticks. It goes on when the time of the search has ended.
 LogExamination examine_with_effects(const BindSimulator& bind, const std::vector<Recording>& recordings,
                                     const FoundModel& found, const RunContext& run);
 
 /// Whether a fault is named once more in recordings that were repaired: the model without the effects was wrong about
 /// it.
 bool is_named_again(const std::vector<LogFault>& repaired, const std::vector<LogFault>& named);
+
+/// Withdraws that a recording is unlike the others, where there was no time to ask whether it is with what was found.
+void withdraw_odd_recording(LogExamination& log);
 
 /// Withdraws faults that the model with what was found does not name again: some physics, or an initial state, passed
 /// for them. Those that were repaired only if all can begin anew; true if it must.

@@ -10,6 +10,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/effects/catalogue.hpp"
 #include "surefoot/diagnose/estimation/items.hpp"
+#include "surefoot/diagnose/log_doctor/log_repair.hpp"
 #include "surefoot/diagnose/selection/choose_initial_states.hpp"
 #include "surefoot/diagnose/verdict/examine_recordings.hpp"
 
@@ -33,12 +34,11 @@ SUREFOOT_ONCE Hypothesis nominal_with_known(const BoundSimulator& bound, const D
   return hypothesis;
 }
 
-/// The examination by a model that is calibrated from these parameters on.
+/// The examination by a model that is calibrated from these parameters on, until it is stopped.
 SUREFOOT_ONCE LogExamination examine(const BindSimulator& bind, const std::vector<Recording>& recordings,
                                      const std::function<Hypothesis(const BoundSimulator&)>& model,
-                                     const RunContext& run) {
-  LogExamination examined =
-      examine_log({bind, model, run.parallel, {}, [run] { return run.search_has_ended(); }}, recordings);
+                                     const RunContext& run, std::function<bool()> stopped) {
+  LogExamination examined = examine_log({bind, model, run.parallel, {}, std::move(stopped)}, recordings);
   if (run.options.repair) return examined;
   for (LogFault& fault : examined.faults) fault.repaired = false;
   return examined;
@@ -47,7 +47,8 @@ SUREFOOT_ONCE LogExamination examine(const BindSimulator& bind, const std::vecto
 SUREFOOT_ONCE LogExamination examine_recordings(const BindSimulator& bind, const std::vector<Recording>& recordings,
                                                 const RunContext& run) {
   return examine(
-      bind, recordings, [&](const BoundSimulator& bound) { return nominal_with_known(bound, run.options); }, run);
+      bind, recordings, [&](const BoundSimulator& bound) { return nominal_with_known(bound, run.options); }, run,
+      [run] { return run.search_has_ended(); });
 }
 
 SUREFOOT_ONCE LogExamination examine_with_effects(const BindSimulator& bind, const std::vector<Recording>& recordings,
@@ -71,7 +72,7 @@ SUREFOOT_ONCE LogExamination examine_with_effects(const BindSimulator& bind, con
     }
     return hypothesis;
   };
-  return examine(bind_as_found, recordings, model, run);
+  return examine(bind_as_found, recordings, model, run, [run] { return run.has_ended(); });
 }
 
 SUREFOOT_ONCE bool is_named_again(const std::vector<LogFault>& repaired, const std::vector<LogFault>& named) {
@@ -80,6 +81,10 @@ SUREFOOT_ONCE bool is_named_again(const std::vector<LogFault>& repaired, const s
       return one.kind == other.kind && one.recording == other.recording && one.channel == other.channel;
     });
   });
+}
+
+SUREFOOT_ONCE void withdraw_odd_recording(LogExamination& log) {
+  drop_items(log.faults, [](const LogFault& fault) { return fault.kind == name_of(LogFaultKind::odd); });
 }
 
 SUREFOOT_ONCE bool withdraw_faults(LogExamination& log, const LogExamination& again, bool can_begin_anew) {

@@ -49,6 +49,10 @@ void evaluate_selection(const EstimationSetup& setup, const Calibration& calibra
                         const Selection& selection, const std::vector<AttachedEffect>& candidates,
                         const RunContext& run, Diagnosis& diagnosis);
 
+/// Fits what was chosen by a search that ran out of time to its end, as far as there is time: its fit may have been cut
+/// short.
+void finish_fit(const EstimationSetup& setup, Hypothesis& chosen, const RunContext& run);
+
 /// All stages after the recordings were screened and examined: fills in the diagnosis.
 FoundModel diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings, const RunContext& run,
                                Diagnosis& diagnosis);

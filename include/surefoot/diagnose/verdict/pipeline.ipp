@@ -112,9 +112,9 @@ SUREFOOT_ONCE void describe_models(const EstimationSetup& setup, const FittedMod
   const std::vector<InputHold>& found = bound.integration.inputs;
   for (std::size_t i = 0; i < bound.info.inputs.size(); ++i) {
     const InputInfo& input = bound.info.inputs[i];
-    diagnosis.input_holds.push_back(input.hold.value_or(i < found.size() ? found[i] : InputHold::zero_order));
-    const bool otherwise = !input.hold && diagnosis.input_holds[i] != InputHold::zero_order;
-    if (otherwise) diagnosis.remarks.push_back({"", hold_sentence(input.name, diagnosis.input_holds[i])});
+    const InputHold hold = hold_of(bound.info, found, i), said = input.hold.value_or(InputHold::zero_order);
+    diagnosis.input_holds.push_back(hold);
+    if (hold != said) diagnosis.remarks.push_back({"", hold_sentence(input.name, hold, said)});
   }
   for (std::size_t e = 0; e < chosen.effects.size(); ++e) {
     FoundEffect found = describe(bound, chosen, e, &errors);
@@ -215,14 +215,15 @@ SUREFOOT_ONCE void evaluate_selection(const EstimationSetup& setup, const Calibr
   offer_forests(setup, models, diagnosis, run.parallel, run.seed);
   describe_limits(setup, models, problem, candidates, run, diagnosis);
   diagnosis.sentence = verdict_sentence(diagnosis, ties);
+  const bool as_many_as_may_be = static_cast<int>(diagnosis.effects.size()) >= run.options.max_effects;
+  const bool open = diagnosis.verdict == Verdict::unexplained || diagnosis.verdict == Verdict::unfinished;
+  if (open && !diagnosis.effects.empty() && as_many_as_may_be) {
+    diagnosis.remarks.push_back({"", most_effects_sentence(run.options.max_effects)});
+  }
   if (diagnosis.verdict == Verdict::unexplained) {
     const std::vector<int>& together = setup.bound.structure.moved_together;
     if (!together.empty()) diagnosis.remarks.push_back({"", moved_together_sentence(setup.bound.info, together)});
     if (no_speed_is_known(setup.bound)) diagnosis.remarks.push_back({"", no_speed_sentence()});
-    const bool as_many_as_may_be = static_cast<int>(diagnosis.effects.size()) >= run.options.max_effects;
-    if (!diagnosis.effects.empty() && as_many_as_may_be) {
-      diagnosis.remarks.push_back({"", most_effects_sentence(run.options.max_effects)});
-    }
     return;  // what is left of it would pass for noise
   }
   diagnosis.noise_findings = find_noise(setup.bound, choice.chosen.hypothesis, training, setup.noise, run.parallel);
@@ -246,6 +247,11 @@ SUREFOOT_ONCE void refit_with_finer_steps(EstimationSetup& setup, Selection& sel
   if (clearly_less * refitted.loss > before) return;  // another valley, as of bounces in another order
   bound.integration = problem.integration = *finer;
   chosen = refitted.hypothesis;
+}
+
+SUREFOOT_ONCE void finish_fit(const EstimationSetup& setup, Hypothesis& chosen, const RunContext& run) {
+  const Fit finished = fit(setup.bound, chosen, setup.problem, run.parallel);
+  if (finished.ok) chosen = finished.hypothesis;
 }
 
 SUREFOOT_ONCE std::string shortening_sentence(Eigen::Index rows) {
@@ -286,6 +292,8 @@ SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vec
   setup.problem = selection.fit;
   setup.problem.stopped = [run] { return run.has_ended(); };
   setup.bound.integration = setup.problem.integration;
+  const bool found_any = selection.chosen.hypothesis.effects.size() > problem.known;
+  if (found_any && !diagnosis.complete) finish_fit(setup, selection.chosen.hypothesis, run);
   refit_with_finer_steps(setup, selection, run);
   remove_outliers_from(setup, selection.chosen.hypothesis, run, diagnosis);
   remark_on_freed_states(setup, selection.chosen.hypothesis, diagnosis);
@@ -353,10 +361,15 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
     if (begins_anew) continue;
     const bool freed = std::find(found.freed.begin(), found.freed.end(), true) != found.freed.end();
     const bool in_doubt = (found_any || freed) && !named_again && !confirmed && !log.faults.empty();
-    if (in_doubt && !run.search_has_ended()) {
+    if (in_doubt) {
       confirmed = true;
-      const LogExamination again = examine_with_effects(bind, logged, found, run);
-      if (withdraw_faults(log, again, run.has_time_for_as_much_again(started))) continue;
+      LogExamination again;
+      if (!run.has_ended()) again = examine_with_effects(bind, logged, found, run);
+      if (run.has_ended()) {  // what was cut short says nothing
+        withdraw_odd_recording(log);
+      } else if (withdraw_faults(log, again, run.has_time_for_as_much_again(started))) {
+        continue;
+      }
     }
     // found too late to begin anew: named, but not repaired in what this diagnosis is made of
     for (LogFault& fault : log.faults) fault.repaired = fault.repaired && is_named_again(considered, {fault});
