@@ -189,7 +189,7 @@ inline std::vector<Form> forms() {
       {"input_delay", "from rest", "the same, 0 until the first command arrives"},
       {"first_order_lag", "", "time u' = command - u", {0.08}, "late after sharp steps, and their corners rounded"},
       {"first_order_lag", "from rest", "the same, from 0 at the first row on, and not from its first command"},
-      {"supply_sag", "", "u = u (1 - sag |u|), not below 0", {1}, "falls short with the square of the command"},
+      {"supply_sag", "", "u = u (1 - sag |u|), no more than 1 / (4 sag)", {1}, "falls short with the square of the command"},
       {"supply_sag", "current", "drive (1 - sag |i|), at a current i that is a state"},
 
       // in a sensor

@@ -42,7 +42,7 @@ std::string not_held_out_sentence();
 /// For a state that begins, in recordings, between these values and not where the model says.
 std::string freed_state_sentence(const StateInfo& state, double low, double high);
 
-/// For an input of which the recordings say that it is not held until the next row.
+/// For an input of which the recordings say that it goes another way between rows than is said, or held if nothing is.
 std::string hold_sentence(const std::string& input, InputHold hold, InputHold said);
 
 /// That friction at one of these velocities may have to move the others too.
