@@ -9,6 +9,7 @@
 #include "../plants/calibrate.hpp"
 #include "../plants/systems.hpp"
 #include "free_start.hpp"
+#include "laws.hpp"
 
 namespace machines {
 namespace {
@@ -148,6 +149,17 @@ bool worth_calibrating(const plants::Case& one) {
   return as_true.fitted >= visible.fitted && std::isfinite(as_true.held_out);
 }
 
+// Parameters fitted from the true ones and from those of the model without effects, whichever fit better.
+Values best_calibration(const System& system, const Values& calibrated, std::span<const Recording> fitted,
+                        const How& how) {
+  const Values actual = plants::actual_values(system);
+  Values near_calibrated = actual;  // and strengths, which that model does not have
+  std::ranges::copy(calibrated, near_calibrated.begin());
+  const Values a = plants::calibrate_from(system, actual, {}, fitted, how);
+  const Values b = plants::calibrate_from(system, near_calibrated, {}, fitted, how);
+  return error_of(system, a, {}, fitted, how) < error_of(system, b, {}, fitted, how) ? a : b;
+}
+
 // Without each effect in turn, parameters and the strength of the other fitted again.
 bool each_visible(Drawn& drawn) {
   plants::Case& one = drawn.one;
@@ -156,8 +168,8 @@ bool each_visible(Drawn& drawn) {
   for (std::size_t k = 0; one.faults.size() == 2 && k < 2; ++k) {
     const System without = with_free_strength(one.system, drawn.machine, {drawn.hidden[1 - k]}, 0);
     const How how = as_user(fine / 2);
-    const Values p = plants::calibrate_from(without, plants::actual_values(without), {}, split(without).fitted, how);
     const Split parts = split(one.system);
+    const Values p = best_calibration(without, one.calibrated, parts.fitted, how);
     const How truth{fine, false, false, nullptr};
     const Values actual = plants::actual_values(one.system);
     const double held_out =
@@ -274,7 +286,8 @@ System with_free_strength(const System& system, std::shared_ptr<const CompiledMa
   System freed = system;
   const double size = std::abs(hidden[k].a);
   const double least = is_signed(hidden[k].name) ? -50 * size : 1e-3 * size;
-  freed.parameters.push_back({"strength", "", hidden[k].a, hidden[k].a, least, 50 * size, false});
+  const bool read_off = rounds(hidden[k].law);  // the steps of readings are seen as they are
+  freed.parameters.push_back({"strength", "", hidden[k].a, hidden[k].a, least, 50 * size, read_off});
   const std::vector<double> noise = system.noise;
   freed.simulate = [machine, hidden, noise, k](const Values& values, const std::vector<Fault>&,
                                                const Recording& recording, const How& how) {

@@ -4,11 +4,16 @@
 #include <cmath>
 
 #include "../plants/calibrate.hpp"
+#include "laws.hpp"
 
 namespace machines {
 namespace {
 
-constexpr int iterations = 3;          // nearly linear: a state's start shows in the readings as it fades
+constexpr int iterations = 6;           // nearly linear: a state's start shows in the readings as it fades
+constexpr int dampings = 2;             // of a step that leads astray, as where friction holds
+constexpr double damping_factor = 30;   // from one to the next
+constexpr double first_damping = 1e-3;  // of the diagonal, over the factor
+constexpr double settled = 1e-3;        // of the squares: what a step must promise to take away
 constexpr double difference = 1e-3;    // of a start's size, for derivatives
 constexpr double regularized = 1e-10;  // share of the diagonal, for starts that no reading shows
 
@@ -56,17 +61,22 @@ plants::Series simulate_as_user(const CompiledMachine& machine, const Values& pa
   plants::Series best = simulate(machine, parameters, hidden, recording, how);
   const std::vector<std::size_t> free = free_states(machine.machine);
   if (!how.fit_free || free.empty()) return best;
+  const bool steps = std::ranges::any_of(hidden, [](const Hidden& one) { return rounds(one.law); });
   Recording started = recording;
   Column residual = weighted(recording, best, noise);
   for (int iteration = 0; iteration < iterations; ++iteration) {
     std::vector<Column> slopes;
     Values sizes;
+    plants::How smooth = how;
+    smooth.unrounded = true;
+    const Column before_rounding =
+        steps ? weighted(recording, simulate(machine, parameters, hidden, started, smooth), noise) : residual;
     for (const std::size_t state : free) {
       sizes.push_back(size_of(machine.machine, recording, state));
       Recording moved = started;
       moved.initial[state] += difference * sizes.back();
-      Column slope = weighted(recording, simulate(machine, parameters, hidden, moved, how), noise);
-      for (std::size_t i = 0; i < slope.size(); ++i) slope[i] = (slope[i] - residual[i]) / difference;
+      Column slope = weighted(recording, simulate(machine, parameters, hidden, moved, smooth), noise);
+      for (std::size_t i = 0; i < slope.size(); ++i) slope[i] = (slope[i] - before_rounding[i]) / difference;
       slopes.push_back(std::move(slope));
     }
     std::vector<Values> normal(free.size(), Values(free.size()));
@@ -77,14 +87,24 @@ plants::Series simulate_as_user(const CompiledMachine& machine, const Values& pa
       gradient[i] = -product(slopes[i], residual);
       largest = std::max(largest, normal[i][i]);
     }
-    for (std::size_t i = 0; i < free.size(); ++i) normal[i][i] += regularized * largest;
-    const Values step = plants::solve(normal, gradient);
-    Recording tried = started;
-    for (std::size_t i = 0; i < free.size(); ++i) tried.initial[free[i]] += step[i] * sizes[i];
-    plants::Series series = simulate(machine, parameters, hidden, tried, how);
-    Column now = weighted(recording, series, noise);
-    if (!(product(now, now) < product(residual, residual))) break;
-    started = std::move(tried), best = std::move(series), residual = std::move(now);
+    const double before = product(residual, residual);
+    double damping = 0;
+    bool better = false;
+    for (int k = 0; k <= dampings && !better; ++k) {
+      std::vector<Values> damped = normal;
+      for (std::size_t i = 0; i < free.size(); ++i) damped[i][i] += regularized * largest + damping * normal[i][i];
+      const Values step = plants::solve(damped, gradient);
+      if (!(product(step, gradient) > settled * before)) break;  // all that it promises
+      Recording tried = started;
+      for (std::size_t i = 0; i < free.size(); ++i) tried.initial[free[i]] += step[i] * sizes[i];
+      plants::Series series = simulate(machine, parameters, hidden, tried, how);
+      Column now = weighted(recording, series, noise);
+      damping = std::max(damping, first_damping) * damping_factor;
+      if (!(product(now, now) < before)) continue;
+      better = true;
+      started = std::move(tried), best = std::move(series), residual = std::move(now);
+    }
+    if (!better) break;
   }
   return best;
 }

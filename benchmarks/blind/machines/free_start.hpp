@@ -5,8 +5,8 @@
 
 namespace machines {
 
-/// As simulate(); with How::fit_free, free initial values are those of least squares, after Gauss and Newton from the
-/// true ones. `noise`: of each output, its weight.
+/// As simulate(); with How::fit_free, free initial values are those of least squares, after Levenberg and Marquardt
+/// from the true ones. `noise`: of each output, its weight.
 plants::Series simulate_as_user(const CompiledMachine& machine, const Values& parameters,
                                 const std::vector<Hidden>& hidden, const Recording& recording, const plants::How& how,
                                 const std::vector<double>& noise);

@@ -63,6 +63,10 @@ double static_signal(const Hidden& one, double value, double time);
 /// An input over the fine steps, in place; `times`: starts of the steps [s].
 void change_input(const Hidden& one, const Column& times, Column& values);
 double factor_of_parameter(const Hidden& one, double time);
+/// Whether readings come in steps.
+bool rounds(Law law);
+/// The law whose readings are those of one that rounds in the mean, and smooth.
+Hidden unrounded(Hidden one);
 /// What a sensor makes of the true values; delays need what lies between the rows and are not among it.
 void change_readings(const Hidden& one, const Column& times, Column& values);
 

@@ -145,6 +145,15 @@ double factor_of_parameter(const Hidden& one, double time) {
   return std::max(1 + one.a * time, 0.05);
 }
 
+bool rounds(Law law) { return law == Law::round_off || law == Law::floor_off; }
+
+Hidden unrounded(Hidden one) {
+  if (!rounds(one.law)) return one;
+  one.a = one.law == Law::floor_off ? -one.a / 2 : 0;
+  one.law = Law::bias;
+  return one;
+}
+
 void change_readings(const Hidden& one, const Column& times, Column& values) {
   double held = values.empty() ? 0 : values[0];
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -63,7 +63,7 @@ class Run {
       if (one.law == Law::sensor_delay) {
         readings = late(outputs_[at(one.target)], one.a);
       } else {
-        change_readings(one, recording_.time, readings);
+        change_readings(how_.unrounded ? unrounded(one) : one, recording_.time, readings);
       }
     }
     return series;

@@ -29,13 +29,16 @@ Fit fit_from(const System& system, Values parameters, const std::vector<Fault>& 
   for (int iteration = 0; iteration < 25 && damping < 1e8; ++iteration) {
     std::vector<Column> slopes;
     Values scale;
+    How smooth = how;  // inside of a step that readings are rounded to nothing moves
+    smooth.unrounded = true;
+    const Column before_rounding = residuals(system, parameters, faults, recordings, smooth);
     for (std::size_t i : free) {
       const Parameter& p = system.parameters[i];
       scale.push_back(std::max(std::abs(p.nominal), 0.02 * (p.high - p.low)));
       Values moved = parameters;
       moved[i] += 1e-4 * scale.back();
-      Column slope = residuals(system, moved, faults, recordings, how);
-      for (std::size_t r = 0; r < slope.size(); ++r) slope[r] = (slope[r] - residual[r]) / 1e-4;
+      Column slope = residuals(system, moved, faults, recordings, smooth);
+      for (std::size_t r = 0; r < slope.size(); ++r) slope[r] = (slope[r] - before_rounding[r]) / 1e-4;
       slopes.push_back(std::move(slope));
     }
     std::vector<Values> normal(free.size(), Values(free.size()));

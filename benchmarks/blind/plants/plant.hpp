@@ -139,6 +139,7 @@ struct How {
   bool stepwise = false;       // walks: every step starts from the measured pose
   Random* noise = nullptr;     // walks: process noise
   bool fit_free = false;       // machines: initial values that the model file leaves free are fitted to the readings
+  bool unrounded = false;      // machines: sensors that round read what they round, at its mean: for derivatives
 };
 
 using Simulate = std::function<Series(const Values&, const std::vector<Fault>&, const Recording&, const How&)>;

@@ -47,11 +47,25 @@ TEST_CASE("steps that noise behind the converter hides are found in the errors")
       readings.push_back(step * std::floor(simulated.back() / step + shift) + 0.3 * step * rng.normal());
     }
     CHECK(lattice_steps(readings).empty());
-    const auto found = sawtooth_steps(readings, simulated, shift);
+    const auto found = sawtooth_steps(readings, simulated);
     REQUIRE(found.size() == 1);
     CHECK(found.front() == doctest::Approx(step).epsilon(0.001));
-    CHECK(sawtooth_steps(noise, simulated, shift).empty());
+    CHECK(sawtooth_steps(noise, simulated).empty());
   }
+}
+
+TEST_CASE("steps are found by a simulation that is off by part of one, here or there") {
+  surefoot::Rng rng(5);
+  constexpr double step = 0.02;
+  std::vector<double> simulated, readings;
+  for (int i = 0; i < 2000; ++i) {
+    const double value = 5 + 4 * std::sin(0.003 * i);
+    simulated.push_back(value + step * (i % 500 < 250 ? 0.6 : 0.9));  // recordings begin a little elsewhere
+    readings.push_back(step * std::floor(value / step) + 0.35 * step * rng.normal());
+  }
+  const auto found = sawtooth_steps(readings, simulated);
+  REQUIRE(found.size() == 1);
+  CHECK(found.front() == doctest::Approx(step).epsilon(0.001));
 }
 
 TEST_CASE("errors where a machine rests show no steps, however many readings there are") {
@@ -65,5 +79,5 @@ TEST_CASE("errors where a machine rests show no steps, however many readings the
   for (const auto& [place, error] : {std::pair{0.285, 0.03}, {0.335, -0.03}, {0.385, 0.02}}) {
     for (int i = 0; i < 600; ++i) read(place, error);
   }
-  CHECK(sawtooth_steps(readings, simulated, 0.5).empty());
+  CHECK(sawtooth_steps(readings, simulated).empty());
 }

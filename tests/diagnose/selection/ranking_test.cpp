@@ -130,6 +130,12 @@ TEST_CASE("an effect that may as well be absent is not named") {
   CHECK(without_improbable(search, pool, {0, 0.04, 0.49, 0.47, 0}, 2) == 2);  // the part is not in the tie
   CHECK(without_improbable(search, pool, {0, 0, 0.45, 0.2, 0.35}, 2) == 2);   // nor is another structure a part
   CHECK(without_improbable(search, pool, {0.3, 0, 0.4, 0.3, 0}, 2) == 2);     // whether anything is named is no matter
+
+  // of two that look the same one is needed for what is left to be noise
+  bench.problem.noise = Eigen::VectorXd::Constant(1, 0.5);
+  const EvaluatedHypothesis noisy = made_up(bench, {"sensor_bias", "sensor_drift"}, 0.5);
+  const Search with_noise = bench.search();
+  CHECK(without_improbable(with_noise, {none, one, noisy, other_two, other}, {0, 0.2, 0.45, 0.35, 0}, 2) == 2);
 }
 
 }  // namespace

@@ -143,6 +143,18 @@ TEST_CASE("damped bristles are found beside plain friction, though undamped ones
   CHECK(richer->errors.rms() < 0.1 * plain.errors.rms());
 }
 
+TEST_CASE("forms of one effect are compared in full, though they differ by less than an error of form") {
+  using namespace diagnosis;
+  FormSearch forms = search_of({"cubic_stiffness", "v", "off center", {}, {40, 0.0005}});
+  forms.problem.least = Eigen::VectorXd::Constant(2, 1e3);  // mean squares, in the unit of errors: all of them
+  const EvaluatedHypothesis plain = forms.fitted("", Eigen::VectorXd::Constant(1, 40));
+  const auto richer = in_richer_forms(forms.search(), plain);
+  REQUIRE(richer.has_value());
+  CHECK(richer->hypothesis.effects[0].effect->form == "off center");
+  CHECK(richer->hypothesis.values[0][1] == doctest::Approx(0.0005).epsilon(0.2));
+  CHECK(log_odds(*richer, plain, forms.problem.criteria) < std::log(forms.problem.criteria.named_odds));
+}
+
 TEST_CASE("other forms of an effect are tried from the fit that was found, the best first") {
   using namespace diagnosis;
   FormSearch forms = search_of({"coulomb_friction", "v", "smooth", {}, {4, 0.08}});

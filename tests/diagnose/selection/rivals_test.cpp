@@ -40,6 +40,19 @@ TEST_CASE("effects of the best structure are taken away and replaced in turn") {
   CHECK(has("sensor_bias"));
 }
 
+TEST_CASE("effects of other structures stand in the place of those of the best one, as they were found") {
+  const TankBench bench({rate_in_tank, drift_in_tank});
+  const SelectionCriteria& criteria = bench.problem.criteria;
+  std::vector<EvaluatedHypothesis> pool{bench.with({}), bench.with({"sensor_drift", "sensor_bias"}),
+                                        bench.with({"constant_rate"})};
+  exchange_effects(bench.search(), pool);
+  CHECK(names_in(pool[best_of(pool, criteria)]) == "constant_rate, sensor_drift");
+
+  std::vector<EvaluatedHypothesis> alone{bench.with({}), bench.with({"sensor_drift"}), bench.with({"sensor_bias"})};
+  exchange_effects(bench.search(), alone);
+  CHECK(alone.size() == 3);  // of single effects all were tried
+}
+
 TEST_CASE("what is left of the best structure is extended once") {
   const TankBench bench({rate_in_tank, drift_in_tank});
   const SelectionCriteria& criteria = bench.problem.criteria;

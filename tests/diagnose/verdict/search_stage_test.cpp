@@ -45,12 +45,22 @@ TEST_CASE("small problems get a longer list of proposals, and the search ends wh
   const Calibration calibration = calibrate_model(setup, {options, parallel});
   const SearchProblem problem = search_problem(setup, calibration, {options, parallel});
   CHECK(problem.effort.shortlist == SearchEffort{}.max_shortlist);
-  CHECK(problem.screened.size() == SearchEffort{}.screening);
+  CHECK(problem.screened == setup.split.training);  // of few rows each recording shows something of its own
   CHECK(problem.scale.sigma == error_scale(setup.bound));
   CHECK(problem.nominal.parameters == calibration.nominal.parameters);
   CHECK_FALSE(problem.stopped());
   options.max_seconds = 1e-9;
   CHECK(search_problem(setup, calibration, {options, parallel}).stopped());
+}
+
+TEST_CASE("of many rows a few recordings make proposals") {
+  DiagnoseOptions options;
+  const Parallel parallel = serially();
+  options.starts = 2;
+  const int count = static_cast<int>(SearchEffort{}.screening_rows / 120) + 5;  // of 120 rows, some of them held out
+  EstimationSetup setup = hold_out_recordings(toys::bind_tank, toys::noisy_tanks({}, 0.01, count), {options, parallel});
+  const Calibration calibration = calibrate_model(setup, {options, parallel});
+  CHECK(search_problem(setup, calibration, {options, parallel}).screened.size() == SearchEffort{}.screening);
 }
 
 TEST_CASE("residuals are searched for more as long as they hold what noise does not") {

@@ -34,7 +34,7 @@ inline double soft_round(double x, double sharpness = soft_edge) {
           .experiment = "the slowest motion possible through many steps of the sensor",
           .needs_suggestion = true,
           .rounds = true,
-          .suggest = +[](Values readings, Values simulated) { return sensor_steps(readings, simulated, 0.5); },
+          .suggest = +[](Values readings, Values simulated) { return sensor_steps(readings, simulated); },
           .sensor =
               +[](const Series& series, Values p) {
                 for (double& reading : series.readings) reading = p[0] * soft_round(reading / p[0]);
@@ -45,7 +45,6 @@ inline double soft_round(double x, double sharpness = soft_edge) {
 [[gnu::cold]] inline Effect quantization_floor() {
   Effect effect = quantization();
   effect.form = "floor";
-  effect.suggest = +[](Values readings, Values simulated) { return sensor_steps(readings, simulated, 0); };
   effect.sensor = +[](const Series& series, Values p) {
     for (double& reading : series.readings) reading = p[0] * soft_round(reading / p[0] - 0.5);
   };

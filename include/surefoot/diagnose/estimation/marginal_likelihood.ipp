@@ -101,8 +101,8 @@ SUREFOOT_INLINE ErrorSquares error_squares(const BoundSimulator& bound, const Hy
 }
 
 /// A part of the Jacobian with its rows weighted.
-SUREFOOT_INLINE Eigen::MatrixXd weighted_columns(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& weight,
-                                                 Eigen::Index from, const std::vector<Eigen::Index>& columns) {
+SUREFOOT_ONCE Eigen::MatrixXd weighted_columns(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& weight,
+                                               Eigen::Index from, const std::vector<Eigen::Index>& columns) {
   Eigen::MatrixXd part(weight.size(), static_cast<Eigen::Index>(columns.size()));
   for (Eigen::Index k = 0; k < part.cols(); ++k) {
     const double* column = jacobian.data() + columns[static_cast<std::size_t>(k)] * jacobian.rows() + from;
@@ -111,7 +111,7 @@ SUREFOOT_INLINE Eigen::MatrixXd weighted_columns(const Eigen::MatrixXd& jacobian
   return part;
 }
 
-SUREFOOT_INLINE void subtract(Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+SUREFOOT_ONCE void subtract(Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   for (Eigen::Index i = 0; i < a.size(); ++i) a.data()[i] -= b.data()[i];
 }
 
@@ -121,8 +121,8 @@ struct VariablePlaces {
   std::vector<std::vector<Eigen::Index>> own;  // by recording of the problem
 };
 
-SUREFOOT_INLINE VariablePlaces places_of(const std::vector<Variable>& variables,
-                                         const std::vector<std::size_t>& recordings) {
+SUREFOOT_ONCE VariablePlaces places_of(const std::vector<Variable>& variables,
+                                       const std::vector<std::size_t>& recordings) {
   VariablePlaces places{{}, std::vector<std::vector<Eigen::Index>>(recordings.size())};
   for (std::size_t v = 0; v < variables.size(); ++v) {
     const bool initial = is_of_one_recording(variables[v]);
@@ -134,9 +134,9 @@ SUREFOOT_INLINE VariablePlaces places_of(const std::vector<Variable>& variables,
   return places;
 }
 
-SUREFOOT_INLINE Eigen::MatrixXd information(const FitFunctions& functions, const Eigen::VectorXd& z,
-                                            const FitProblem& problem, double least_variance,
-                                            const VariablePlaces& places) {
+SUREFOOT_ONCE Eigen::MatrixXd information(const FitFunctions& functions, const Eigen::VectorXd& z,
+                                          const FitProblem& problem, double least_variance,
+                                          const VariablePlaces& places) {
   using surefoot::detail::invert_symmetric, surefoot::detail::product, surefoot::detail::transposed_product;
   constexpr double ridge = 1e-9;  // of the diagonal: what nothing determines stays where it is
   const Eigen::VectorXd residuals = functions.residuals(z);
@@ -173,7 +173,7 @@ SUREFOOT_INLINE Eigen::MatrixXd information(const FitFunctions& functions, const
   return sum;
 }
 
-SUREFOOT_INLINE double prior_width(const Variable& variable, double value) {
+SUREFOOT_ONCE double prior_width(const Variable& variable, double value) {
   constexpr double smallest = 0.01;  // of the largest size: below, an effect is none
   const double low = to_search(variable, variable.low), high = to_search(variable, variable.high);
   const double uniform = 0.5 * (high - low);
@@ -185,8 +185,8 @@ SUREFOOT_INLINE double prior_width(const Variable& variable, double value) {
   return std::min(uniform, variable.low < 0 ? 2 * width : width);
 }
 
-SUREFOOT_INLINE double log_occam_factor(const BoundSimulator& bound, const Hypothesis& fitted,
-                                        const FitProblem& problem, double least_variance, const Parallel& parallel) {
+SUREFOOT_ONCE double log_occam_factor(const BoundSimulator& bound, const Hypothesis& fitted, const FitProblem& problem,
+                                      double least_variance, const Parallel& parallel) {
   const FitFunctions functions(bound, fitted, problem, parallel);
   const VariablePlaces places = places_of(functions.variables(), problem.recordings);
   const auto count = static_cast<Eigen::Index>(places.shared.size());

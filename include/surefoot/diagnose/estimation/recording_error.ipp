@@ -16,15 +16,15 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE double recording_error(const BoundSimulator& bound, std::size_t r, const SimulatedRun& trajectory,
-                                       const Eigen::VectorXd& scale) {
+SUREFOOT_ONCE double recording_error(const BoundSimulator& bound, std::size_t r, const SimulatedRun& trajectory,
+                                     const Eigen::VectorXd& scale) {
   const std::vector<Cell> cells = cells_of(bound.recordings[r]);
   Eigen::VectorXd off = raw_residuals(bound, r, trajectory, cells);
   for (std::size_t i = 0; i < cells.size(); ++i) off[static_cast<Eigen::Index>(i)] /= scale[cells[i].output];
   return off.size() > 0 ? std::sqrt(surefoot::detail::sum_of_squares(off) / static_cast<double>(off.size())) : 0;
 }
 
-SUREFOOT_INLINE double over_all(const std::vector<double>& errors, const std::vector<double>& counts) {
+SUREFOOT_ONCE double over_all(const std::vector<double>& errors, const std::vector<double>& counts) {
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     sum += errors[i] * errors[i] * counts[i];
@@ -33,14 +33,13 @@ SUREFOOT_INLINE double over_all(const std::vector<double>& errors, const std::ve
   return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
-SUREFOOT_INLINE std::vector<double> cell_counts(const BoundSimulator& bound,
-                                                const std::vector<std::size_t>& recordings) {
+SUREFOOT_ONCE std::vector<double> cell_counts(const BoundSimulator& bound, const std::vector<std::size_t>& recordings) {
   std::vector<double> counts;
   for (const std::size_t r : recordings) counts.push_back(static_cast<double>(cells_of(bound.recordings[r]).size()));
   return counts;
 }
 
-SUREFOOT_INLINE Eigen::VectorXd error_scale(const BoundSimulator& bound) {
+SUREFOOT_ONCE Eigen::VectorXd error_scale(const BoundSimulator& bound) {
   std::vector<std::size_t> all(bound.recordings.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   Eigen::VectorXd scale = output_deviations(bound, all);
@@ -51,10 +50,10 @@ SUREFOOT_INLINE Eigen::VectorXd error_scale(const BoundSimulator& bound) {
   return scale;
 }
 
-SUREFOOT_INLINE std::vector<double> recording_errors(const BoundSimulator& bound,
-                                                     const std::vector<std::size_t>& recordings,
-                                                     const std::vector<SimulatedRun>& runs,
-                                                     const Eigen::VectorXd& scale) {
+SUREFOOT_ONCE std::vector<double> recording_errors(const BoundSimulator& bound,
+                                                   const std::vector<std::size_t>& recordings,
+                                                   const std::vector<SimulatedRun>& runs,
+                                                   const Eigen::VectorXd& scale) {
   std::vector<double> errors;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     errors.push_back(recording_error(bound, recordings[i], runs[i], scale));
@@ -62,14 +61,14 @@ SUREFOOT_INLINE std::vector<double> recording_errors(const BoundSimulator& bound
   return errors;
 }
 
-SUREFOOT_INLINE double error_over_all(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                      const std::vector<SimulatedRun>& runs) {
+SUREFOOT_ONCE double error_over_all(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                    const std::vector<SimulatedRun>& runs) {
   return over_all(recording_errors(bound, recordings, runs, error_scale(bound)), cell_counts(bound, recordings));
 }
 
-SUREFOOT_INLINE std::vector<std::size_t> some_by_error(const BoundSimulator& bound,
-                                                       const std::vector<std::size_t>& recordings,
-                                                       const std::vector<SimulatedRun>& runs, std::size_t count) {
+SUREFOOT_ONCE std::vector<std::size_t> some_by_error(const BoundSimulator& bound,
+                                                     const std::vector<std::size_t>& recordings,
+                                                     const std::vector<SimulatedRun>& runs, std::size_t count) {
   if (recordings.size() <= count) return recordings;
   const std::vector<double> errors = recording_errors(bound, recordings, runs, error_scale(bound));
   std::vector<std::size_t> order(recordings.size());

@@ -21,10 +21,10 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE Eigen::VectorXd mismatch_energy(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                                const std::vector<SimulatedRun>& trajectories,
-                                                const Eigen::VectorXd& sigma, const FeatureTable& table,
-                                                Eigen::Index horizon) {
+SUREFOOT_ONCE Eigen::VectorXd mismatch_energy(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                              const std::vector<SimulatedRun>& trajectories,
+                                              const Eigen::VectorXd& sigma, const FeatureTable& table,
+                                              Eigen::Index horizon) {
   Eigen::VectorXd energy = Eigen::VectorXd::Zero(table.values.cols());
   for (Eigen::Index j = 0; j < energy.size(); ++j) {
     const std::size_t i = table.recording[static_cast<std::size_t>(j)];
@@ -58,8 +58,8 @@ SUREFOOT_ONCE std::vector<std::vector<double>> deciles(const FeatureTable& table
   return result;
 }
 
-SUREFOOT_INLINE Condition best_condition(const FeatureTable& table, const std::vector<std::vector<double>>& cuts,
-                                         const Eigen::VectorXd& energy, const std::vector<bool>& inside) {
+SUREFOOT_ONCE Condition best_condition(const FeatureTable& table, const std::vector<std::vector<double>>& cuts,
+                                       const Eigen::VectorXd& energy, const std::vector<bool>& inside) {
   Condition best;
   double all = 0, count = 0;
   for (Eigen::Index j = 0; j < energy.size(); ++j) {

@@ -16,7 +16,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE Eigen::VectorXd log_likelihoods(const ResidualNoise& model, const NoiseSeries& series) {
+SUREFOOT_ONCE Eigen::VectorXd log_likelihoods(const ResidualNoise& model, const NoiseSeries& series) {
   Eigen::VectorXd result(series.value.size());
   const double root = std::sqrt(model.share);
   double mean = 0, variance = 1, last_gap = -1, kept = 0;  // of the correlated part
@@ -48,8 +48,8 @@ SUREFOOT_INLINE double total_log_likelihood(const ResidualNoise& model, const st
   return std::isfinite(sum) ? sum : -std::numeric_limits<double>::max();
 }
 
-SUREFOOT_INLINE double climb(const NoiseCoordinates& coordinates, const std::vector<NoiseSeries>& series,
-                             Eigen::VectorXd& z, double width, double least) {
+SUREFOOT_ONCE double climb(const NoiseCoordinates& coordinates, const std::vector<NoiseSeries>& series,
+                           Eigen::VectorXd& z, double width, double least) {
   double most = total_log_likelihood(coordinates.model(z), series);
   const auto try_at = [&](const Eigen::VectorXd& next) {
     const double now = total_log_likelihood(coordinates.model(next), series);
@@ -79,7 +79,7 @@ SUREFOOT_INLINE double climb(const NoiseCoordinates& coordinates, const std::vec
   return most;
 }
 
-SUREFOOT_INLINE Eigen::MatrixXd inverse_of_small(Eigen::MatrixXd a) {
+SUREFOOT_ONCE Eigen::MatrixXd inverse_of_small(Eigen::MatrixXd a) {
   const Eigen::Index n = a.rows();
   Eigen::MatrixXd result = surefoot::detail::identity(n, n);
   for (Eigen::Index k = 0; k < n; ++k) {  // a = P L U, in place; the same exchanges of rows in the result

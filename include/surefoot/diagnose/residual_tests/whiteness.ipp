@@ -16,8 +16,8 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE Eigen::VectorXd series_of(const BoundSimulator& bound, std::size_t r, const SimulatedRun& trajectory,
-                                          Eigen::Index output) {
+SUREFOOT_ONCE Eigen::VectorXd series_of(const BoundSimulator& bound, std::size_t r, const SimulatedRun& trajectory,
+                                        Eigen::Index output) {
   const std::vector<Cell> cells = cells_of(bound.recordings[r]);
   const Eigen::VectorXd off = raw_residuals(bound, r, trajectory, cells);
   Eigen::VectorXd series = Eigen::VectorXd::Zero(bound.recordings[r].rows());
@@ -54,12 +54,12 @@ SUREFOOT_ONCE double predicted_share(const std::vector<Eigen::VectorXd>& series,
   return std::clamp(surefoot::detail::dot(weights.data(), ahead.data(), known), 0.0, 1.0);
 }
 
-SUREFOOT_INLINE double chi_square_score(double value, double mean, double variance) {
+SUREFOOT_ONCE double chi_square_score(double value, double mean, double variance) {
   const double relative = variance / (9 * mean * mean);  // 2 / (9 k), for k = 2 mean^2 / variance degrees of freedom
   return (std::cbrt(value / mean) - (1 - relative)) / std::sqrt(relative);
 }
 
-SUREFOOT_INLINE double chi_square_tail(double value, double mean, double variance) {
+SUREFOOT_ONCE double chi_square_tail(double value, double mean, double variance) {
   if (!(mean > 0) || !(variance > 0)) return 1;
   return normal_tail(chi_square_score(value, mean, variance));
 }

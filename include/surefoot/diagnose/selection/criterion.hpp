@@ -68,7 +68,8 @@ struct SearchEffort {
   std::size_t beam = 3;                // structures that are each extended by a further effect
   double hopeless = 15;                // [nat] behind the best one: not extended, not fitted again
   std::size_t screening = 5;           // recordings that proposals are made from
-  std::size_t screening_final_poses = 1000;  // the same where each has a pose only
+  std::size_t screening_of_few = 1000;       // the same where each has a pose only, or all are short:
+  double screening_rows = 3000;              // together; of so few rows, each recording shows something of its own
   int first_iterations = 4;                  // of a fit, before the weakest are given up
   std::size_t second_look = 2;               // times as many fits as are finished are continued before that choice,
   int second_iterations = 8;                 // for so long

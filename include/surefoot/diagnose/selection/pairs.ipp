@@ -81,7 +81,7 @@ struct AllSignatures {
   Eigen::VectorXd against, low, high;
 };
 
-SUREFOOT_INLINE AllSignatures all_signatures(const std::vector<Proposal>& proposals) {
+SUREFOOT_ONCE AllSignatures all_signatures(const std::vector<Proposal>& proposals) {
   AllSignatures all{{0}, {}, {}, {}, {}};
   Eigen::Index rows = 0;
   for (const Proposal& one : proposals) {

@@ -33,6 +33,8 @@ std::size_t closest_of_tie(const Search& search, const std::vector<EvaluatedHypo
 /// The structure `whole`, or, in the tie with the most probable one, a part of it, if each effect that goes with the
 /// rest is less probable than not, over all structures (median probability model; M. M. Barbieri, J. O. Berger,
 /// "Optimal predictive model selection", Annals of Statistics 32(3), 2004): what may as well be absent is not named.
+/// Two effects that look the same may each be less probable than not, and one of them needed: a part that leaves more
+/// than noise does not stand for a whole that leaves no more.
 std::size_t without_improbable(const Search& search, const std::vector<EvaluatedHypothesis>& pool,
                                const std::vector<double>& share, std::size_t whole);
 

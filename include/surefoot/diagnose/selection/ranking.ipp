@@ -91,11 +91,13 @@ SUREFOOT_ONCE std::size_t without_improbable(const Search& search, const std::ve
     }
     return with < probable;
   };
+  const bool explains_all = leaves_only_noise(pool[whole], search.problem);
   std::size_t best = whole;
   for (std::size_t i = 0; i < pool.size(); ++i) {
     const bool tied = share[i] * search.problem.criteria.tie_odds >= most;
     if (!tied || search.effects(pool[i]) == 0 || !is_part_of(pool[i].hypothesis, pool[whole].hypothesis)) continue;
     if (!holds_for_all(labels_beyond(pool[whole].hypothesis, pool[i].hypothesis), improbable)) continue;
+    if (explains_all && !leaves_only_noise(pool[i], search.problem)) continue;
     if (best == whole || share[i] > share[best]) best = i;
   }
   return best;

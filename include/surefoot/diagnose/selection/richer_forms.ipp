@@ -161,7 +161,7 @@ SUREFOOT_ONCE std::optional<EvaluatedHypothesis> in_richer_forms(const Search& s
       const Fit fitted = fit_richer(search, best, e, richer);
       if (!fitted.ok) continue;
       const EvaluatedHypothesis one = evaluate_fit(search.bound, fitted, problem, search.parallel);
-      if (!(log_odds(one, best, problem.criteria) > needed)) continue;
+      if (!(log_odds_of_forms(one, best, problem.criteria) > needed)) continue;
       best = one;
       any = true;
     }

@@ -34,6 +34,11 @@ void weigh_with_its_own_steps(Search& search, const EvaluatedHypothesis& rival, 
 /// off that a right effect may have looked like the wrong one.
 void try_confusable(Search& search, std::vector<EvaluatedHypothesis>& pool);
 
+/// Puts effects of other good structures in the place of those of the best one, with the parameters that both were
+/// found with: what goes together may have been found apart. Where a parameter of the one can nearly imitate the other,
+/// no signature says so.
+void exchange_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool);
+
 /// Single effects and pairs once more, from the parameters of the best structure on: these are nearest to the truth,
 /// whatever effects led there, and an early choice that only led there is left behind.
 void begin_anew(const Search& search, std::vector<EvaluatedHypothesis>& pool);

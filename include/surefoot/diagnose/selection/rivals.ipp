@@ -1,6 +1,7 @@
 // Definitions of surefoot/diagnose/selection/rivals.hpp.
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
 #include <limits>
@@ -156,6 +157,53 @@ SUREFOOT_ONCE void try_confusable(Search& search, std::vector<EvaluatedHypothesi
   const EvaluatedHypothesis best = pool[best_of(pool, search.problem.criteria)];
   for (std::size_t e = search.problem.known; e < best.hypothesis.effects.size(); ++e) {
     try_in_its_place(search, best, e, pool);
+  }
+}
+
+/// An effect with the parameters that it was found with.
+struct ReadyEffect {
+  AttachedEffect effect;
+  Eigen::VectorXd values;
+};
+
+/// Effects of the best structures that the first of these has not, in any form.
+SUREFOOT_ONCE std::vector<ReadyEffect> effects_of_others(const Search& search,
+                                                         const std::vector<EvaluatedHypothesis>& best) {
+  std::vector<ReadyEffect> others;
+  for (const EvaluatedHypothesis& one : best) {
+    for (std::size_t e = search.problem.known; e < one.hypothesis.effects.size(); ++e) {
+      const AttachedEffect& effect = one.hypothesis.effects[e];
+      const bool there =
+          holds_for_any(others, [&](const ReadyEffect& other) { return same_but_for_form(other.effect, effect); }) ||
+          holds_for_any(best.front().hypothesis.effects,
+                        [&](const AttachedEffect& other) { return same_but_for_form(other, effect); });
+      if (!there) others.push_back({effect, one.hypothesis.values[e]});
+    }
+  }
+  return others;
+}
+
+SUREFOOT_ONCE void exchange_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
+  const SearchProblem& problem = search.problem;
+  constexpr double none_is_hopeless = std::numeric_limits<double>::infinity();
+  const std::vector<EvaluatedHypothesis> best =
+      best_structures(pool, problem.effort.predicted, none_is_hopeless, problem.criteria);
+  if (search.effects(best.front()) < 2) return;  // single effects were all tried
+  std::vector<Fit> fits;
+  for (const ReadyEffect& other : effects_of_others(search, best)) {
+    for (std::size_t e = problem.known; e < best.front().hypothesis.effects.size(); ++e) {
+      Fit exchanged{best.front().hypothesis};
+      exchanged.hypothesis.effects[e] = other.effect;
+      exchanged.hypothesis.values[e] = other.values;
+      fits.push_back(std::move(exchanged));
+    }
+  }
+  const FitProblem quick = screening_fit(problem, problem.effort.first_iterations);
+  search.parallel(fits.size(), [&](std::size_t i) {
+    if (!problem.stopped()) fits[i] = fit(search.bound, fits[i].hypothesis, quick, serially());
+  });
+  for (const EvaluatedHypothesis& one : finished(search, std::move(fits), problem.effort.compared_finalists)) {
+    keep_best_form(pool, one, problem.criteria);
   }
 }
 

@@ -147,6 +147,7 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
     const auto unchanged = [&] { return same_structure(pool[best_of(pool, criteria)].hypothesis, compared); };
     swap_effects(search, pool, done);
     swap_pairs_of_inputs(search, pool);
+    exchange_effects(search, pool);
     try_confusable(search, pool);
     begin_anew(search, pool);
     // what it lacks may not have helped the one that it was grown from

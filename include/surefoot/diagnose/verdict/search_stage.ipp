@@ -79,8 +79,9 @@ SUREFOOT_ONCE SearchProblem search_problem(const EstimationSetup& setup, const C
   effort.shortlist = static_cast<std::size_t>(std::clamp(fewest * effort.shortlist_rows / rows, fewest, most));
   effort.compared_shortlist = effort.compared_shortlist * effort.shortlist / static_cast<std::size_t>(fewest);
   const bool final_poses = setup.noise == NoiseKind::final_pose;
-  problem.screened = some_by_error(setup.bound, training, calibration.training_runs,
-                                   final_poses ? effort.screening_final_poses : effort.screening);
+  const bool few = final_poses || rows < effort.screening_rows;
+  problem.screened =
+      some_by_error(setup.bound, training, calibration.training_runs, few ? effort.screening_of_few : effort.screening);
   problem.on_progress = [run](const std::string& stage, double share) {
     run.progress(stage, progress_search + (progress_evaluation - progress_search) * share);
   };

@@ -85,11 +85,13 @@ inline std::vector<double> weights_by_part(Values values, double low, double ran
   return weights;
 }
 
-/// The step whose sawtooth, step * floor(y / step + shift) - y over the simulated values y, takes away most of the
-/// squared errors (readings minus simulated), all parts of the range counted alike; means are left out. Empty: none
-/// takes away a twentieth. Steps from the size of the errors to a quarter of the range are tried. Cost: 3,000 samples
-/// times up to 10,000 steps.
-inline std::vector<double> sawtooth_steps(Values readings, Values simulated, double shift) {
+/// The step with which the errors (readings minus simulated) swing most over the simulated values: the largest peak of
+/// their periodogram, the first wave of a sawtooth of any phase, since the simulation may be off by part of a step as
+/// long as the model is fitted without it; all parts of the range counted alike. Empty: independent errors would give
+/// as high a peak in one of twenty logs. Steps from the size of the errors to a quarter of the range are tried. Cost:
+/// 3,000 samples times up to 10,000 steps. N. R. Lomb: "Least-squares frequency analysis of unequally spaced data",
+/// Astrophysics and Space Science 39, 1976.
+inline std::vector<double> sawtooth_steps(Values readings, Values simulated) {
   const std::size_t every = std::max<std::size_t>(1, readings.size() / 3000);
   std::vector<double> values, errors;
   double largest = 0;
@@ -104,9 +106,10 @@ inline std::vector<double> sawtooth_steps(Values readings, Values simulated, dou
   const double low = *lowest, range = *highest - low;
   if (!(range > 0)) return {};
   const std::vector<double> weights = weights_by_part(values, low, range);
-  double count = 0, mean = 0, squares = 0;
+  double count = 0, weight_squares = 0, mean = 0, squares = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     count += weights[i];
+    weight_squares += weights[i] * weights[i];
     mean += weights[i] * errors[i];
   }
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -115,31 +118,36 @@ inline std::vector<double> sawtooth_steps(Values readings, Values simulated, dou
   }
   const double size = std::sqrt(squares / count);
   if (!(size > 0)) return {};
-  const auto taken_away = [&](double frequency) {  // of the squares
-    const double step = 1 / frequency;
-    double product = 0, teeth = 0, sum = 0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const double tooth = step * std::floor(values[i] * frequency + shift) - values[i];
-      product += weights[i] * tooth * errors[i];
-      teeth += weights[i] * tooth * tooth;
-      sum += weights[i] * tooth;
-    }
-    return (2 * product - teeth + sum * sum / count) / squares;
+  const auto wave = [&](std::size_t i, double frequency) {
+    return weights[i] * errors[i] * std::polar(1.0, 2 * std::numbers::pi * values[i] * frequency);
   };
+  const auto taken_away = [&](std::complex<double> sum) { return 2 * std::norm(sum) / (count * squares); };
   const double from = 4 / range, to = std::min(1 / size, 1000 / largest), apart = 0.1 / largest;
-  double best = 0, share = 0.05;
+  constexpr double chance = 0.05;  // of any peak as high, of independent errors
+  const double as_many = count * count / weight_squares, peaks = std::max(1.0, (to - from) * range);
+  std::vector<std::complex<double>> direction, turn;  // of all errors, turned on from one frequency to the next
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    direction.push_back(wave(i, from));
+    turn.push_back(std::polar(1.0, 2 * std::numbers::pi * values[i] * apart));
+  }
+  double best = 0, share = 2 * std::log(peaks / chance) / as_many;
   for (double frequency = from; frequency < to; frequency += apart) {
-    const double there = taken_away(frequency);
-    if (there <= share) continue;
-    share = there;
+    std::complex<double> sum = 0;
+    for (std::size_t i = 0; i < direction.size(); ++i) {
+      sum += direction[i];
+      direction[i] *= turn[i];
+    }
+    if (taken_away(sum) <= share) continue;
+    share = taken_away(sum);
     best = frequency;
   }
   if (best == 0) return {};
   for (double width = apart; width > 1e-4 * apart; width *= 0.5) {  // uphill to the top of the peak
     for (const double next : {best - width, best + width}) {
-      const double there = taken_away(next);
-      if (there <= share) continue;
-      share = there;
+      std::complex<double> sum = 0;
+      for (std::size_t i = 0; i < values.size(); ++i) sum += wave(i, next);
+      if (taken_away(sum) <= share) continue;
+      share = taken_away(sum);
       best = next;
     }
   }
@@ -147,9 +155,9 @@ inline std::vector<double> sawtooth_steps(Values readings, Values simulated, dou
 }
 
 /// Both, crowding first.
-inline std::vector<double> sensor_steps(Values readings, Values simulated, double shift) {
+inline std::vector<double> sensor_steps(Values readings, Values simulated) {
   std::vector<double> steps = lattice_steps(readings);
-  for (const double step : sawtooth_steps(readings, simulated, shift)) steps.push_back(step);
+  for (const double step : sawtooth_steps(readings, simulated)) steps.push_back(step);
   return steps;
 }
 

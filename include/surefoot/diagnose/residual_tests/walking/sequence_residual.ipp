@@ -23,8 +23,8 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_INLINE Eigen::VectorXd features_of_step(const BoundSimulator& bound, std::size_t r, const SimulatedRun& run,
-                                                 Eigen::Index step, StepFeature feature, const StepScales& scales) {
+SUREFOOT_ONCE Eigen::VectorXd features_of_step(const BoundSimulator& bound, std::size_t r, const SimulatedRun& run,
+                                               Eigen::Index step, StepFeature feature, const StepScales& scales) {
   const PlanarInfo& planar = *bound.info.planar;
   const Recording& recording = bound.recordings[r];
   const auto one = [](double value) -> Eigen::VectorXd { return Eigen::VectorXd::Constant(1, value); };
@@ -63,8 +63,8 @@ SUREFOOT_INLINE Eigen::VectorXd features_of_step(const BoundSimulator& bound, st
   return one(10 * static_cast<double>(step % 3));
 }
 
-SUREFOOT_INLINE Eigen::MatrixXd lever_of_step(const BoundSimulator& bound, const SimulatedRun& run,
-                                              const std::vector<Cell>& cells, Eigen::Index step) {
+SUREFOOT_ONCE Eigen::MatrixXd lever_of_step(const BoundSimulator& bound, const SimulatedRun& run,
+                                            const std::vector<Cell>& cells, Eigen::Index step) {
   const PlanarInfo& planar = *bound.info.planar;
   const Eigen::Index last = run.states.cols() - 1;
   const double heading = run.states(planar.heading, step), c = std::cos(heading), s = std::sin(heading);
@@ -88,7 +88,7 @@ SUREFOOT_INLINE Eigen::MatrixXd lever_of_step(const BoundSimulator& bound, const
   return lever;
 }
 
-SUREFOOT_INLINE Eigen::Vector3d moved_in_step(const PlanarInfo& planar, const SimulatedRun& run, Eigen::Index step) {
+SUREFOOT_ONCE Eigen::Vector3d moved_in_step(const PlanarInfo& planar, const SimulatedRun& run, Eigen::Index step) {
   const auto pose = [&](Eigen::Index row) {
     return Pose2{run.states(planar.x, row), run.states(planar.y, row), run.states(planar.heading, row)};
   };
@@ -138,7 +138,7 @@ SUREFOOT_INLINE Eigen::MatrixXd sequence_covariance(const std::vector<std::vecto
   return covariance;
 }
 
-SUREFOOT_INLINE double process_evidence(const Eigen::VectorXd& values, const Eigen::VectorXd& turned) {
+SUREFOOT_ONCE double process_evidence(const Eigen::VectorXd& values, const Eigen::VectorXd& turned) {
   const auto n = static_cast<double>(turned.size());
   Eigen::VectorXd squares(turned.size()), variance(turned.size()), ratio(turned.size());
   for (Eigen::Index i = 0; i < squares.size(); ++i) squares[i] = turned[i] * turned[i];
@@ -269,7 +269,7 @@ SUREFOOT_INLINE Eigen::MatrixXd product_by_columns(const Eigen::MatrixXd& a, con
   return result;
 }
 
-SUREFOOT_INLINE bool SequenceTest::read_off(const KernelChoice& kernel, SequenceData& data) const {
+SUREFOOT_ONCE bool SequenceTest::read_off(const KernelChoice& kernel, SequenceData& data) const {
   const PlanarInfo& planar = *bound.info.planar;
   const auto& whitening = problem.weighting.whitening;
   std::vector<Eigen::VectorXd> off(order.size());
@@ -317,7 +317,7 @@ SUREFOOT_INLINE bool SequenceTest::read_off(const KernelChoice& kernel, Sequence
   return true;
 }
 
-SUREFOOT_INLINE Comparison SequenceTest::cross_validated(const SequenceData& data) const {
+SUREFOOT_ONCE Comparison SequenceTest::cross_validated(const SequenceData& data) const {
   const double limit = problem.weighting.robust;
   BlockLosses before, after;
   const auto folds = fold_of.empty() ? 0 : fold_of.back() + 1;

@@ -61,7 +61,7 @@ SUREFOOT_ONCE std::optional<MeasuredSteps> measured_steps(const BoundSimulator& 
   return steps;
 }
 
-SUREFOOT_INLINE double sign_flip_p_value(const std::vector<double>& terms) {
+SUREFOOT_ONCE double sign_flip_p_value(const std::vector<double>& terms) {
   constexpr int draws = 4000;
   const double sum = std::accumulate(terms.begin(), terms.end(), 0.0);
   Rng rng(1);
@@ -105,14 +105,14 @@ SUREFOOT_ONCE Eigen::MatrixXd left_by_slip(const std::vector<MeasuredSteps>& by_
   return left;
 }
 
-SUREFOOT_INLINE double squares_of_row(const Eigen::MatrixXd& a, Eigen::Index row) {
+SUREFOOT_ONCE double squares_of_row(const Eigen::MatrixXd& a, Eigen::Index row) {
   double sum = 0;
   for (Eigen::Index j = 0; j < a.cols(); ++j) sum += a(row, j) * a(row, j);
   return sum;
 }
 
 /// The same for each of three rows, the first two by four columns at a time: as Eigen sums over the rows of a matrix.
-SUREFOOT_INLINE void add_squares_of_rows(const Eigen::MatrixXd& a, Eigen::Vector3d& sums) {
+SUREFOOT_ONCE void add_squares_of_rows(const Eigen::MatrixXd& a, Eigen::Vector3d& sums) {
   for (Eigen::Index k = 0; k < 2 && a.cols() > 0; ++k) {
     const auto square = [&](Eigen::Index j) { return a(k, j) * a(k, j); };
     double sum = square(0);
@@ -124,8 +124,8 @@ SUREFOOT_INLINE void add_squares_of_rows(const Eigen::MatrixXd& a, Eigen::Vector
   sums[2] += squares_of_row(a, 2);
 }
 
-SUREFOOT_INLINE Comparison best_direction(const std::vector<MeasuredSteps>& by_fold,
-                                          const std::vector<Eigen::MatrixXd>& left) {
+SUREFOOT_ONCE Comparison best_direction(const std::vector<MeasuredSteps>& by_fold,
+                                        const std::vector<Eigen::MatrixXd>& left) {
   Comparison best;
   const Eigen::Index stretch = memory_of(NoiseKind::process);
   for (Eigen::Index k = 0; k < 3; ++k) {
