@@ -118,7 +118,10 @@ Summary summarize(const std::string& method, const std::vector<Outcome>& outcome
       summary.unexplained.add(outcome.answer.verdict == "unexplained");
       summary.misnamed.add(outcome.answer.verdict == "missing-physics");
     }
-    if (kind != "outside") summary.structure.add(outcome.structure_right);
+    if (kind != "outside") {
+      summary.structure.add(outcome.structure_right);
+      summary.finished_structure.add(outcome.structure_right && outcome.answer.verdict != "search-not-finished");
+    }
     if (std::isfinite(outcome.error_ratio)) summary.against_noise.add(outcome.against_noise);
     if (kind != "one" && kind != "two") continue;
     summary.detected.add(outcome.detected);
@@ -178,6 +181,7 @@ void print_summaries(const std::vector<Summary>& summaries) {
   row("outside the library: misnamed", "<= 10 %", [](const Summary& s) { return percent(s.misnamed); });
   row("final poses only: four planar effects", ">= 80 %", [](const Summary& s) { return percent(s.final_poses); });
   row("structure right, first or in the class", "", [](const Summary& s) { return percent(s.structure); });
+  row("the same, and the search finished", "", [](const Summary& s) { return percent(s.finished_structure); });
   row("called explained above 1.5 x the noise", "0 %", [](const Summary& s) { return percent(s.against_noise); });
   row("probabilities stated", "", [](const Summary& s) { return std::to_string(s.stated); });
   row("expected calibration error", "", [](const Summary& s) { return decimal(s.calibration_error, "%.3f"); });

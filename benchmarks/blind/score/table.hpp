@@ -21,6 +21,7 @@ struct Summary {
   Share false_alarm, detected, named_first, named_in_three, attached, both_named, no_superfluous;
   Share unexplained, misnamed;   // cases outside the library
   Share structure;               // cases with nothing, one or two effects
+  Share finished_structure;      // the same, of a search that was finished
   Share against_noise;           // all cases whose held-out error is known
   std::size_t stated = 0;        // probabilities of structures
   double calibration_error = 0;  // expected: of these probabilities, against shares

@@ -30,6 +30,9 @@ struct Search {
 /// Finishes the `keep` best of some fits that have begun, and evaluates them.
 std::vector<EvaluatedHypothesis> finished(const Search& search, std::vector<Fit> fits, std::size_t keep);
 
+/// The same of fits that have yet to begin: each from its hypothesis.
+std::vector<EvaluatedHypothesis> finished_from(const Search& search, std::vector<Fit> starts, std::size_t keep);
+
 /// Fits the parent plus each of some sets of proposals, all at once in parallel; the weakest are given up after a few
 /// iterations, the others are evaluated.
 std::vector<EvaluatedHypothesis> evaluate_children(const Search& search, const EvaluatedHypothesis& parent,

@@ -135,6 +135,16 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> finished(const Search& search, st
   return evaluated;
 }
 
+SUREFOOT_ONCE std::vector<EvaluatedHypothesis> finished_from(const Search& search, std::vector<Fit> starts,
+                                                             std::size_t keep) {
+  const SearchProblem& problem = search.problem;
+  const FitProblem quick = screening_fit(problem, problem.effort.first_iterations);
+  search.parallel(starts.size(), [&](std::size_t i) {
+    if (!problem.stopped()) starts[i] = fit(search.bound, starts[i].hypothesis, quick, serially());
+  });
+  return finished(search, std::move(starts), keep);
+}
+
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> evaluate_children(const Search& search,
                                                                  const EvaluatedHypothesis& parent,
                                                                  const std::vector<std::vector<Proposal>>& additions,
@@ -225,7 +235,7 @@ SUREFOOT_ONCE Hypothesis half_of_each(const Hypothesis& a, const Hypothesis& b, 
 
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> combined(const Search& search,
                                                         const std::vector<EvaluatedHypothesis>& singles) {
-  const auto& [bound, problem, candidates, parallel] = search;
+  const SearchProblem& problem = search.problem;
   std::vector<EvaluatedHypothesis> best = singles;
   drop_items(best, [&](const EvaluatedHypothesis& one) { return search.effects(one) != 1; });
   constexpr double none_is_hopeless = std::numeric_limits<double>::infinity();
@@ -236,11 +246,7 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> combined(const Search& search,
       fits.push_back({half_of_each(best[i].hypothesis, best[j].hypothesis, problem.known)});
     }
   }
-  const FitProblem quick = screening_fit(problem, problem.effort.first_iterations);
-  parallel(fits.size(), [&](std::size_t i) {
-    if (!problem.stopped()) fits[i] = fit(bound, fits[i].hypothesis, quick, serially());
-  });
-  return finished(search, std::move(fits), problem.effort.pair_finalists);
+  return finished_from(search, std::move(fits), problem.effort.pair_finalists);
 }
 
 }  // namespace surefoot::diagnosis

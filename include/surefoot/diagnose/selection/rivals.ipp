@@ -198,11 +198,7 @@ SUREFOOT_ONCE void exchange_effects(const Search& search, std::vector<EvaluatedH
       fits.push_back(std::move(exchanged));
     }
   }
-  const FitProblem quick = screening_fit(problem, problem.effort.first_iterations);
-  search.parallel(fits.size(), [&](std::size_t i) {
-    if (!problem.stopped()) fits[i] = fit(search.bound, fits[i].hypothesis, quick, serially());
-  });
-  for (const EvaluatedHypothesis& one : finished(search, std::move(fits), problem.effort.compared_finalists)) {
+  for (const EvaluatedHypothesis& one : finished_from(search, std::move(fits), problem.effort.compared_finalists)) {
     keep_best_form(pool, one, problem.criteria);
   }
 }

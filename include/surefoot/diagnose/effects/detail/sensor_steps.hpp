@@ -1,5 +1,5 @@
 // Steps in which a sensor may read: from readings that crowd around multiples of a step or, where noise behind the
-// converter hides that, from errors that follow the sawtooth of a step.
+// converter hides that, from errors that swing with the steps over the simulated values.
 #pragma once
 
 #include <algorithm>
