@@ -66,6 +66,27 @@ TEST_CASE("where residuals hold structure one step that does not pay is followed
   CHECK(rounds_with(two) == 1);
 }
 
+TEST_CASE("beside effects, one that takes away little of what is far above the noise is the last") {
+  const NamedEffect slow{"first_order_lag", "valve", {}, {}, {3.0}};  // no candidate explains it
+  TankBench bench({rate_in_tank, slow, {"sensor_bias", "level_m", {}, {}, {0.05}}});
+  bench.problem.criteria.form_cost = -20;  // whatever takes anything away pays
+  const EvaluatedHypothesis two = bench.with({"constant_rate", "sensor_drift"});
+  const auto rounds_beside = [&](double noise) {
+    Search search = bench.search();
+    search.problem.noise.setConstant(1, noise);
+    int rounds = 0;
+    search.problem.on_progress = [&](const std::string&, double) { ++rounds; };
+    std::vector<EvaluatedHypothesis> pool{two};
+    std::vector<Hypothesis> done;
+    grow(search, pool, done);
+    CHECK(names_in(pool[best_of(pool, search.problem.criteria)]) == "constant_rate, sensor_bias, sensor_drift");
+    return rounds;
+  };
+  const double then = pooled(bench.with({"constant_rate", "sensor_drift", "sensor_bias"}).errors)[0];
+  CHECK(rounds_beside(0) == 1);
+  CHECK(rounds_beside(then) == 2);
+}
+
 TEST_CASE("what stands at a bound is fitted again from inside, unless it would be worse in any case") {
   const TankBench bench({rate_in_tank});
   const Search search = bench.search();

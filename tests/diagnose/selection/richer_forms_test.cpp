@@ -143,6 +143,17 @@ TEST_CASE("damped bristles are found beside plain friction, though undamped ones
   CHECK(richer->errors.rms() < 0.1 * plain.errors.rms());
 }
 
+TEST_CASE("a richer form that takes away nothing in a few iterations is not fitted to the end") {
+  using namespace diagnosis;
+  FormSearch forms = search_of({"coulomb_friction", "v", "", {}, {4}});
+  const EvaluatedHypothesis plain = forms.fitted("", Eigen::VectorXd::Constant(1, 4));
+  forms.problem.effort.first_iterations = 1;
+  int jacobians = 0;
+  forms.problem.fit.stopped = [&jacobians] { return ++jacobians > 100; };
+  CHECK_FALSE(in_richer_forms(forms.search(), plain).has_value());
+  CHECK(jacobians <= 2);  // one step, and the question after it
+}
+
 TEST_CASE("forms of one effect are compared in full, though they differ by less than an error of form") {
   using namespace diagnosis;
   FormSearch forms = search_of({"cubic_stiffness", "v", "off center", {}, {40, 0.0005}});

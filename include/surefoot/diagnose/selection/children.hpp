@@ -42,6 +42,9 @@ std::vector<EvaluatedHypothesis> evaluate_children(const Search& search, const E
 /// Effects that a parent has not yet, the most promising first.
 std::vector<Proposal> proposals_for(const Search& search, const EvaluatedHypothesis& parent);
 
+/// Share of the mean square that must fall for log odds to rise by so much [nat].
+double gain_for(double odds, const ErrorSquares& errors);
+
 /// Share of the squared residuals that `effects` more must explain to make a parent as probable as `best`, or nearly
 /// so.
 double needed_gain(const Search& search, const EvaluatedHypothesis& parent, const EvaluatedHypothesis& best,

@@ -171,19 +171,21 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> next_effects(const Search& search
   return evaluate_children(search, parent, singles, finalists);
 }
 
+SUREFOOT_ONCE double gain_for(double odds, const ErrorSquares& errors) {
+  double independent = 1;
+  for (Eigen::Index k = 0; k < errors.counts.cols(); ++k) {
+    for (Eigen::Index r = 0; r < errors.counts.rows(); ++r) independent += errors.counts(r, k) / errors.memory[k];
+  }
+  return 1 - std::exp(-2 * odds / independent);
+}
+
 SUREFOOT_ONCE double needed_gain(const Search& search, const EvaluatedHypothesis& parent,
                                  const EvaluatedHypothesis& best, std::size_t effects) {
   const SelectionCriteria& criteria = search.problem.criteria;
   const double each = std::log(static_cast<double>(std::max<std::size_t>(2, search.problem.candidates)));
   const double cost = static_cast<double>(effects) * (each + criteria.form_cost);
   const double behind = std::max(0.0, log_odds(best, parent, criteria)) - std::log(criteria.tie_odds);
-  double independent = 1;  // errors of the best one
-  for (Eigen::Index k = 0; k < best.errors.counts.cols(); ++k) {
-    for (Eigen::Index r = 0; r < best.errors.counts.rows(); ++r) {
-      independent += best.errors.counts(r, k) / best.errors.memory[k];
-    }
-  }
-  return 1 - std::exp(-2 * std::max(0.0, cost + behind) / independent);
+  return gain_for(std::max(0.0, cost + behind), best.errors);
 }
 
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> evaluate_pairs(const Search& search, const EvaluatedHypothesis& parent,

@@ -24,10 +24,11 @@ void add_with_smaller(const Search& search, const EvaluatedHypothesis& one, std:
 
 /// Extends the best structures of a pool, as long as that makes the best one better; once more where no first effect
 /// does and something is left, and on as long as the closest structure comes much nearer each time: that one is then
-/// extended whatever its odds, and without what it holds idle. What the best one can do without is taken away at once
-/// (floating search; P. Pudil, J. Novovicova, J. Kittler, Pattern Recognition Letters 15, 1994). Structures with an
-/// effect that does nothing, and those far behind, are not extended, nor is what was before, which `done` keeps, with
-/// the same recordings and integration.
+/// extended whatever its odds, and without what it holds idle. A step beside effects that takes away little of what is
+/// beyond the noise is the last one. What the best one can do without is taken away at once (floating search; P. Pudil,
+/// J. Novovicova, J. Kittler, Pattern Recognition Letters 15, 1994). Structures with an effect that does nothing, and
+/// those far behind, are not extended, nor is what was before, which `done` keeps, with the same recordings and
+/// integration.
 void grow(Search& search, std::vector<EvaluatedHypothesis>& pool, std::vector<Hypothesis>& done);
 
 /// A structure without each of its effects in turn, fitted from its parameters on; none for a single effect.

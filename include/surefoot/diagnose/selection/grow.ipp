@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -90,6 +91,16 @@ SUREFOOT_ONCE bool much_less(double left, double before) {
   return left * left < share * before * before;
 }
 
+/// The same of two structures, beyond the noise.
+SUREFOOT_ONCE bool much_less_beyond_noise(const EvaluatedHypothesis& one, const EvaluatedHypothesis& before,
+                                          const SearchProblem& problem) {
+  const double noise = problem.noise.sum();
+  const auto beyond = [noise](const EvaluatedHypothesis& it) {
+    return std::sqrt(std::max(0.0, pooled(it.errors).sum() - noise));
+  };
+  return much_less(beyond(one), beyond(before));
+}
+
 SUREFOOT_ONCE void add_structure(std::vector<EvaluatedHypothesis>& some, const EvaluatedHypothesis& one) {
   const bool there = holds_for_any(
       some, [&](const EvaluatedHypothesis& other) { return same_structure(other.hypothesis, one.hypothesis); });
@@ -138,6 +149,8 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool, 
     const bool nearer = nearest_child && much_less(nearest_child->errors.rms(), nearest);
     if (nearer) nearest = nearest_child->errors.rms();
     if (no_better && ((in_vain && !nearer) || pays(search, now, pool) || !leaves_structure(search, now))) break;
+    // beside effects, little steps bend what is not understood, one after the other
+    if (!first && !no_better && !nearer && !much_less_beyond_noise(now, best, search.problem)) break;
     in_vain = no_better;
     drop_items(children, [&](const EvaluatedHypothesis& one) {
       return holds_idle_effect(one, pool) || log_odds(one, now, criteria) < -effort.hopeless;

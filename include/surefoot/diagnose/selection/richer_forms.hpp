@@ -11,7 +11,7 @@ namespace surefoot::diagnosis {
 
 /// A structure with its effects, one after the other, in a form that extends theirs (Effect::extends) where recordings
 /// show it to be better at the odds that name an effect; none where nothing is. Cost: by such form a fit of where
-/// recordings begin, if it has that free, and a whole one if that helps.
+/// recordings begin, if it has that free, a few iterations if that helps, and a whole fit if these do.
 std::optional<EvaluatedHypothesis> in_richer_forms(const Search& search, const EvaluatedHypothesis& found);
 
 /// A structure with its effect number `e` in its other forms that extend none, all else as it was found: the best

@@ -133,6 +133,18 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> in_other_forms(const Search& sear
   return result;
 }
 
+/// Whether a few iterations take away some of what a richer form must.
+SUREFOOT_ONCE bool promises(const Search& search, const EvaluatedHypothesis& found, const Hypothesis& start) {
+  const SearchProblem& problem = search.problem;
+  FitProblem quick = screening_fit(problem, problem.effort.first_iterations);
+  quick.integration = problem.fit.integration;  // richer forms may be stiffer
+  const FitFunctions functions(search.bound, found.hypothesis, quick, serially());
+  const double before = mean_loss(functions.residuals(functions.start()), quick.weighting.robust);
+  const double needed = gain_for(std::log(problem.criteria.named_odds), found.errors);
+  const Fit begun = fit(search.bound, start, quick, search.parallel);
+  return begun.ok && begun.loss < (1 - needed / problem.effort.underestimated) * before;
+}
+
 /// Not ok where it cannot help.
 SUREFOOT_ONCE Fit fit_richer(const Search& search, const EvaluatedHypothesis& found, std::size_t e,
                              const AttachedEffect& richer) {
@@ -146,6 +158,7 @@ SUREFOOT_ONCE Fit fit_richer(const Search& search, const EvaluatedHypothesis& fo
     if (!first.ok || !(first.loss < found.loss)) return {};
     start = first.hypothesis;
   }
+  if (!promises(search, found, start)) return {};
   return fit(search.bound, start, problem, search.parallel);
 }
 
