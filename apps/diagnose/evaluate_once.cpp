@@ -9,8 +9,10 @@
 namespace diagnose_program {
 
 // As the equations of a model whose only output it is: one way to compute expressions is enough.
-double evaluate_once(const Formula& formula, const std::map<std::string, double>& constants) {
+double evaluate_once(const Formula& formula, const std::map<std::string, double>& constants,
+                     const std::vector<ModelLet>& lets) {
   ModelFile model;
+  model.lets = lets;
   for (const auto& [name, value] : constants) model.constants.push_back({name, value, {}});
   model.outputs.push_back({"value", "", formula});
   const EquationPlan plan = plan_equations(model);

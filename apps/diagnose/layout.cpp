@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "read_states.hpp"
 #include "units.hpp"
 
 namespace diagnose_program {
@@ -41,13 +42,15 @@ Layout layout_of(const ModelFile& model) {
   layout.skip_rows = model.skip_rows;
   layout.measured_after_step = model.measured_after_step;
   for (const ModelOutput& output : model.outputs) layout.outputs.push_back(output.name);
-  for (const ModelState& state : model.states) {
-    StateStart start{state.initial, state.start};
-    start.measured = find_output(model.outputs, [&](const ModelOutput& o) { return o.value.text == state.name; });
-    start.alike = find_output(model.outputs, [&](const ModelOutput& o) { return o.unit == state.unit; });
-    for (const ModelState& position : model.states) {
-      if (!layout.ode || position.change.text != state.name) continue;
-      start.speed_of = find_output(model.outputs, [&](const ModelOutput& o) { return o.value.text == position.name; });
+  std::vector<ReadState> read;
+  for (std::size_t i = 0; i < model.states.size(); ++i) read.push_back(read_state(model, i));
+  for (std::size_t i = 0; i < model.states.size(); ++i) {
+    const ModelState& state = model.states[i];
+    StateStart start{state.initial, state.start, read[i], {}, {}};
+    start.alike.output = find_output(model.outputs, [&](const ModelOutput& o) { return o.unit == state.unit; });
+    for (std::size_t j = 0; j < model.states.size(); ++j) {
+      if (layout.ode && model.states[j].change.text == state.name) start.speed_of = read[j];
+      if (start.alike.output < 0 && model.states[j].unit == state.unit) start.alike = read[j];
     }
     layout.starts.push_back(start);
   }
@@ -65,10 +68,10 @@ Layout layout_of(const surefoot::SimulatorInfo& info) {
   for (const auto& state : info.states) {
     StateStart start;
     const std::string column = column_of(state.name, state.unit);
-    start.measured = find_output(layout.outputs, [&](const std::string& name) { return name == column; });
-    start.alike = find_output(info.outputs, [&](const auto& output) { return output.unit == state.unit; });
+    start.measured.output = find_output(layout.outputs, [&](const std::string& name) { return name == column; });
+    start.alike.output = find_output(info.outputs, [&](const auto& output) { return output.unit == state.unit; });
     for (std::size_t i = 0; i < info.outputs.size(); ++i) {
-      if (layout.ode && state.unit == info.outputs[i].unit + "/s") start.speed_of = static_cast<int>(i);
+      if (layout.ode && state.unit == info.outputs[i].unit + "/s") start.speed_of.output = static_cast<int>(i);
     }
     layout.starts.push_back(start);
   }

@@ -11,13 +11,19 @@
 
 namespace diagnose_program {
 
+/// The output that reads a state, as offset + slope * state; -1: none does.
+struct ReadState {
+  int output = -1;
+  double offset = 0, slope = 1;
+};
+
 /// How to start a state: a value known before (an expression over constants), a measured one, or a guess.
 struct StateStart {
   ModelState::Initial kind = ModelState::Initial::free;
-  Formula formula;    // expression, or the name of a column
-  int measured = -1;  // output that reads this state as it is
-  int speed_of = -1;  // output that reads the state whose rate this state is
-  int alike = -1;     // output in the same unit
+  Formula formula;     // expression, or the name of a column
+  ReadState measured;  // by the output that reads this state
+  ReadState speed_of;  // by the one that reads the state whose rate this state is
+  ReadState alike;     // by an output in the same unit, else by one that reads a state in the same unit
 };
 
 struct Layout {

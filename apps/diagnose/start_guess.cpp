@@ -12,11 +12,12 @@ struct Sample {
   double time, value;
 };
 
-std::vector<Sample> measured(const surefoot::Recording& recording, int output) {
+// In the unit of the state that is read.
+std::vector<Sample> measured(const surefoot::Recording& recording, const ReadState& read) {
   std::vector<Sample> samples;
   for (Eigen::Index row = 0; row < recording.rows(); ++row) {
-    const double value = recording.outputs(output, row);
-    if (!std::isnan(value)) samples.push_back({recording.time[row], value});
+    const double value = recording.outputs(read.output, row);
+    if (!std::isnan(value)) samples.push_back({recording.time[row], (value - read.offset) / read.slope});
   }
   return samples;
 }
@@ -60,16 +61,16 @@ double rate_spread(const std::vector<Sample>& samples) {
 
 StartGuess guess_start(const surefoot::Recording& recording, const StateStart& start) {
   constexpr double well_known = 0.1;  // share of the spread by which a measured value may be off
-  if (start.measured >= 0) {
+  if (start.measured.output >= 0) {
     const auto samples = measured(recording, start.measured);
     const double value = samples.front().value;
     return {value, positive(well_known * spread(samples), positive(well_known * std::abs(value), 1))};
   }
-  if (start.speed_of >= 0) {
+  if (start.speed_of.output >= 0) {
     const auto samples = measured(recording, start.speed_of);
     return {first_slope(samples), positive(0.5 * rate_spread(samples), 1)};
   }
-  if (start.alike >= 0) {
+  if (start.alike.output >= 0) {
     const auto samples = measured(recording, start.alike);
     const double value = samples.front().value;
     return {value, positive(spread(samples), positive(std::abs(value), 1))};

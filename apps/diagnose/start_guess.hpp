@@ -11,7 +11,7 @@ struct StartGuess {
 };
 
 /// From the output that measures the state, else from the first differences of the one that measures what the state is
-/// the speed of, else from an output in the same unit; else 0.
+/// the speed of, else from an output, or a state that is read, in the same unit; else 0.
 StartGuess guess_start(const surefoot::Recording& recording, const StateStart& start);
 
 }  // namespace diagnose_program

@@ -83,6 +83,34 @@ TEST_CASE("a free state starts from its measurement, a free speed from the first
   CHECK(loaded.recordings[0].initial_scale.minCoeff() > 0);
 }
 
+TEST_CASE("a free state starts from a reading in another unit, one that is not read from another in its unit") {
+  const auto loaded = load("t_s,pump_V,lower_V\n0,1,6\n1,1,8\n2,1,6\n3,1,8\n", R"(
+schema = "surefoot.model/1"
+name = "tanks"
+kind = "ode"
+time = "t_s"
+[inputs]
+pump = { column = "pump_V", unit = "V" }
+[let]
+between = "k1*upper + 0*rain"
+[states]
+upper = { rate = "pump - between", initial = "free", unit = "m" }
+lower = { rate = "between - k2*lower + rain", initial = "free", unit = "m", force = "rain", effort_unit = "m/s" }
+[outputs]
+lower_V = { value = "zero + 50*lower", unit = "V" }
+[constants]
+zero = 1.0
+[parameters]
+k1 = { value = 1, min = 0.1, max = 10, unit = "1/s" }
+k2 = { value = 1, min = 0.1, max = 10, unit = "1/s" }
+)");
+  for (const Eigen::Index state : {0, 1}) {
+    CHECK(loaded.recordings[0].initial[state] == doctest::Approx(0.1));
+    const double spread = 0.02, share = state == 0 ? 1 : 0.1;  // what is read itself is well known
+    CHECK(loaded.recordings[0].initial_scale[state] == doctest::Approx(share * spread));
+  }
+}
+
 TEST_CASE("sequences in one file are recordings of their own, and poses after a step belong to the next row") {
   const auto loaded = load("seq,order_m,turn_rad,x_m,y_m\n4,1,0,1,0\n4,2,0,3,0\n9,3,0,3,0\n", walk_model);
   REQUIRE(loaded.recordings.size() == 2);
@@ -154,8 +182,8 @@ TEST_CASE("a simulator in C++ reads columns called after names and units") {
   CHECK(layout.inputs[1].column == "v_m_s");
   CHECK(layout.inputs[2].column == "on");
   CHECK(layout.outputs == std::vector<std::string>{"theta_rad", "tau_N_m"});
-  CHECK(layout.starts[0].measured == 0);
-  CHECK(layout.starts[1].speed_of == 0);
+  CHECK(layout.starts[0].measured.output == 0);
+  CHECK(layout.starts[1].speed_of.output == 0);
 }
 
 TEST_CASE("every model of ours reads the recordings it is for" * doctest::skip(recordings_folder().empty())) {

@@ -160,6 +160,8 @@ TEST_CASE("what cannot be seen in the recordings is said, once the inputs of all
   CHECK(mentions(screen(info, {still, still}), "valve never changes:"));
   CHECK(mentions(screen(info, {still, positive}), "valve never changes its sign"));
   CHECK_FALSE(mentions(screen(info, {still, positive, negative}), "valve"));
+  still.inputs(0, 3) = 0;  // a switch
+  CHECK_FALSE(mentions(screen(info, {still}), "valve"));
 }
 
 TEST_CASE("where anything would fit nothing is diagnosed") {

@@ -131,17 +131,19 @@ SUREFOOT_ONCE std::vector<Remark> screen(const SimulatorInfo& info, const std::v
   std::vector<Remark> remarks;
   for (std::size_t i = 0; i < info.inputs.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    double low = std::numeric_limits<double>::infinity(), high = -low;
+    double low = std::numeric_limits<double>::infinity(), high = -low, least = low;  // the least but for zeros
     for (const Recording& recording : recordings) {
       for (const double value : detail::row_of(recording.inputs, k)) {
         low = std::min(low, value);
         high = std::max(high, value);
+        if (value != 0) least = std::min(least, value);
       }
     }
+    const bool switched = low == 0 && least == high;  // has no other side
     if (!(high > low)) {
       remarks.push_back({"", "input " + info.inputs[i].name +
                                  " never changes: nothing on its path (gain, delay, dead zone) can be told"});
-    } else if (low >= 0 || high <= 0) {
+    } else if (!switched && (low >= 0 || high <= 0)) {
       remarks.push_back({"", "input " + info.inputs[i].name +
                                  " never changes its sign: what differs between both sides cannot be seen"});
     }

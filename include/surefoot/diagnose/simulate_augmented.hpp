@@ -38,7 +38,7 @@ SimulatedRun simulate_augmented(const S& simulator, const Augmented& augmented, 
     p[static_cast<Eigen::Index>(i)] =
         augmented.parameters.empty() ? info.parameters[i].value : augmented.parameters.at(i);
   }
-  const diagnosis::SimulatorStructure structure = diagnosis::find_structure(simulator, info, recording, p);
+  const diagnosis::SimulatorStructure structure = diagnosis::find_structure(simulator, info, recording, recording, p);
   S s = diagnosis::for_recording(simulator, recording);
   return diagnosis::SimulationRun<S>(s, info, structure, diagnosis::unit_sizes(info), recording, p, {attached, values},
                                      augmented.integration)
@@ -53,7 +53,7 @@ std::vector<std::string> units_of(const S& simulator, const NamedEffect& named, 
   bound.info = simulator.info();
   Eigen::VectorXd p(static_cast<Eigen::Index>(bound.info.parameters.size()));
   for (Eigen::Index i = 0; i < p.size(); ++i) p[i] = bound.info.parameters[static_cast<std::size_t>(i)].value;
-  bound.structure = diagnosis::find_structure(simulator, bound.info, recording, p);
+  bound.structure = diagnosis::find_structure(simulator, bound.info, recording, recording, p);
   const AttachedEffect attached = attach(bound.info, named, effects);
   std::vector<std::string> units;
   for (const auto& parameter : attached.effect->parameters) {

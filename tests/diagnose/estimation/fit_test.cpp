@@ -123,6 +123,28 @@ TEST_CASE("an initial angle that strayed a whole turn away is read off again") {
   CHECK(fitted.loss < 1e-12);
 }
 
+TEST_CASE("where an effect begins is found though none of it shows near where the fit starts") {
+  Recording recording = toys::blank_recording(toys::SlidingBlock{}.info(), 100, 0.02);
+  recording.inputs.setConstant(9);
+  recording.inputs(0, 0) = 0;
+  BoundSimulator bound = bind_simulator(toys::SlidingBlock{}, {recording});
+  bound.sizes.input_high[0] = 9;
+  bound.sizes.input_low[0] = 0;
+  Hypothesis truth = nominal_hypothesis(bound);
+  truth.effects.push_back(attach(bound.info, {"rate_limit", "push", "not settled", {}, {9}}, all_effects()));
+  truth.values.push_back(Eigen::Vector2d(9, 4));  // its rate, and where it begins
+  truth.effects.push_back(attach(bound.info, {"dead_zone", "push", {}, {}, {2}}, all_effects()));
+  truth.values.push_back(Vec<1>(2.0));  // less than this of a beginning does nothing
+  bound.recordings[0].outputs = simulate(bound, truth, 0, {}).outputs;
+  Hypothesis start = truth;
+  start.values[0][1] = 0;
+  FitProblem problem = problem_of(1, 1);
+  problem.weighting.sigma = Vec<2>(0.01, 0.01);
+  problem.free = Free::initial_only;
+  const Fit fitted = fit(bound, start, problem, serially());
+  CHECK(fitted.hypothesis.values[0][1] == doctest::Approx(4).epsilon(1e-2));
+}
+
 TEST_CASE("recordings begin where the truth does though a sensor rounds") {
   constexpr double step = 0.05;
   auto recordings = tanks(12, 120, 1, 1);

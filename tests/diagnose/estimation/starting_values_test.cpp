@@ -41,6 +41,25 @@ TEST_CASE("a level that readings never pass is where an overflow starts") {
   for (const Eigen::VectorXd& start : starts) CHECK(start[0] == doctest::Approx(2.0));
 }
 
+// The same tank, read in cm below its brim.
+struct TankFromAbove : toys::LeakyTank {
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const {
+    return Output(300 - 100 * x[0]);
+  }
+};
+
+TEST_CASE("readings in another unit say in that of the state where an overflow starts") {
+  BoundSimulator bound = tank(0.05);
+  Recording recording = bound.recordings[0];
+  for (double& level : recording.outputs.reshaped()) level = 300 - 100 * level;
+  bound = bind_simulator(TankFromAbove{}, {recording});
+  bound.sizes = measure_sizes(bound, nominal_hypothesis(bound), {0},
+                              simulate_all(bound, nominal_hypothesis(bound), {0}, {}, serially()));
+  const auto starts = starting_values(bound, attached(bound, effects::overflow()), observed(bound));
+  REQUIRE_FALSE(starts.empty());
+  for (const Eigen::VectorXd& start : starts) CHECK(start[0] == doctest::Approx(2.0));
+}
+
 TEST_CASE("what starts at a share of the largest value does so where the velocity's position went") {
   Recording recording = toys::blank_recording(toys::SlidingBlock{}.info(), 100, 0.1);
   recording.inputs.setConstant(0.5);

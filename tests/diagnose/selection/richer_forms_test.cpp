@@ -137,7 +137,7 @@ TEST_CASE("damped bristles are found beside plain friction, though undamped ones
   const FormSearch forms =
       search_of({"load_dependent_friction", "v", "drive, presliding, damped", {}, {0.4, 0.03, 0.06}});
   const EvaluatedHypothesis plain = forms.fitted("drive", Eigen::VectorXd::Constant(1, 0.4));
-  const auto richer = in_richer_forms(forms.search(), plain);
+  const auto richer = in_richer_forms(forms.search(), plain, ErrorsOfForm::counted);
   REQUIRE(richer.has_value());
   CHECK(richer->hypothesis.effects[0].effect->form == "drive, presliding, damped");
   CHECK(richer->errors.rms() < 0.1 * plain.errors.rms());
@@ -150,16 +150,17 @@ TEST_CASE("a richer form that takes away nothing in a few iterations is not fitt
   forms.problem.effort.first_iterations = 1;
   int jacobians = 0;
   forms.problem.fit.stopped = [&jacobians] { return ++jacobians > 100; };
-  CHECK_FALSE(in_richer_forms(forms.search(), plain).has_value());
+  CHECK_FALSE(in_richer_forms(forms.search(), plain, ErrorsOfForm::counted).has_value());
   CHECK(jacobians <= 2);  // one step, and the question after it
 }
 
-TEST_CASE("forms of one effect are compared in full, though they differ by less than an error of form") {
+TEST_CASE("forms that differ by less than an error of form are compared in full, but not while effects are sought") {
   using namespace diagnosis;
   FormSearch forms = search_of({"cubic_stiffness", "v", "off center", {}, {40, 0.0005}});
   forms.problem.least = Eigen::VectorXd::Constant(2, 1e3);  // mean squares, in the unit of errors: all of them
   const EvaluatedHypothesis plain = forms.fitted("", Eigen::VectorXd::Constant(1, 40));
-  const auto richer = in_richer_forms(forms.search(), plain);
+  CHECK_FALSE(in_richer_forms(forms.search(), plain, ErrorsOfForm::tolerated).has_value());
+  const auto richer = in_richer_forms(forms.search(), plain, ErrorsOfForm::counted);
   REQUIRE(richer.has_value());
   CHECK(richer->hypothesis.effects[0].effect->form == "off center");
   CHECK(richer->hypothesis.values[0][1] == doctest::Approx(0.0005).epsilon(0.2));

@@ -21,7 +21,7 @@ EffectSlots slots_of(const std::vector<AttachedEffect>& effects) {
   const Recording recording = toys::blank_recording(info, 10, 0.1);
   Eigen::VectorXd p(3);
   p << 2, 0, 0;
-  const SimulatorStructure structure = find_structure(toys::SlidingBlock{}, info, recording, p);
+  const SimulatorStructure structure = find_structure(toys::SlidingBlock{}, info, recording, recording, p);
   const std::vector<Eigen::VectorXd> values(effects.size(), Eigen::VectorXd::Zero(2));
   return assign_slots({effects, values}, info, structure, unit_sizes(info));
 }

@@ -130,7 +130,7 @@ TEST_CASE("the force behind the rates of coupled joints is that of the mass matr
   const Arm arm;
   const Eigen::VectorXd p = Eigen::VectorXd::Constant(1, 1.5);
   Arm copy = arm;
-  const SimulatorStructure structure = find_structure(arm, arm.info(), let_go(1, 0.1), p);
+  const SimulatorStructure structure = find_structure(arm, arm.info(), let_go(1, 0.1), let_go(1, 0.1), p);
   CHECK(structure.pushed == std::vector<int>{2, 3});
   const AugmentedSimulator<Arm> m{.simulator = copy, .structure = structure, .p = p, .slots = {}, .raw = {}};
   const Vec<4> x(0.4, 1.1, 0.3, -2);
@@ -154,9 +154,9 @@ struct ContraryArm : Arm {
 
 TEST_CASE("a response that is none of forces is refused with its velocity") {
   const Eigen::VectorXd p = Eigen::VectorXd::Constant(1, 1.5);
-  CHECK_THROWS_WITH_AS(find_structure(SquaringArm{}, Arm{}.info(), let_go(1, 0.1), p),
+  CHECK_THROWS_WITH_AS(find_structure(SquaringArm{}, Arm{}.info(), let_go(1, 0.1), let_go(1, 0.1), p),
                        doctest::Contains("twice the force on v2"), DiagnoseError);
-  CHECK_THROWS_WITH_AS(find_structure(ContraryArm{}, Arm{}.info(), let_go(1, 0.1), p),
+  CHECK_THROWS_WITH_AS(find_structure(ContraryArm{}, Arm{}.info(), let_go(1, 0.1), let_go(1, 0.1), p),
                        doctest::Contains("does not make v1 grow"), DiagnoseError);
 }
 
@@ -180,8 +180,9 @@ struct MuteArm : Arm {
 TEST_CASE("velocities that one input moves at once are noticed where nothing says what a force does") {
   const Eigen::VectorXd p = Eigen::VectorXd::Constant(1, 1.5);
   static_assert(!has_response<MuteArm>);
-  CHECK(find_structure(MuteArm{}, Arm{}.info(), let_go(1, 0.1), p).moved_together == std::vector<int>{2, 3});
-  CHECK(find_structure(Arm{}, Arm{}.info(), let_go(1, 0.1), p).moved_together.empty());
+  CHECK(find_structure(MuteArm{}, Arm{}.info(), let_go(1, 0.1), let_go(1, 0.1), p).moved_together ==
+        std::vector<int>{2, 3});
+  CHECK(find_structure(Arm{}, Arm{}.info(), let_go(1, 0.1), let_go(1, 0.1), p).moved_together.empty());
   CHECK(moved_together_sentence(Arm{}.info(), {2, 3}).find("one input moves v1 and v2 at once") == 0);
 }
 

@@ -117,6 +117,34 @@ TEST_CASE("a simulation that follows its readings comes to them, and unmeasured 
   CHECK(end_of(0.2)[1] == doctest::Approx(2));
 }
 
+// A block of which both are read in other units, the place from another zero.
+struct ReadInOtherUnits : SlidingBlock {
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const {
+    return {100 * x[0] - 5, -3.6 * x[1]};
+  }
+};
+
+TEST_CASE("the unit in which a state is read changes nothing of how a simulation begins again or follows") {
+  Recording recording = blank_recording(SlidingBlock{}.info(), 60, 0.1);
+  Rng rng(4);
+  for (double& push : recording.inputs.reshaped()) push = rng.normal();
+  for (double& reading : recording.outputs.reshaped()) reading = rng.normal();
+  Recording otherwise = recording;
+  otherwise.outputs.row(0) = (100 * recording.outputs.row(0).array() - 5).matrix();
+  otherwise.outputs.row(1) = -3.6 * recording.outputs.row(1);
+  otherwise.initial[0] = recording.initial[0] = recording.outputs(0, 0);  // read off a sensor with a fault
+  const Augmented biased = machine({}, {{"sensor_bias", "x_m", {}, {}, {0.2}}}),
+                  in_cm = machine({}, {{"sensor_bias", "x_m", {}, {}, {20}}});
+  for (const Integration& integration : {Integration{}, Integration{.restart = 7}, Integration{.follow = 0.2}}) {
+    Augmented one = biased, other = in_cm;
+    one.integration = other.integration = integration;
+    const SimulatedRun plain = simulate_augmented(SlidingBlock{}, one, recording),
+                       same = simulate_augmented(ReadInOtherUnits{}, other, otherwise);
+    CHECK((plain.states - same.states).cwiseAbs().maxCoeff() < 1e-9);
+    CHECK(plain.states.cwiseAbs().maxCoeff() > 0.1);
+  }
+}
+
 TEST_CASE("an input that is late by parts of a row gives the response to the shifted input") {
   Recording recording = blank_recording(SlidingBlock{}.info(), 60, 0.05);
   Rng rng(3);

@@ -16,7 +16,7 @@ namespace {
 template <class S>
 SimulatorStructure facts_of(const S& simulator, const Recording& recording) {
   const SimulatorInfo info = simulator.info();
-  return find_structure(simulator, info, recording, nominal_parameters(info));
+  return find_structure(simulator, info, recording, recording, nominal_parameters(info));
 }
 
 TEST_CASE("the state whose rate is another state is its position, and forces act on that other") {
@@ -25,6 +25,23 @@ TEST_CASE("the state whose rate is another state is its position, and forces act
   CHECK(structure.velocity == std::vector<bool>{false, true});
   CHECK(structure.output_of == std::vector<int>{0, 1});
   CHECK(structure.all_states_measured);
+}
+
+// A block whose place is read in cm behind the zero of the sensor, and whose speed by a gain to be calibrated.
+struct ReadOtherwise : toys::SlidingBlock {
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& p) const {
+    return {100 * x[0] - 5, p[0] * x[1]};
+  }
+};
+
+TEST_CASE("an output may read a state in another unit and from another zero, but by no gain that is not known") {
+  const auto structure = facts_of(ReadOtherwise{}, toys::blank_recording(ReadOtherwise{}.info(), 5, 0.1));
+  CHECK(structure.output_of == std::vector<int>{0, -1});
+  CHECK(reading_of(structure, 0).slope == doctest::Approx(100));
+  CHECK(reading_of(structure, 0).offset == doctest::Approx(-5));
+  CHECK(reading_of(structure, 0).state_at(95) == doctest::Approx(1));
+  CHECK(reading_of(structure, 0).reading_at(1) == doctest::Approx(95));
+  CHECK_FALSE(structure.all_states_measured);
 }
 
 TEST_CASE("a level is no velocity, and neither are the states of a map") {
@@ -177,11 +194,13 @@ struct Odd {
   Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return {10 * x[1], x[0]}; }
 };
 
-TEST_CASE("nothing is taken for a speed, a reading or a driven signal that is only nearly one") {
+TEST_CASE(
+    "nothing is taken for a speed or a driven signal that is only nearly one, but a reading may be in another unit") {
   const auto structure = facts_of(Odd{}, toys::blank_recording(Odd{}.info(), 5, 0.1));
   CHECK(structure.position_of == std::vector<int>{-1, -1});
   CHECK(structure.velocity == std::vector<bool>{false, true});  // by its unit
-  CHECK(structure.output_of == std::vector<int>{1, -1});
+  CHECK(structure.output_of == std::vector<int>{1, 0});
+  CHECK(reading_of(structure, 1).slope == doctest::Approx(10));
   CHECK(structure.driven_signal == std::vector<bool>{false, true});
 }
 
@@ -206,9 +225,13 @@ struct ByRecording {
 TEST_CASE("a simulator is asked as it is for the recording") {
   Recording recording = toys::blank_recording(ByRecording{}.info(), 5, 0.1);
   recording.constants["scale"] = 1;
-  CHECK(facts_of(ByRecording{}, recording).all_states_measured);
-  recording.constants["scale"] = 2;
-  CHECK_FALSE(facts_of(ByRecording{}, recording).all_states_measured);
+  CHECK(reading_of(facts_of(ByRecording{}, recording), 0).slope == 1);
+  Recording stronger = recording;
+  stronger.constants["scale"] = 2;
+  CHECK(reading_of(facts_of(ByRecording{}, stronger), 0).slope == doctest::Approx(2));
+  const std::vector<Recording> both{recording, recording, stronger};  // no one way to read it
+  CHECK(bind_simulator(ByRecording{}, {recording, recording}).structure.all_states_measured);
+  CHECK_FALSE(bind_simulator(ByRecording{}, both).structure.all_states_measured);
 }
 
 }  // namespace

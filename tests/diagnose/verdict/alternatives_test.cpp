@@ -66,6 +66,12 @@ TEST_CASE("what is not much less probable than the choice cannot be told from it
   CHECK(found.indistinguishable.front().hypothesis.effects.front().effect->name == "delay");
 }
 
+TEST_CASE("a part of the choice that cannot be told from it is named as that part alone") {
+  const Alternatives found =
+      find_alternatives(choice_of({"lag", "delay"}, 0.5, {{{"lag"}, 0.3}, {{"drift"}, 0.2}}), tie_criteria);
+  CHECK(found.ties == std::vector<std::string>{"lag at level alone", "drift at level"});
+}
+
 TEST_CASE("where nothing was chosen nothing is a tie") {
   const Alternatives found = find_alternatives(choice_of({}, 0.5, {{{"lag"}, 0.5}}), tie_criteria);
   REQUIRE(found.list.size() == 1);

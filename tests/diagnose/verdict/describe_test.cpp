@@ -97,6 +97,7 @@ TEST_CASE("every verdict has its sentence") {
   diagnosis.held_out_after = 0.5;
   diagnosis.verdict = Verdict::unfinished;
   CHECK(verdict_sentence(diagnosis, {}).starts_with("The search was not finished, so that nothing is concluded; the"));
+  CHECK(verdict_sentence(diagnosis, {}).ends_with(" It needs more time (max_seconds, --budget)."));
   diagnosis.noise_ratio = 1.2;
   CHECK(verdict_sentence(diagnosis, {}).starts_with(
       "The search was not finished, so that others may explain it as well as what was found: a leak."));

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -77,7 +76,7 @@ SUREFOOT_INLINE Eigen::VectorXd FitFunctions::residuals_at(const Hypothesis& hyp
 }
 
 /// Whether it is a step of a sensor that rounds.
-SUREFOOT_INLINE bool is_of_rounding(const Hypothesis& hypothesis, const Variable& variable) {
+SUREFOOT_ONCE bool is_of_rounding(const Hypothesis& hypothesis, const Variable& variable) {
   return variable.kind == Variable::Kind::effect && hypothesis.effects[variable.index].effect->rounds;
 }
 
@@ -180,35 +179,71 @@ SUREFOOT_ONCE Descent descend(const BoundSimulator& bound, const Hypothesis& sta
   return result;
 }
 
-/// A fitted hypothesis with the unknown initial states of a recording put back to what was read off it, where that fits
-/// better; none where it does so nowhere.
-SUREFOOT_ONCE std::optional<Hypothesis> read_off_again(const BoundSimulator& bound, const Descent& fitted,
-                                                       const FitProblem& problem, const Parallel& parallel) {
+/// Whether effects begin anywhere in each recording.
+SUREFOOT_ONCE bool effects_begin_anywhere(const Hypothesis& hypothesis) {
+  return holds_for_any(hypothesis.effects, [](const AttachedEffect& one) { return one.effect->starts_anywhere; });
+}
+
+/// Other beginnings of a recording: unknown states as were read off it; and effects that a fit left settled in places
+/// all over their range, since what a limit or a gap forgets within the first row has no slope.
+SUREFOOT_ONCE std::vector<Hypothesis> other_beginnings(const BoundSimulator& bound, const Hypothesis& fitted,
+                                                       std::size_t r) {
+  constexpr int parts = 4;  // of the range: few, since each of their ends is simulated
+  std::vector<Hypothesis> others;
+  if (has_unknown_initial_state(bound.recordings[r])) {
+    others.push_back(fitted);
+    others.back().initial[r] = bound.recordings[r].initial;
+  }
+  if (!effects_begin_anywhere(fitted)) return others;
+  Hypothesis other = fitted;
+  for (const Variable& variable : variables_of(bound, fitted, {r}, Free::initial_only)) {
+    if (variable.kind != Variable::Kind::start || value_of(other, variable) != 0) continue;
+    for (int part = 0; part <= parts; ++part) {
+      others.push_back(fitted);
+      value_of(others.back(), variable) = variable.low + part * (variable.high - variable.low) / parts;
+    }
+  }
+  return others;
+}
+
+/// A fitted hypothesis with other beginnings of recordings, where these fit better; none where they do so nowhere.
+SUREFOOT_ONCE std::optional<Hypothesis> begun_otherwise(const BoundSimulator& bound, const Descent& fitted,
+                                                        const FitProblem& problem, const Parallel& parallel) {
   const std::size_t count = problem.recordings.size();
   std::vector<Eigen::Index> begin{0};
   for (const std::size_t r : problem.recordings) {
     begin.push_back(begin.back() + static_cast<Eigen::Index>(cells_of(bound.recordings[r]).size()));
   }
-  std::vector<std::uint8_t> better(count, 0);
+  std::vector<Hypothesis> better(count);  // without initial states: none
   parallel(count, [&](std::size_t i) {
     const std::size_t r = problem.recordings[i];
-    const Recording& recording = bound.recordings[r];
-    if (!has_unknown_initial_state(recording)) return;
-    Hypothesis as_read = fitted.fit.hypothesis;
-    as_read.initial[r] = recording.initial;
-    const SimulatedRun run = simulate(bound, as_read, r, problem.integration);
-    const Eigen::VectorXd there = weighted_residuals(bound, r, run, cells_of(recording), problem.weighting);
-    Eigen::VectorXd here(there.size());
+    const std::vector<Cell> cells = cells_of(bound.recordings[r]);
+    Eigen::VectorXd here(static_cast<Eigen::Index>(cells.size()));
     std::copy_n(fitted.residuals.data() + begin[i], here.size(), here.data());
-    const double robust = problem.weighting.robust;
-    better[i] = mean_loss(there, robust) < mean_loss(here, robust) ? 1 : 0;
+    double least = mean_loss(here, problem.weighting.robust);
+    for (Hypothesis& other : other_beginnings(bound, fitted.fit.hypothesis, r)) {
+      const SimulatedRun run = simulate(bound, other, r, problem.integration);
+      const double loss =
+          mean_loss(weighted_residuals(bound, r, run, cells, problem.weighting), problem.weighting.robust);
+      if (!(loss < least)) continue;
+      least = loss;
+      better[i] = std::move(other);
+    }
   });
-  if (std::find(better.begin(), better.end(), 1) == better.end()) return std::nullopt;
   Hypothesis result = fitted.fit.hypothesis;
+  bool any = false;
   for (std::size_t i = 0; i < count; ++i) {
+    if (better[i].initial.empty()) continue;
+    any = true;
     const std::size_t r = problem.recordings[i];
-    if (better[i] != 0) result.initial[r] = bound.recordings[r].initial;
+    result.initial[r] = better[i].initial[r];
+    for (std::size_t e = 0; e < result.effects.size(); ++e) {
+      const Effect& effect = *result.effects[e].effect;
+      const auto start = static_cast<Eigen::Index>(effect.parameters.size() + r);
+      if (effect.starts_anywhere) result.values[e][start] = better[i].values[e][start];
+    }
   }
+  if (!any) return std::nullopt;
   return result;
 }
 
@@ -216,7 +251,7 @@ SUREFOOT_ONCE Fit fit(const BoundSimulator& bound, const Hypothesis& start, cons
                       const Parallel& parallel) {
   const Descent first = descend(bound, start, problem, parallel);
   if (!first.fit.ok || problem.stopped()) return first.fit;
-  const std::optional<Hypothesis> elsewhere = read_off_again(bound, first, problem, parallel);
+  const std::optional<Hypothesis> elsewhere = begun_otherwise(bound, first, problem, parallel);
   if (!elsewhere) return first.fit;
   const Fit again = descend(bound, *elsewhere, problem, parallel).fit;
   return again.ok && again.loss < first.fit.loss ? again : first.fit;
@@ -225,9 +260,7 @@ SUREFOOT_ONCE Fit fit(const BoundSimulator& bound, const Hypothesis& start, cons
 SUREFOOT_ONCE Hypothesis with_estimated_initial_states(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                                        const std::vector<std::size_t>& recordings, FitProblem problem,
                                                        const Parallel& parallel) {
-  const bool effects_start_anywhere =
-      holds_for_any(hypothesis.effects, [](const AttachedEffect& one) { return one.effect->starts_anywhere; });
-  if (!effects_start_anywhere && !has_unknown_initial_state(bound, recordings)) return hypothesis;
+  if (!effects_begin_anywhere(hypothesis) && !has_unknown_initial_state(bound, recordings)) return hypothesis;
   problem.recordings = recordings;
   problem.free = Free::initial_only;
   return fit(bound, hypothesis, problem, parallel).hypothesis;

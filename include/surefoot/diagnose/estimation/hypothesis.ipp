@@ -50,8 +50,8 @@ SUREFOOT_ONCE Hypothesis without_rounding(Hypothesis hypothesis) {
   return hypothesis;
 }
 
-SUREFOOT_INLINE Eigen::VectorXd values_before_starts(const Effect& effect, const Eigen::VectorXd& values,
-                                                     std::size_t recordings) {
+SUREFOOT_ONCE Eigen::VectorXd values_before_starts(const Effect& effect, const Eigen::VectorXd& values,
+                                                   std::size_t recordings) {
   const auto parameters = static_cast<Eigen::Index>(effect.parameters.size());
   const auto starts = static_cast<Eigen::Index>(effect.starts_anywhere ? recordings : 0);
   Eigen::VectorXd result = Eigen::VectorXd::Zero(parameters + starts);
@@ -59,8 +59,7 @@ SUREFOOT_INLINE Eigen::VectorXd values_before_starts(const Effect& effect, const
   return result;
 }
 
-SUREFOOT_INLINE double measure_size(const BoundSimulator& bound, const AttachedEffect& attached,
-                                    const Measure& measure) {
+SUREFOOT_ONCE double measure_size(const BoundSimulator& bound, const AttachedEffect& attached, const Measure& measure) {
   const auto at = static_cast<std::size_t>(attached.at);
   const auto inputs = bound.info.inputs.size();
   double value = 1, effort = 1, position = 1, rate = 1;

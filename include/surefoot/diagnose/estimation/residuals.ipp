@@ -57,8 +57,8 @@ SUREFOOT_INLINE Eigen::VectorXd weighted_residuals(const BoundSimulator& bound, 
   return residuals;
 }
 
-SUREFOOT_INLINE Eigen::VectorXd residual_sizes(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                               const std::vector<SimulatedRun>& trajectories) {
+SUREFOOT_ONCE Eigen::VectorXd residual_sizes(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                             const std::vector<SimulatedRun>& trajectories) {
   constexpr double outlier = 6;               // times the size so far
   constexpr std::size_t common_percent = 99;  // of the residuals that are never left out
   constexpr double smallest = 1e-12;          // in place of 0, so that a size may be divided by

@@ -51,11 +51,13 @@ SUREFOOT_ONCE void free_measured_initial_states(BoundSimulator& bound, const std
   for (std::size_t i = 0; i < bound.info.states.size(); ++i) {
     const int output = bound.structure.output_of[i];
     if (output < 0) continue;
+    const StateReading way = reading_of(bound.structure, i);
     const double noise = noise_of(bound, training, output), deviation = deviations[output];
     for (Recording& recording : bound.recordings) {
       const auto state = static_cast<Eigen::Index>(i);
-      if (recording.initial_scale[state] > 0 || recording.initial[state] != recording.outputs(output, 0)) continue;
-      if (noise > least_noise * deviation) recording.initial_scale[state] = noise;
+      if (recording.initial_scale[state] > 0) continue;
+      if (recording.initial[state] != way.state_at(recording.outputs(output, 0))) continue;
+      if (noise > least_noise * deviation) recording.initial_scale[state] = noise / std::abs(way.slope);
     }
   }
 }

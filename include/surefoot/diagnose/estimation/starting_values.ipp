@@ -62,6 +62,18 @@ SUREFOOT_ONCE std::vector<Observed> observe(const BoundSimulator& bound, const s
   return result;
 }
 
+/// Readings of what an effect is attached to, in its unit.
+SUREFOOT_ONCE Observed in_unit_of(const BoundSimulator& bound, const AttachedEffect& attached, Observed seen) {
+  const Place place = attached.effect->place;
+  if (place != Place::state && place != Place::velocity) return seen;
+  const auto at = static_cast<std::size_t>(attached.at);
+  const int state = place == Place::state ? attached.at : bound.structure.position_of[at];
+  const StateReading way = reading_of(bound.structure, static_cast<std::size_t>(state));
+  for (double& value : seen.readings) value = way.state_at(value);
+  for (double& value : seen.simulated) value = way.state_at(value);
+  return seen;
+}
+
 SUREFOOT_ONCE std::vector<Eigen::VectorXd> starting_values(const BoundSimulator& bound,
                                                            const AttachedEffect& attached,
                                                            const std::vector<Observed>& observed) {
@@ -82,7 +94,7 @@ SUREFOOT_ONCE std::vector<Eigen::VectorXd> starting_values(const BoundSimulator&
   const int output = output_watching(bound, attached);
   std::vector<double> suggested;
   if (attached.effect->suggest && output >= 0 && !observed.empty()) {
-    const Observed& seen = observed[static_cast<std::size_t>(output)];
+    const Observed seen = in_unit_of(bound, attached, observed[static_cast<std::size_t>(output)]);
     suggested = attached.effect->suggest(seen.readings, seen.simulated);
   }
   if (suggested.empty()) return attached.effect->needs_suggestion ? std::vector<Eigen::VectorXd>{} : result;

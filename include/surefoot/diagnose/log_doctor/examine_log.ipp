@@ -85,7 +85,8 @@ SUREFOOT_ONCE Recording longest_piece(const LogFit& fit, std::size_t r, const Lo
     scale[i] = initial_share * root_mean_square(surefoot::detail::row_of(fit.runs[r].states, i));
     const int output = fit.bound.structure.output_of[static_cast<std::size_t>(i)];
     if (output >= 0 && std::isfinite(whole.outputs(output, best.first))) {
-      initial[i] = whole.outputs(output, best.first);
+      initial[i] =
+          reading_of(fit.bound.structure, static_cast<std::size_t>(i)).state_at(whole.outputs(output, best.first));
     }
   }
   Recording piece = part_of(whole, best.first, best.second, initial, scale);

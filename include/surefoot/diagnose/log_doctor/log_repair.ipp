@@ -111,10 +111,11 @@ SUREFOOT_ONCE void reread_initial(const BoundSimulator& bound, const Recording& 
   for (std::size_t i = 0; i < bound.info.states.size(); ++i) {
     const auto state = static_cast<Eigen::Index>(i);
     const int output = bound.structure.output_of[i];
-    if (output < 0 || before.initial[state] != before.outputs(output, 0)) continue;
+    const StateReading way = reading_of(bound.structure, i);
+    if (output < 0 || before.initial[state] != way.state_at(before.outputs(output, 0))) continue;
     for (Eigen::Index row = 0; row < after.rows(); ++row) {
       if (!std::isfinite(after.outputs(output, row))) continue;
-      after.initial[state] = after.outputs(output, row);
+      after.initial[state] = way.state_at(after.outputs(output, row));
       break;
     }
   }

@@ -6,6 +6,7 @@
 
 #include "surefoot/diagnose/selection/children.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
+#include "surefoot/diagnose/selection/richer_forms.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -36,7 +37,7 @@ bool explains(const Search& search, const EvaluatedHypothesis& one);
 EvaluatedHypothesis refitted(const Search& search, const Hypothesis& one);
 
 /// Richer forms for the best structures, none of them `hopeless` behind the best [nat].
-void enrich(const Search& search, std::vector<EvaluatedHypothesis>& pool, double hopeless);
+void enrich(const Search& search, std::vector<EvaluatedHypothesis>& pool, double hopeless, ErrorsOfForm errors_of_form);
 
 /// The best structures, and the model without effects, fitted and evaluated with the present weights and recordings.
 std::vector<EvaluatedHypothesis> fitted_again(const Search& search, const std::vector<EvaluatedHypothesis>& pool);

@@ -85,11 +85,13 @@ SUREFOOT_ONCE EvaluatedHypothesis refitted(const Search& search, const Hypothesi
   return evaluate_fit(search.bound, fit(search.bound, one, search.problem.fit, serially()), search.problem, serially());
 }
 
-SUREFOOT_ONCE void enrich(const Search& search, std::vector<EvaluatedHypothesis>& pool, double hopeless) {
+SUREFOOT_ONCE void enrich(const Search& search, std::vector<EvaluatedHypothesis>& pool, double hopeless,
+                          ErrorsOfForm errors_of_form) {
   const auto& [bound, problem, candidates, parallel] = search;
   for (const EvaluatedHypothesis& one : best_structures(pool, problem.effort.finalists, hopeless, problem.criteria)) {
     if (problem.stopped()) return;
-    if (const auto richer = in_richer_forms(search, one)) keep_best_form(pool, *richer, problem.criteria);
+    const auto richer = in_richer_forms(search, one, errors_of_form);
+    if (richer) keep_best_form(pool, *richer, problem.criteria);
   }
 }
 
@@ -145,7 +147,7 @@ SUREFOOT_ONCE bool settle_alone(Search& search, std::vector<EvaluatedHypothesis>
     std::vector<EvaluatedHypothesis> forms =
         in_other_forms(own, best, own.problem.known, own.problem.effort.compared_finalists, false);
     forms.push_back(best);
-    enrich(own, forms, std::numeric_limits<double>::infinity());
+    enrich(own, forms, std::numeric_limits<double>::infinity(), ErrorsOfForm::tolerated);
     best = with_integration_of_its_own(own, forms[best_of(forms, criteria)]);
     if (!explains(own, best)) return false;
   }

@@ -139,7 +139,7 @@ SUREFOOT_ONCE void grow(Search& search, std::vector<EvaluatedHypothesis>& pool, 
     for (const EvaluatedHypothesis& one : beam) done.push_back(one.hypothesis);
     const bool first = search.effects(best) == 0 && depth == 0;
     std::vector<EvaluatedHypothesis> children = first ? first_effects(search, best) : extended(search, beam, best);
-    enrich(search, children, std::numeric_limits<double>::infinity());
+    enrich(search, children, std::numeric_limits<double>::infinity(), ErrorsOfForm::tolerated);
     draw_inside(search, best, children);
     for (const EvaluatedHypothesis& child : children) keep_best_form(pool, child, criteria);
     if (depth == 0 && yields(search, pool)) break;

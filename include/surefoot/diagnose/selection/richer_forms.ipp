@@ -162,8 +162,8 @@ SUREFOOT_ONCE Fit fit_richer(const Search& search, const EvaluatedHypothesis& fo
   return fit(search.bound, start, problem, search.parallel);
 }
 
-SUREFOOT_ONCE std::optional<EvaluatedHypothesis> in_richer_forms(const Search& search,
-                                                                 const EvaluatedHypothesis& found) {
+SUREFOOT_ONCE std::optional<EvaluatedHypothesis> in_richer_forms(const Search& search, const EvaluatedHypothesis& found,
+                                                                 ErrorsOfForm errors_of_form) {
   const SearchProblem& problem = search.problem;
   const double needed = std::log(problem.criteria.named_odds);
   EvaluatedHypothesis best = found;
@@ -174,7 +174,10 @@ SUREFOOT_ONCE std::optional<EvaluatedHypothesis> in_richer_forms(const Search& s
       const Fit fitted = fit_richer(search, best, e, richer);
       if (!fitted.ok) continue;
       const EvaluatedHypothesis one = evaluate_fit(search.bound, fitted, problem, search.parallel);
-      if (!(log_odds_of_forms(one, best, problem.criteria) > needed)) continue;
+      const bool counted = errors_of_form == ErrorsOfForm::counted;
+      const double odds =
+          counted ? log_odds_of_forms(one, best, problem.criteria) : log_odds(one, best, problem.criteria);
+      if (!(odds > needed)) continue;
       best = one;
       any = true;
     }

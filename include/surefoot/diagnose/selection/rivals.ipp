@@ -101,7 +101,7 @@ SUREFOOT_ONCE void try_other_forms(Search& search, const EvaluatedHypothesis& be
   const bool structured = leaves_structure(search, best);
   const bool finely = structured && !leaves_only_noise(best, problem);
   std::vector<EvaluatedHypothesis> others = in_other_forms(search, best, e, problem.effort.compared_finalists, finely);
-  enrich(search, others, std::numeric_limits<double>::infinity());
+  enrich(search, others, std::numeric_limits<double>::infinity(), ErrorsOfForm::tolerated);
   for (const EvaluatedHypothesis& one : others) {
     keep_best_form(pool, one, problem.criteria);
     if (structured) weigh_with_its_own_steps(search, one, best, pool);
@@ -141,7 +141,7 @@ SUREFOOT_ONCE void try_in_its_place(Search& search, const EvaluatedHypothesis& b
     drop_growing_that_cannot_pay(proposals, needed, problem.effort);
     std::vector<EvaluatedHypothesis> fitted =
         next_effects(among, rest, std::move(proposals), rivals.size(), problem.effort.compared_finalists);
-    enrich(search, fitted, std::numeric_limits<double>::infinity());
+    enrich(search, fitted, std::numeric_limits<double>::infinity(), ErrorsOfForm::tolerated);
     for (const EvaluatedHypothesis& one : fitted) {
       keep_best_form(pool, one, problem.criteria);
       weigh_with_its_own_steps(search, one, best, pool);

@@ -140,7 +140,7 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
   for (int round = 0; round < 2 && search.effects(pool[best_of(pool, criteria)]) > 0; ++round) {
     reweight(search, pool[best_of(pool, criteria)]);
     refit_best(search, pool);
-    enrich(search, pool, search.problem.effort.hopeless);
+    enrich(search, pool, search.problem.effort.hopeless, ErrorsOfForm::counted);
     if (take_back_holds(search, pool)) done.clear();
     take_effects_away(search, pool);
     const Hypothesis compared = pool[best_of(pool, criteria)].hypothesis;

@@ -213,17 +213,20 @@ class SimulationRun {
     for (std::size_t i = 0; i < info_.states.size(); ++i) {
       const auto state = static_cast<Eigen::Index>(i);
       const int output = m_.structure.output_of[i];
-      if (output < 0 || recording_.initial[state] != recording_.outputs(output, 0)) continue;
+      if (output < 0) continue;
+      const StateReading way = reading_of(m_.structure, i);
+      if (recording_.initial[state] != way.state_at(recording_.outputs(output, 0))) continue;
       for (const EffectSlot& slot : m_.slots.sensors) {
-        if (slot.at == output && slot.effect->delay) x[state] += moved_within(output, slot.effect->delay(slot.p));
+        if (slot.at != output || !slot.effect->delay) continue;
+        x[state] += moved_within(output, slot.effect->delay(slot.p)) / way.slope;
       }
-      const double read = x[state], time = 0;
+      const double read = way.reading_at(x[state]), time = 0;
       for (int round = 0; round < 3; ++round) {
-        double reading = x[state];
+        double reading = way.reading_at(x[state]);
         for (const EffectSlot& slot : m_.slots.sensors) {
           if (slot.at == output && slot.effect->at_start) slot.effect->sensor({{&time, 1}, {&reading, 1}}, slot.p);
         }
-        x[state] += read - reading;
+        x[state] += (read - reading) / way.slope;
       }
     }
   }
@@ -233,7 +236,7 @@ class SimulationRun {
       const int output = m_.structure.output_of[i];
       if (output < 0) continue;
       const double measured = recording_.outputs(output, row);
-      if (std::isfinite(measured)) now.x[static_cast<Eigen::Index>(i)] = measured;
+      if (std::isfinite(measured)) now.x[static_cast<Eigen::Index>(i)] = reading_of(m_.structure, i).state_at(measured);
     }
   }
 
@@ -247,7 +250,8 @@ class SimulationRun {
       const int output = state < 0 ? -1 : m_.structure.output_of[static_cast<std::size_t>(state)];
       if (output < 0) return std::numeric_limits<double>::quiet_NaN();
       const double distance = recording_.outputs(output, row) - outputs(output, row);
-      return info_.outputs[static_cast<std::size_t>(output)].unit == "rad" ? wrap_angle(distance) : distance;
+      const double slope = reading_of(m_.structure, static_cast<std::size_t>(state)).slope;
+      return (info_.outputs[static_cast<std::size_t>(output)].unit == "rad" ? wrap_angle(distance) : distance) / slope;
     };
     for (int i = 0; i < static_cast<int>(info_.states.size()); ++i) {
       const double own = off(i), of_position = off(m_.structure.position_of[static_cast<std::size_t>(i)]);

@@ -14,6 +14,14 @@
 
 namespace surefoot::diagnosis {
 
+/// How an output reads a state: offset + slope * state, as degrees of an angle in radians.
+struct StateReading {
+  double offset = 0, slope = 1;
+
+  double state_at(double reading) const { return (reading - offset) / slope; }
+  double reading_at(double state) const { return offset + slope * state; }
+};
+
 struct SimulatorStructure {
   std::vector<int> position_of;     // by state: the state whose rate it is, or -1
   std::vector<bool> velocity;       // by state: forces may act on it
@@ -21,13 +29,20 @@ struct SimulatorStructure {
   std::vector<int> moved_together;  // velocities that one input moves at once, without such a response
   std::vector<bool> affects_rates;  // by state: some rate depends on it (maps are not asked: always)
   std::vector<bool> remembers;      // by state of a map: only keeps inputs, of this step or of earlier ones
-  std::vector<int> output_of;       // by state: the output that reads it directly, or -1
+  std::vector<int> output_of;       // by state: the output that reads it alone and in proportion, or -1
+  std::vector<double> reading_offset, reading_slope;  // by state: how that output does; empty: all as they are
   std::vector<bool> driven_signal;  // by signal: changes with the inputs, at once or by way of an actuator's states
   std::vector<bool> coupling;       // by signal: not driven, and a force on several bodies: what holds them together
   bool all_states_measured = false;  // but for those that only keep inputs, and are known with them
   std::vector<bool> shown_at_once;   // by input: some output reads it in its own row
   std::vector<bool> actuator;        // by state: what inputs lead to, and neither a position nor a speed (a current)
 };
+
+/// How the output that reads this state does so.
+inline StateReading reading_of(const SimulatorStructure& structure, std::size_t state) {
+  if (state >= structure.reading_slope.size()) return {};
+  return {structure.reading_offset[state], structure.reading_slope[state]};
+}
 
 /// Typical sizes, root mean squares over the recordings.
 struct Sizes {
@@ -117,36 +132,50 @@ void check_size(int fixed_size, std::size_t named, const SimulatorInfo& info, co
 
 /// Answers of a simulator, whatever its type: its rates (or next values), and what it shows.
 struct SimulatorAnswers {
-  /// `signals`, where given, gets the values of all signals inside the equations.
-  std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::vector<double>* signals)>
-      rates;
-  std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u)> outputs;
-  /// Rates where one of the signals is larger by so many small steps.
-  std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::size_t signal, int steps)>
-      rates_beside;
+  /// Rates. `signals`, where given, gets the values of all signals inside the equations; the one with the number
+  /// `larger` is larger by so many small steps (-1: none).
+  std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::vector<double>* signals,
+                                int larger, int steps)>
+      probe;
+  /// `otherwise`: of another recording, and with other parameters where they are to be calibrated.
+  std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u, bool otherwise)> outputs;
   /// What generalized forces add to the rates; empty: the simulator has no response to them.
   std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& u, const Eigen::VectorXd& forces)>
       response;
+
+  Eigen::VectorXd rates(const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::vector<double>* signals) const {
+    return probe(x, u, signals, -1, 0);
+  }
+  Eigen::VectorXd rates_beside(const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::size_t signal,
+                               int steps) const {
+    return probe(x, u, nullptr, static_cast<int>(signal), steps);
+  }
 };
 
 /// Notes the values of signals, where given, and makes one larger by some small steps, if any (-1: none).
 struct ProbingTap {
   std::vector<double>* signals;
   int larger;
-  int steps = 1;
+  int steps;
   double operator()(int i, double value) const {
     if (signals != nullptr) (*signals)[static_cast<std::size_t>(i)] = value;
     return i == larger ? value + steps * 1e-3 * (1 + std::abs(value)) : value;
   }
 };
 
+/// Parameters that differ from these where they may be calibrated.
+Eigen::VectorXd other_parameters(const SimulatorInfo& info, Eigen::VectorXd parameters);
+
+/// The first recording with other constants than the first of all; that one if there is none.
+const Recording& recorded_otherwise(const std::vector<Recording>& recordings);
+
 /// Asks at random points around a recording. Costs some hundred evaluations.
 SimulatorStructure find_structure(const SimulatorAnswers& answers, const SimulatorInfo& info, const Recording& example);
 
-/// The same for a simulator as it is for that recording.
+/// The same for a simulator as it is for that recording, where it is so for another one as well.
 template <Simulator S>
 SimulatorStructure find_structure(const S& simulator, const SimulatorInfo& info, const Recording& example,
-                                  const Eigen::VectorXd& parameters) {
+                                  const Recording& another, const Eigen::VectorXd& parameters) {
   using State = typename S::State;
   using Input = typename S::Input;
   check_size(State::RowsAtCompileTime, info.states.size(), info, "State");
@@ -155,18 +184,17 @@ SimulatorStructure find_structure(const S& simulator, const SimulatorInfo& info,
   S s = for_recording(simulator, example);
   prepare(s, parameters);
   SimulatorAnswers answers;
-  answers.rates = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::vector<double>* signals) {
-    const auto at = converted<State>(x);
-    const auto input = converted<Input>(u);
-    if (signals == nullptr) return converted<Eigen::VectorXd>(State(evaluate(s, at, input, parameters, NoTap{})));
-    return converted<Eigen::VectorXd>(State(evaluate(s, at, input, parameters, ProbingTap{signals, -1})));
+  answers.probe = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::vector<double>* signals, int larger,
+                      int steps) {
+    const ProbingTap tap{signals, larger, steps};
+    return converted<Eigen::VectorXd>(State(evaluate(s, converted<State>(x), converted<Input>(u), parameters, tap)));
   };
-  answers.rates_beside = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& u, std::size_t signal, int steps) {
-    const ProbingTap larger{nullptr, static_cast<int>(signal), steps};
-    return converted<Eigen::VectorXd>(State(evaluate(s, converted<State>(x), converted<Input>(u), parameters, larger)));
-  };
-  answers.outputs = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& u) {
-    const typename S::Output y = s.observe(converted<State>(x), converted<Input>(u), parameters);
+  const Eigen::VectorXd others = other_parameters(info, parameters);
+  S other = for_recording(simulator, another);
+  prepare(other, others);
+  answers.outputs = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& u, bool otherwise) {
+    const typename S::Output y =
+        (otherwise ? other : s).observe(converted<State>(x), converted<Input>(u), otherwise ? others : parameters);
     return converted<Eigen::VectorXd>(y);
   };
   if constexpr (has_response<S>) {

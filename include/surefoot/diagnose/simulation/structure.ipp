@@ -31,6 +31,23 @@ SUREFOOT_ONCE Sizes unit_sizes(const SimulatorInfo& info) {
   return sizes;
 }
 
+SUREFOOT_ONCE Eigen::VectorXd other_parameters(const SimulatorInfo& info, Eigen::VectorXd parameters) {
+  constexpr double share = 0.1;  // of the way to the upper bound, or back from it
+  for (Eigen::Index k = 0; k < parameters.size(); ++k) {
+    const ParameterInfo& one = info.parameters[static_cast<std::size_t>(k)];
+    if (one.fixed || !(one.high > one.low)) continue;
+    parameters[k] += share * ((parameters[k] < one.high ? one.high : one.low) - parameters[k]);
+  }
+  return parameters;
+}
+
+SUREFOOT_ONCE const Recording& recorded_otherwise(const std::vector<Recording>& recordings) {
+  for (const Recording& one : recordings) {
+    if (one.constants != recordings.front().constants) return one;
+  }
+  return recordings.front();
+}
+
 SUREFOOT_ONCE void check_size(int fixed_size, std::size_t named, const SimulatorInfo& info, const char* type) {
   if (fixed_size == Eigen::Dynamic || fixed_size == static_cast<int>(named)) return;
   throw DiagnoseError("simulator '" + info.name + "': " + type + " has " + std::to_string(fixed_size) +
@@ -46,6 +63,7 @@ SUREFOOT_ONCE bool nearly_equal(double a, double b) {
 struct StructureSearch {
   std::vector<std::vector<bool>> speed;       // [i][j]: the rate of state i is state j
   std::vector<std::vector<bool>> reads;       // [i][k]: output k reads state i
+  Eigen::MatrixXd offset, slope;              // (i, k): in this way
   std::vector<std::vector<bool>> depends_on;  // [i][j]: the rate, or next value, of state i depends on state j
   std::vector<bool> driven;                   // [i]: the rate of state i changes with the inputs
 };
@@ -58,7 +76,29 @@ SUREFOOT_ONCE void refute(StructureSearch& search, const Eigen::VectorXd& x, con
       if (i == j || !nearly_equal(rate[row], x[static_cast<Eigen::Index>(j)])) search.speed[i][j] = false;
     }
     for (std::size_t k = 0; k < search.reads[i].size(); ++k) {
-      if (!nearly_equal(y[static_cast<Eigen::Index>(k)], x[row])) search.reads[i][k] = false;
+      const auto output = static_cast<Eigen::Index>(k);
+      const double reading = search.offset(row, output) + search.slope(row, output) * x[row];
+      if (!nearly_equal(y[output], reading)) search.reads[i][k] = false;
+    }
+  }
+}
+
+/// Supposes that each output reads each state as it does from here to beside.
+SUREFOOT_ONCE void suppose_readings(StructureSearch& search, const SimulatorAnswers& answers, const Eigen::VectorXd& x,
+                                    const Eigen::VectorXd& u) {
+  const Eigen::VectorXd here = answers.outputs(x, u, false);
+  search.offset.resize(x.size(), here.size());
+  search.slope.resize(x.size(), here.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    Eigen::VectorXd moved = x;
+    moved[i] += 1;
+    const Eigen::VectorXd there = answers.outputs(moved, u, false);
+    for (Eigen::Index k = 0; k < here.size(); ++k) {
+      const double slope = (there[k] - here[k]) / (moved[i] - x[i]);
+      if (nearly_equal(slope, 0)) search.reads[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] = false;
+      const bool as_it_is = nearly_equal(slope, 1) && nearly_equal(here[k], x[i]);
+      search.slope(i, k) = as_it_is ? 1 : slope;
+      search.offset(i, k) = as_it_is ? 0 : here[k] - slope * x[i];
     }
   }
 }
@@ -125,6 +165,8 @@ SUREFOOT_ONCE void conclude_structure(const StructureSearch& search, const Simul
   structure.position_of.assign(n, -1);
   structure.velocity.assign(n, false);
   structure.output_of.assign(n, -1);
+  structure.reading_offset.assign(n, 0);
+  structure.reading_slope.assign(n, 1);
   const bool map = info.kind == SimulatorKind::map;
   structure.remembers = map ? states_that_remember(search) : std::vector<bool>(n, false);
   structure.affects_rates.assign(n, map);
@@ -134,7 +176,14 @@ SUREFOOT_ONCE void conclude_structure(const StructureSearch& search, const Simul
       if (search.speed[i][j]) structure.position_of[j] = static_cast<int>(i);
     }
     for (std::size_t k = 0; k < search.reads[i].size(); ++k) {
-      if (search.reads[i][k]) structure.output_of[i] = static_cast<int>(k);
+      if (!search.reads[i][k]) continue;
+      const auto row = static_cast<Eigen::Index>(i), output = static_cast<Eigen::Index>(k);
+      const double offset = search.offset(row, output), slope = search.slope(row, output);
+      const bool as_it_is = offset == 0 && slope == 1;
+      if (!as_it_is && (structure.output_of[i] >= 0 || info.planar)) continue;  // a pose is read in m and rad
+      structure.output_of[i] = static_cast<int>(k);
+      structure.reading_offset[i] = offset;
+      structure.reading_slope[i] = slope;
     }
     for (std::size_t j = 0; j < n; ++j) {
       if (search.depends_on[j][i]) structure.affects_rates[i] = true;
@@ -258,11 +307,11 @@ SUREFOOT_ONCE std::vector<bool> couplings(const SimulatorAnswers& answers, const
 /// Notes inputs with which some output changes while the states stay.
 SUREFOOT_ONCE void note_inputs_shown_at_once(const SimulatorAnswers& answers, const Eigen::VectorXd& x,
                                              const Eigen::VectorXd& u, SimulatorStructure& structure) {
-  const Eigen::VectorXd before = answers.outputs(x, u);
+  const Eigen::VectorXd before = answers.outputs(x, u, false);
   for (Eigen::Index i = 0; i < u.size(); ++i) {
     Eigen::VectorXd moved = u;
     moved[i] += 0.1 * (1 + std::abs(u[i]));
-    const Eigen::VectorXd after = answers.outputs(x, moved);
+    const Eigen::VectorXd after = answers.outputs(x, moved, false);
     for (Eigen::Index k = 0; k < after.size(); ++k) {
       if (!nearly_equal(before[k], after[k])) structure.shown_at_once[static_cast<std::size_t>(i)] = true;
     }
@@ -275,8 +324,12 @@ SUREFOOT_ONCE SimulatorStructure find_structure(const SimulatorAnswers& answers,
   SimulatorStructure structure;
   structure.driven_signal.assign(info.signals.size(), false);
   structure.shown_at_once.assign(m, false);
-  StructureSearch search{std::vector(n, std::vector<bool>(n, true)), std::vector(n, std::vector<bool>(k, true)),
-                         std::vector(n, std::vector<bool>(n, false)), std::vector<bool>(n, false)};
+  StructureSearch search{std::vector(n, std::vector<bool>(n, true)),
+                         std::vector(n, std::vector<bool>(k, true)),
+                         {},
+                         {},
+                         std::vector(n, std::vector<bool>(n, false)),
+                         std::vector<bool>(n, false)};
   Rng rng(1);
   std::vector<double> signals(info.signals.size());
   constexpr int rounds = 36;
@@ -292,7 +345,8 @@ SUREFOOT_ONCE SimulatorStructure find_structure(const SimulatorAnswers& answers,
     const Eigen::VectorXd rate = answers.rates(x, u, &signals);
     const std::vector<double> first = signals;
     if (round == 0 && answers.response) structure.pushed = pushed_states(answers, info, x, u);
-    refute(search, x, rate, answers.outputs(x, u));
+    if (round == 0) suppose_readings(search, answers, x, u);
+    for (const bool otherwise : {false, true}) refute(search, x, rate, answers.outputs(x, u, otherwise));
     find_dependencies(search, answers, x, u, rate, scale, rng);
     const double reach = (round % 2 == 0 ? 10 : -10) * scale;
     for (double& value : u) value += reach * (0.1 + rng.uniform());

@@ -38,6 +38,16 @@ SUREFOOT_ONCE std::string names_of(const Hypothesis& hypothesis, std::size_t kno
   return names.empty() ? "no effect at all" : in_list(names);
 }
 
+/// The effects of a structure, in words; alone, where all of them are among those that were chosen.
+SUREFOOT_ONCE std::string tie_of(const Hypothesis& other, const Hypothesis& chosen, std::size_t known) {
+  bool part = other.effects.size() < chosen.effects.size();
+  for (std::size_t e = known; e < other.effects.size(); ++e) {
+    part = part && holds_for_any(chosen.effects,
+                                 [&](const AttachedEffect& one) { return same_but_for_form(one, other.effects[e]); });
+  }
+  return names_of(other, known) + (part ? " alone" : "");
+}
+
 SUREFOOT_ONCE Alternatives find_alternatives(const Selection& selection, const SelectionCriteria& criteria) {
   constexpr std::size_t most = 20;  // alternatives that are told: nobody reads more
   const std::size_t known = selection.nominal.hypothesis.effects.size();
@@ -57,7 +67,7 @@ SUREFOOT_ONCE Alternatives find_alternatives(const Selection& selection, const S
     }
     alternative.indistinguishable = found_any && criteria.tie_odds * alternative.probability > most_probable;
     if (alternative.indistinguishable) {
-      result.ties.push_back(names_of(other.hypothesis, known));
+      result.ties.push_back(tie_of(other.hypothesis, selection.chosen.hypothesis, known));
       result.indistinguishable.push_back(other);
     }
     result.list.push_back(std::move(alternative));

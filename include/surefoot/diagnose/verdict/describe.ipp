@@ -259,6 +259,7 @@ SUREFOOT_ONCE std::string nearest_sentence(const Diagnosis& diagnosis) {
 }
 
 SUREFOOT_ONCE std::string verdict_sentence(const Diagnosis& diagnosis, const std::vector<std::string>& ties) {
+  constexpr const char* more_time = " It needs more time (max_seconds, --budget).";
   std::vector<std::string> effects;
   for (const FoundEffect& effect : diagnosis.effects) effects.push_back(effect.sentence);
   switch (diagnosis.verdict) {
@@ -271,10 +272,11 @@ SUREFOOT_ONCE std::string verdict_sentence(const Diagnosis& diagnosis, const std
     case Verdict::unfinished:
       if (!effects.empty() && within_noise(diagnosis)) {
         return "The search was not finished, so that others may explain it as well as what was found: " +
-               in_list(effects) + "." + gain_sentence(diagnosis);
+               in_list(effects) + "." + gain_sentence(diagnosis) + more_time;
       }
       return "The search was not finished, so that nothing is concluded" +
-             (effects.empty() ? "." : "; the best so far: " + in_list(effects) + "." + gain_sentence(diagnosis));
+             (effects.empty() ? "." : "; the best so far: " + in_list(effects) + "." + gain_sentence(diagnosis)) +
+             more_time;
     case Verdict::unexplained:
       break;
   }

@@ -44,7 +44,8 @@ SUREFOOT_ONCE std::vector<Recording> cut_recordings(const BoundSimulator& bound,
         const int output = bound.structure.output_of[static_cast<std::size_t>(i)];
         if (output < 0) continue;
         const double measured = whole.outputs(output, begin);
-        if (std::isfinite(measured)) initial[i] = measured;
+        if (std::isfinite(measured))
+          initial[i] = reading_of(bound.structure, static_cast<std::size_t>(i)).state_at(measured);
       }
       Recording one = part_of(whole, begin, to, initial, scale);
       for (Eigen::Index row = 0; row < from - begin; ++row) {
