@@ -1,8 +1,8 @@
 #include "read_states.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <map>
-#include <optional>
 #include <string>
 
 #include "evaluate_once.hpp"
@@ -34,14 +34,11 @@ bool same_number(double a, double b) {
   return std::abs(a - b) <= 1e-9 * (1 + std::abs(a) + std::abs(b));  // but for rounding
 }
 
-struct Line {
-  double offset, slope;
-};
-
-// How the expression depends on this state; none where it is not a straight line, or depends on anything else.
-std::optional<Line> line_over(const ModelFile& model, const Formula& formula, const std::string& state) {
+// How output number `output` reads this state; not at all where it is no straight line, or depends on anything else.
+ReadState line_over(const ModelFile& model, int output, const std::string& state) {
   constexpr int draws = 3;
-  std::optional<Line> line;
+  const Formula& formula = model.outputs[static_cast<std::size_t>(output)].value;
+  ReadState line;
   surefoot::Rng rng(1);
   for (int draw = 0; draw < draws; ++draw) {
     std::map<std::string, double> values = some_values(model, rng);
@@ -50,9 +47,9 @@ std::optional<Line> line_over(const ModelFile& model, const Formula& formula, co
       return evaluate_once(formula, values, model.lets);
     };
     const double offset = at(0), slope = at(1) - offset;
-    if (same_number(slope, 0) || !same_number(at(-2), offset - 2 * slope)) return std::nullopt;
-    if (line && (!same_number(offset, line->offset) || !same_number(slope, line->slope))) return std::nullopt;
-    line = line.value_or(Line{offset, slope});
+    if (same_number(slope, 0) || !same_number(at(-2), offset - 2 * slope)) return {};
+    if (draw == 0) line = {output, offset, slope};
+    if (!same_number(offset, line.offset) || !same_number(slope, line.slope)) return {};
   }
   return line;
 }
@@ -61,13 +58,14 @@ std::optional<Line> line_over(const ModelFile& model, const Formula& formula, co
 
 ReadState read_state(const ModelFile& model, std::size_t state) {
   const std::string& name = model.states[state].name;
-  for (std::size_t k = 0; k < model.outputs.size(); ++k) {
-    if (model.outputs[k].value.text == name) return {static_cast<int>(k)};
+  const auto outputs = static_cast<int>(model.outputs.size());
+  for (int k = 0; k < outputs; ++k) {
+    if (model.outputs[static_cast<std::size_t>(k)].value.text == name) return {k};
   }
-  for (std::size_t k = 0; k < model.outputs.size(); ++k) {
+  for (int k = 0; k < outputs; ++k) {
     try {
-      const auto line = line_over(model, model.outputs[k].value, name);
-      if (line) return {static_cast<int>(k), line->offset, line->slope};
+      const ReadState line = line_over(model, k, name);
+      if (line.output >= 0) return line;
     } catch (const surefoot::DiagnoseError&) {  // not finite there: no straight line
     }
   }

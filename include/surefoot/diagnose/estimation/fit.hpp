@@ -95,8 +95,8 @@ inline bool has_unknown_initial_state(const BoundSimulator& bound, const std::ve
 double mean_loss(const Eigen::VectorXd& residuals, double robust);
 
 /// Fits a hypothesis, from its own parameters on. Never worse than the start. An initial state that has strayed into
-/// another valley, such as an angle a whole turn away, is read off its recording again,
-/// and where effects that it left settled begin is sought all over their range, recording by recording.
+/// another valley, such as an angle a whole turn away, is read off its recording again.
+/// Where an effect may begin unsettled and was left settled, its beginning is sought all over its range, by recording.
 Fit fit(const BoundSimulator& bound, const Hypothesis& start, const FitProblem& problem, const Parallel& parallel);
 
 /// A hypothesis with the unknown initial states of some recordings estimated, and all else as it is.

@@ -82,7 +82,7 @@ BoundSimulator bind_simulator(const S& simulator, std::vector<Recording> recordi
   if (recordings.empty()) throw DiagnoseError("there is no recording to diagnose");
   SimulatorInfo info = simulator.info();
   SimulatorStructure structure =
-      find_structure(simulator, info, recordings.front(), recorded_otherwise(recordings), nominal_parameters(info));
+      find_structure(simulator, info, recordings.front(), with_other_constants(recordings), nominal_parameters(info));
   BoundSimulator bound = without_functions(std::move(info), std::move(structure), std::move(recordings));
   const auto pool = std::make_shared<SimulatorPool<S>>(simulator, bound.recordings.size());
   bound.simulate = [pool](const BoundSimulator& self, std::size_t i, const Eigen::VectorXd& p,

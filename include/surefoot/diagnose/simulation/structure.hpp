@@ -167,12 +167,12 @@ struct ProbingTap {
 Eigen::VectorXd other_parameters(const SimulatorInfo& info, Eigen::VectorXd parameters);
 
 /// The first recording with other constants than the first of all; that one if there is none.
-const Recording& recorded_otherwise(const std::vector<Recording>& recordings);
+const Recording& with_other_constants(const std::vector<Recording>& recordings);
 
 /// Asks at random points around a recording. Costs some hundred evaluations.
 SimulatorStructure find_structure(const SimulatorAnswers& answers, const SimulatorInfo& info, const Recording& example);
 
-/// The same for a simulator as it is for that recording, where it is so for another one as well.
+/// The same for a simulator as it is for that recording. What an output reads it has to read for `another` one as well.
 template <Simulator S>
 SimulatorStructure find_structure(const S& simulator, const SimulatorInfo& info, const Recording& example,
                                   const Recording& another, const Eigen::VectorXd& parameters) {
@@ -189,12 +189,12 @@ SimulatorStructure find_structure(const S& simulator, const SimulatorInfo& info,
     const ProbingTap tap{signals, larger, steps};
     return converted<Eigen::VectorXd>(State(evaluate(s, converted<State>(x), converted<Input>(u), parameters, tap)));
   };
-  const Eigen::VectorXd others = other_parameters(info, parameters);
+  const Eigen::VectorXd moved = other_parameters(info, parameters);
   S other = for_recording(simulator, another);
-  prepare(other, others);
+  prepare(other, moved);
   answers.outputs = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& u, bool otherwise) {
     const typename S::Output y =
-        (otherwise ? other : s).observe(converted<State>(x), converted<Input>(u), otherwise ? others : parameters);
+        (otherwise ? other : s).observe(converted<State>(x), converted<Input>(u), otherwise ? moved : parameters);
     return converted<Eigen::VectorXd>(y);
   };
   if constexpr (has_response<S>) {

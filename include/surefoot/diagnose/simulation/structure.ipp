@@ -41,7 +41,7 @@ SUREFOOT_ONCE Eigen::VectorXd other_parameters(const SimulatorInfo& info, Eigen:
   return parameters;
 }
 
-SUREFOOT_ONCE const Recording& recorded_otherwise(const std::vector<Recording>& recordings) {
+SUREFOOT_ONCE const Recording& with_other_constants(const std::vector<Recording>& recordings) {
   for (const Recording& one : recordings) {
     if (one.constants != recordings.front().constants) return one;
   }
@@ -83,7 +83,7 @@ SUREFOOT_ONCE void refute(StructureSearch& search, const Eigen::VectorXd& x, con
   }
 }
 
-/// Supposes that each output reads each state as it does from here to beside.
+/// Supposes that each output reads each state by the straight line through two points.
 SUREFOOT_ONCE void suppose_readings(StructureSearch& search, const SimulatorAnswers& answers, const Eigen::VectorXd& x,
                                     const Eigen::VectorXd& u) {
   const Eigen::VectorXd here = answers.outputs(x, u, false);
