@@ -187,6 +187,17 @@ TEST_CASE("other forms of an effect are tried from the fit that was found, the b
   CHECK(in_other_forms(forms.search(), found, 0, 3, false).size() <= 3);
 }
 
+TEST_CASE("a form that only readings suggest is tried where another one was found") {
+  using namespace diagnosis;
+  const FormSearch forms = search_of({"quantization", "x_m", "floor", {}, {0.03}});
+  const EvaluatedHypothesis found = forms.fitted("", Eigen::VectorXd::Constant(1, 0.03));
+  const auto others = in_other_forms(forms.search(), found, 0, 3, false);
+  REQUIRE(others.size() == 1);
+  CHECK(others[0].hypothesis.effects[0].effect->form == "floor");
+  CHECK(others[0].hypothesis.values[0][0] == doctest::Approx(0.03).epsilon(0.01));
+  CHECK(others[0].errors.rms() < 0.5 * found.errors.rms());
+}
+
 TEST_CASE("friction that grows within a hundredth of the speed is found, though rows are too long to simulate it") {
   constexpr double onset = 0.003, step = 0.0005;
   const Diagnosis found = diagnosed({"coulomb_friction", "v", "smooth", {}, {4, onset}}, 0, step);

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "surefoot/diagnose/effects/quantization.hpp"
+#include "surefoot/diagnose/selection/extend.hpp"
 #include "tests/diagnose/selection/tank_bench.hpp"
 
 namespace surefoot::diagnosis {
@@ -94,6 +96,24 @@ TEST_CASE("what an effect may be confused with is tried in its place, beside the
   std::vector<EvaluatedHypothesis> same{bench.with({"sensor_drift"})};
   try_confusable(stopped, same);
   CHECK(same.size() == 1);
+}
+
+TEST_CASE("an effect that only mends the form of another goes when that has its own form") {
+  constexpr double step = 0.1;
+  TankBench bench({{"quantization", "level_m", "floor", {}, {step}}});
+  bench.candidates =
+      attachments(bench.bound, {effects::sensor_bias(), effects::quantization(), effects::quantization_floor()},
+                  std::vector<bool>(2, true));
+  Hypothesis mended = bench.start({"sensor_bias", "quantization"});
+  mended.values[0][0] = -step / 2;
+  mended.values[1][0] = step;
+  Search search = bench.search();
+  std::vector<EvaluatedHypothesis> pool{bench.with({}), bench.with({"sensor_bias"}), refitted(search, mended)};
+  REQUIRE(names_in(pool[best_of(pool, bench.problem.criteria)]) == "quantization, sensor_bias");
+  try_confusable(search, pool);
+  const EvaluatedHypothesis& best = pool[best_of(pool, bench.problem.criteria)];
+  CHECK(names_in(best) == "quantization");
+  CHECK(best.hypothesis.effects.at(0).effect->form == "floor");
 }
 
 TEST_CASE("a rival is weighed with the steps that it needs, and all go on with these only if it is better then") {

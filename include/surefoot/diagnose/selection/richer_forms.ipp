@@ -35,14 +35,16 @@ SUREFOOT_ONCE std::optional<double> value_named(const std::string& name, const E
   return std::nullopt;
 }
 
-/// The same with one effect in another form, once for each of the starts of its further parameters, times a factor;
-/// none of a form that only readings suggest.
+/// The same with one effect in another form, once for each of the starts of its further parameters, times a factor; a
+/// form that only readings suggest begins as the one that was found.
 SUREFOOT_ONCE std::vector<Hypothesis> starts_in_form(const Search& search, const Hypothesis& found, std::size_t e,
                                                      const AttachedEffect& form, double factor = 1) {
   const std::size_t recordings = search.bound.recordings.size();
   std::vector<Hypothesis> starts;
   std::vector<std::vector<double>> tried;
-  for (Eigen::VectorXd values : starting_values(search.bound, form, {})) {
+  std::vector<Eigen::VectorXd> all = starting_values(search.bound, form, {});
+  if (all.empty()) all.push_back(found.values[e]);
+  for (Eigen::VectorXd& values : all) {
     for (Eigen::Index k = 0; k < values.size(); ++k) {
       const std::string& name = form.effect->parameters[static_cast<std::size_t>(k)].name;
       values[k] = value_named(name, *found.effects[e].effect, found.values[e]).value_or(factor * values[k]);

@@ -30,8 +30,9 @@ void weigh_with_its_own_steps(Search& search, const EvaluatedHypothesis& rival, 
                               std::vector<EvaluatedHypothesis>& pool);
 
 /// Puts other effects in the place of each of the best structure, beside the parameters that were found with it: those
-/// it may be confused with, its other forms, and itself elsewhere. Where the search began the parameters were so far
-/// off that a right effect may have looked like the wrong one.
+/// it may be confused with, its other forms, and itself elsewhere; and takes each away beside the others in their other
+/// forms, which it may only have mended. Where the search began the parameters were so far off that a right effect may
+/// have looked like the wrong one.
 void try_confusable(Search& search, std::vector<EvaluatedHypothesis>& pool);
 
 /// Puts effects of other good structures in the place of those of the best one, with the parameters that both were

@@ -149,11 +149,28 @@ SUREFOOT_ONCE void try_in_its_place(Search& search, const EvaluatedHypothesis& b
   }
 }
 
+/// Each effect of the best structure taken away, and another in its other forms: the one may only mend the form of the
+/// other.
+SUREFOOT_ONCE void try_other_forms_without(const Search& search, const EvaluatedHypothesis& best,
+                                           std::vector<EvaluatedHypothesis>& pool) {
+  const SearchProblem& problem = search.problem;
+  for (std::size_t e = problem.known; e < best.hypothesis.effects.size(); ++e) {
+    EvaluatedHypothesis rest = best;
+    rest.hypothesis = without_effect(best.hypothesis, e);
+    for (std::size_t f = problem.known; f < rest.hypothesis.effects.size() && !problem.stopped(); ++f) {
+      std::vector<EvaluatedHypothesis> others = in_other_forms(search, rest, f, 1, false);
+      enrich(search, others, std::numeric_limits<double>::infinity(), ErrorsOfForm::tolerated);
+      for (const EvaluatedHypothesis& one : others) keep_best_form(pool, one, problem.criteria);
+    }
+  }
+}
+
 SUREFOOT_ONCE void try_confusable(Search& search, std::vector<EvaluatedHypothesis>& pool) {
   const EvaluatedHypothesis chosen = pool[best_of(pool, search.problem.criteria)];
   for (std::size_t e = search.problem.known; e < chosen.hypothesis.effects.size() && !search.problem.stopped(); ++e) {
     try_other_forms(search, chosen, e, pool);
   }
+  try_other_forms_without(search, chosen, pool);
   const EvaluatedHypothesis best = pool[best_of(pool, search.problem.criteria)];
   for (std::size_t e = search.problem.known; e < best.hypothesis.effects.size(); ++e) {
     try_in_its_place(search, best, e, pool);
