@@ -54,5 +54,22 @@ TEST_CASE("an initial state that was read off a sensor is known as well as that 
   CHECK(bound.recordings[2].initial_scale[0] == 0);  // known from elsewhere
 }
 
+TEST_CASE("an initial state that was read in coarse steps is known to one of these, though readings show no noise") {
+  constexpr double step = 0.2;
+  std::vector<Recording> tanks{toys::tank_recording(0, 200), toys::tank_recording(1, 200)};
+  for (Recording& one : tanks) {
+    one.outputs = simulate_augmented(toys::LeakyTank{}, toys::machine({1, 1}, {}), one).outputs;
+    for (double& level : one.outputs.reshaped()) level = step * std::floor(level / step);
+    one.initial[0] = one.outputs(0, 0);
+  }
+  BoundSimulator bound = bind_simulator(toys::LeakyTank{}, tanks);
+  REQUIRE(fast_noise(bound, {0, 1}, 0) < 0.01 * step);
+  free_measured_initial_states(bound, {0, 1});
+  CHECK(bound.recordings[0].initial_scale[0] == doctest::Approx(step / std::sqrt(12.0)));
+
+  tanks[0].outputs = simulate_augmented(toys::LeakyTank{}, toys::machine({1, 1}, {}), tanks[0]).outputs;
+  CHECK(rounding_error(bind_simulator(toys::LeakyTank{}, {tanks[0]}), {0}, 0) == 0);  // no reading repeats
+}
+
 }  // namespace
 }  // namespace surefoot::diagnosis

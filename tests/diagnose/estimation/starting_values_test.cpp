@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "surefoot/diagnose/effects/dead_zone.hpp"
 #include "surefoot/diagnose/effects/first_order_lag.hpp"
 #include "surefoot/diagnose/effects/overflow.hpp"
 #include "surefoot/diagnose/effects/quantization.hpp"
@@ -74,6 +75,24 @@ TEST_CASE("what starts at a share of the largest value does so where the velocit
   const auto starts = starting_values(bound, attached(bound, wall), observed(bound));
   REQUIRE(starts.size() == 1);
   CHECK(starts[0][0] == doctest::Approx(0.8 * runs[0].states.row(0).maxCoeff()));
+}
+
+TEST_CASE("what an input does below a level starts between its least value and its largest") {
+  Recording recording = toys::blank_recording(toys::SlidingBlock{}.info(), 100, 0.1);
+  for (Eigen::Index i = 0; i < 100; ++i) recording.inputs(0, i) = i < 10 ? 0.0 : 5 + 0.05 * static_cast<double>(i - 10);
+  BoundSimulator bound = bind_simulator(toys::SlidingBlock{}, {recording});
+  const Hypothesis nominal = nominal_hypothesis(bound);
+  bound.sizes = measure_sizes(bound, nominal, {0}, simulate_all(bound, nominal, {0}, {}, serially()));
+  const double largest = recording.inputs.maxCoeff();
+  for (const Eigen::VectorXd& start : starting_values(bound, attached(bound, effects::dead_zone_step()), {})) {
+    CHECK(start[0] > 5);  // below, it would do nothing
+    CHECK(start[0] < largest);
+  }
+  bound.recordings[0].inputs.setConstant(-5);
+  bound.sizes = measure_sizes(bound, nominal, {0}, simulate_all(bound, nominal, {0}, {}, serially()));
+  const auto of_one_value = starting_values(bound, attached(bound, effects::dead_zone_step()), {});
+  REQUIRE_FALSE(of_one_value.empty());
+  CHECK(of_one_value[0][0] == doctest::Approx(5 * effects::dead_zone_step().parameters[0].starts[0]));
 }
 
 TEST_CASE("times start as shares of 200 rows, fast or slow") {

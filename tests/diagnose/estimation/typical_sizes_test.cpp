@@ -43,6 +43,17 @@ TEST_CASE("sizes are root mean squares along the simulated motion, and peaks its
   CHECK(sizes.time == doctest::Approx(2));  // 200 rows of 10 ms
 }
 
+TEST_CASE("the least value of an input is the one nearest to 0, but not 0") {
+  Recording recording = toys::blank_recording(SlidingBlock{}.info(), 101, 0.01);
+  recording.inputs.setConstant(-2);
+  recording.inputs(0, 3) = 0;
+  recording.inputs(0, 4) = 1.5;
+  BoundSimulator bound = bind_simulator(SlidingBlock{}, {recording});
+  const Hypothesis nominal = nominal_hypothesis(bound);
+  const Sizes sizes = measure_sizes(bound, nominal, {0}, simulate_all(bound, nominal, {0}, {}, serially()));
+  CHECK(sizes.least[0] == 1.5);
+}
+
 // A mass of 1 kg on a spring of 400 N/m that an input holds where it is.
 struct StiffBench {
   using State = Vec<2>;

@@ -14,6 +14,7 @@
 #include "surefoot/diagnose/diagnose.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
+#include "surefoot/diagnose/selection/rivals.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
 namespace surefoot {
@@ -115,11 +116,13 @@ struct FormSearch {
   }
 };
 
-FormSearch search_of(const NamedEffect& effect) {
+/// Logs of a block with this effect, and effects of these names to be tried; of its own if none are given.
+FormSearch search_of(const NamedEffect& effect, std::vector<std::string> names = {}) {
   using namespace diagnosis;
   FormSearch result{.bound = bind_simulator(SprungBlock{}, block_logs(effect, 0)), .candidates = {}, .problem = {}};
   std::vector<Effect> forms = all_effects();
-  std::erase_if(forms, [&](const Effect& one) { return one.name != effect.name; });
+  if (names.empty()) names = {effect.name};
+  std::erase_if(forms, [&](const Effect& one) { return std::ranges::find(names, one.name) == names.end(); });
   result.candidates = attachments(result.bound, forms, std::vector<bool>(1, true));
   for (std::size_t r = 0; r < result.bound.recordings.size(); ++r) result.problem.fit.recordings.push_back(r);
   result.problem.screened = result.problem.fit.recordings;
@@ -196,6 +199,25 @@ TEST_CASE("a form that only readings suggest is tried where another one was foun
   CHECK(others[0].hypothesis.effects[0].effect->form == "floor");
   CHECK(others[0].hypothesis.values[0][0] == doctest::Approx(0.03).epsilon(0.01));
   CHECK(others[0].errors.rms() < 0.5 * found.errors.rms());
+}
+
+TEST_CASE("backlash whose gap has closed is tried as the elastic joint that it comes to, from where it was found") {
+  using namespace diagnosis;
+  FormSearch forms = search_of({"joint_elasticity", "v", "", {}, {0.3, 15, 0.05}}, {"joint_elasticity", "backlash"});
+  const EvaluatedHypothesis found = forms.fitted("gap", Eigen::Vector4d(0.3, 0.001, 15, 0.05));
+  std::vector<EvaluatedHypothesis> pool{found};
+  exchange_effects(forms.search(), pool);
+  const EvaluatedHypothesis& best = pool[best_of(pool, forms.problem.criteria)];
+  CHECK(best.hypothesis.effects[0].effect->name == "joint_elasticity");
+  CHECK(best.hypothesis.values[0][1] == doctest::Approx(15).epsilon(0.02));
+
+  const AttachedEffect &joint = best.hypothesis.effects[0], &gap = found.hypothesis.effects[0];
+  const Eigen::Vector4d values(0.3, 0.001, 15, 0.05);
+  CHECK(values_of_special_case(joint, gap, values) == Eigen::Vector3d(0.3, 15, 0.05));
+  CHECK(values_of_special_case(gap, joint, values.head(3)).size() == 0);  // which has no gap
+  AttachedEffect elsewhere = joint;
+  elsewhere.at = 0;
+  CHECK(values_of_special_case(elsewhere, gap, values).size() == 0);
 }
 
 TEST_CASE("friction that grows within a hundredth of the speed is found, though rows are too long to simulate it") {

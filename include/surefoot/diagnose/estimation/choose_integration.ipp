@@ -61,20 +61,45 @@ SUREFOOT_ONCE bool any_is_finite(const std::vector<SimulatedRun>& runs) {
 /// Slack of a step, so that rounding does not add one.
 inline constexpr double step_slack = 0.1;  // of a step
 
+/// Largest absolute value of any state.
+SUREFOOT_ONCE double largest_state(const SimulatedRun& run) {
+  double largest = 0;
+  for (Eigen::Index i = 0; i < run.states.size(); ++i) largest = std::max(largest, std::abs(run.states.data()[i]));
+  return largest;
+}
+
+/// Runs that end, and that do not go far beyond what they do in finer steps: an integrator that is unstable may well
+/// stay finite.
+SUREFOOT_ONCE std::ptrdiff_t count_stable(const std::vector<SimulatedRun>& runs,
+                                          const std::vector<SimulatedRun>& finer) {
+  constexpr double far = 100;  // times as large: no error of an integrator that follows the motion
+  std::ptrdiff_t count = 0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const bool runs_away = finer[i].finite && largest_state(runs[i]) > far * largest_state(finer[i]);
+    if (runs[i].finite && !runs_away) ++count;
+  }
+  return count;
+}
+
 /// `now` with as few steps of a row as it takes to simulate as many of these recordings as can be; as it is where that
 /// is none.
 SUREFOOT_ONCE Integration coarsest_that_runs(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                              const Integration& now, double row,
                                              const std::vector<std::size_t>& recordings, const Parallel& parallel) {
-  Integration coarse = now, best = now;
-  coarse.step = 0;
+  const auto in_steps = [&](double steps) {
+    Integration integration = now;
+    integration.step = steps > 1 ? row / (steps - step_slack) : 0;
+    return integration;
+  };
+  Integration best = now;
   std::ptrdiff_t most = 0;
+  std::vector<SimulatedRun> finer = simulate_all(bound, hypothesis, recordings, in_steps(1), parallel);
   for (double steps = 1; steps <= most_steps; steps *= 2) {
-    if (steps > 1) coarse.step = row / (steps - step_slack);
-    const std::ptrdiff_t run = count_items(simulate_all(bound, hypothesis, recordings, coarse, parallel),
-                                           [](const SimulatedRun& one) { return one.finite; });
-    if (run > most) best = coarse;
-    most = std::max(most, run);
+    const std::vector<SimulatedRun> runs = std::move(finer);
+    finer = simulate_all(bound, hypothesis, recordings, in_steps(2 * steps), parallel);
+    const std::ptrdiff_t stable = count_stable(runs, finer);
+    if (stable > most) best = in_steps(steps);
+    most = std::max(most, stable);
     if (most == static_cast<std::ptrdiff_t>(recordings.size())) break;
   }
   return best;

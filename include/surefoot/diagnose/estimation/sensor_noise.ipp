@@ -45,6 +45,19 @@ SUREFOOT_ONCE double resolution(const BoundSimulator& bound, const std::vector<s
   return std::isfinite(least) ? least : 0;
 }
 
+SUREFOOT_ONCE double rounding_error(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                    Eigen::Index output) {
+  constexpr double often = 0.2;  // of the rows: where less repeats, rounding looks like fast noise
+  double repeated = 0, rows = 0;
+  for (const std::size_t r : recordings) {
+    const Eigen::MatrixXd& outputs = bound.recordings[r].outputs;
+    for (Eigen::Index i = 1; i < outputs.cols(); ++i) repeated += outputs(output, i) == outputs(output, i - 1) ? 1 : 0;
+    rows += static_cast<double>(outputs.cols());
+  }
+  if (!(repeated > often * rows)) return 0;
+  return resolution(bound, recordings, output) / std::sqrt(12.0);  // evenly spread over a step
+}
+
 SUREFOOT_ONCE void free_measured_initial_states(BoundSimulator& bound, const std::vector<std::size_t>& training) {
   constexpr double least_noise = 1e-6;  // of an output's standard deviation: a sensor without noise reads the state
   const Eigen::VectorXd deviations = output_deviations(bound, training);
@@ -52,7 +65,8 @@ SUREFOOT_ONCE void free_measured_initial_states(BoundSimulator& bound, const std
     const int output = bound.structure.output_of[i];
     if (output < 0) continue;
     const StateReading way = reading_of(bound.structure, i);
-    const double noise = noise_of(bound, training, output), deviation = deviations[output];
+    const double noise = std::max(noise_of(bound, training, output), rounding_error(bound, training, output));
+    const double deviation = deviations[output];
     for (Recording& recording : bound.recordings) {
       const auto state = static_cast<Eigen::Index>(i);
       if (recording.initial_scale[state] > 0) continue;

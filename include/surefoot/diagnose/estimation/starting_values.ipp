@@ -30,6 +30,13 @@ SUREFOOT_ONCE double peak_at(const BoundSimulator& bound, const AttachedEffect& 
   return peak > 0 ? peak : 1;
 }
 
+/// The least absolute value of an input other than 0; 0 of what is none, and where all values are alike.
+SUREFOOT_ONCE double least_at(const BoundSimulator& bound, const AttachedEffect& attached) {
+  if (attached.effect->place != Place::input) return 0;
+  const double least = bound.sizes.least[static_cast<std::size_t>(attached.at)];
+  return least < peak_at(bound, attached) ? least : 0;
+}
+
 SUREFOOT_ONCE int output_watching(const BoundSimulator& bound, const AttachedEffect& attached) {
   const auto at = static_cast<std::size_t>(attached.at);
   switch (attached.effect->place) {
@@ -82,11 +89,12 @@ SUREFOOT_ONCE std::vector<Eigen::VectorXd> starting_values(const BoundSimulator&
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const double unit =
         parameters[k].of_peak ? peak_at(bound, attached) : measure_size(bound, attached, parameters[k].measure);
+    const double least = parameters[k].beyond_least ? least_at(bound, attached) : 0;
     std::vector<Eigen::VectorXd> longer;
     for (const Eigen::VectorXd& one : result) {
       for (const double start : parameters[k].starts) {
         longer.push_back(one);
-        longer.back()[static_cast<Eigen::Index>(k)] = start * unit;
+        longer.back()[static_cast<Eigen::Index>(k)] = least + start * std::max(0.0, unit - least);
       }
     }
     result = std::move(longer);

@@ -45,6 +45,15 @@ SUREFOOT_ONCE Eigen::MatrixXd row_rates(const Eigen::VectorXd& time, const Eigen
   return rates;
 }
 
+/// Lowers the least absolute value other than 0 of each row.
+SUREFOOT_ONCE void lower_least(double* least, const Eigen::MatrixXd& values) {
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    double& one = least[i % values.rows()];
+    const double size = std::abs(values.data()[i]);
+    if (size > 0 && size < one) one = size;
+  }
+}
+
 /// Raises each peak to the largest absolute value of its row.
 SUREFOOT_ONCE void raise_peaks(std::vector<double>& peaks, const Eigen::MatrixXd& values) {
   for (std::size_t k = 0; k < peaks.size(); ++k) {
@@ -119,6 +128,7 @@ SUREFOOT_ONCE Sizes measure_sizes(const BoundSimulator& bound, const Hypothesis&
   sizes.input_low.assign(m, 0.0);
   sizes.input_high.assign(m, 0.0);
   sizes.signal_peak.assign(s, 0.0);
+  sizes.least.assign(m + s, std::numeric_limits<double>::infinity());
   double rows = 0, intervals = 0, duration = 0;
   for (const std::size_t r : recordings) {
     intervals += static_cast<double>(bound.recordings[r].rows() - 1);
@@ -143,6 +153,8 @@ SUREFOOT_ONCE Sizes measure_sizes(const BoundSimulator& bound, const Hypothesis&
     raise_peaks(sizes.state_peak, states);
     widen(sizes.input_low, sizes.input_high, recording.inputs);
     raise_peaks(sizes.signal_peak, signals);
+    lower_least(sizes.least.data(), recording.inputs);
+    lower_least(sizes.least.data() + m, signals);
   }
   set_sizes(sizes.state, state, rows);
   set_sizes(sizes.position, position, rows);

@@ -1,6 +1,8 @@
-// Forms of an effect beside the one that was found, tried from its fit: those that extend it, and any others.
+// Forms of an effect beside the one that was found, tried from its fit: those that extend it, those it extends, any
+// others.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -24,6 +26,12 @@ std::optional<EvaluatedHypothesis> in_richer_forms(const Search& search, const E
 /// stiffer than the one that was found would end where coarse steps do not run away.
 std::vector<EvaluatedHypothesis> in_other_forms(const Search& search, const EvaluatedHypothesis& found, std::size_t e,
                                                 std::size_t keep, bool finely);
+
+/// The parameters of an effect that another one comes to without some of its own, from the values that it was found
+/// with: it may be confused with it at the same place, and has all of its parameters by name, such as an elastic joint
+/// of backlash whose gap has closed. Empty if it is none.
+Eigen::VectorXd values_of_special_case(const AttachedEffect& special, const AttachedEffect& whole,
+                                       const Eigen::VectorXd& values);
 
 }  // namespace surefoot::diagnosis
 

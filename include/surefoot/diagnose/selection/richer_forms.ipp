@@ -35,6 +35,20 @@ SUREFOOT_ONCE std::optional<double> value_named(const std::string& name, const E
   return std::nullopt;
 }
 
+SUREFOOT_ONCE Eigen::VectorXd values_of_special_case(const AttachedEffect& special, const AttachedEffect& whole,
+                                                     const Eigen::VectorXd& values) {
+  const bool there = special.effect->place == whole.effect->place && special.at == whole.at;
+  if (!there || special.other != whole.other || !may_be_confused(*special.effect, *whole.effect)) return {};
+  const auto& parameters = special.effect->parameters;
+  Eigen::VectorXd result(static_cast<Eigen::Index>(parameters.size()));
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const auto value = value_named(parameters[k].name, *whole.effect, values);
+    if (!value) return {};
+    result[static_cast<Eigen::Index>(k)] = *value;
+  }
+  return result;
+}
+
 /// The same with one effect in another form, once for each of the starts of its further parameters, times a factor; a
 /// form that only readings suggest begins as the one that was found.
 SUREFOOT_ONCE std::vector<Hypothesis> starts_in_form(const Search& search, const Hypothesis& found, std::size_t e,
@@ -43,7 +57,8 @@ SUREFOOT_ONCE std::vector<Hypothesis> starts_in_form(const Search& search, const
   std::vector<Hypothesis> starts;
   std::vector<std::vector<double>> tried;
   std::vector<Eigen::VectorXd> all = starting_values(search.bound, form, {});
-  if (all.empty()) all.push_back(found.values[e]);
+  const auto parameters = static_cast<Eigen::Index>(form.effect->parameters.size());
+  if (all.empty()) all.push_back(Eigen::VectorXd::Zero(parameters));
   for (Eigen::VectorXd& values : all) {
     for (Eigen::Index k = 0; k < values.size(); ++k) {
       const std::string& name = form.effect->parameters[static_cast<std::size_t>(k)].name;
@@ -76,22 +91,17 @@ SUREFOOT_ONCE Hypothesis with_form(const Search& search, const Hypothesis& found
   return best;
 }
 
-/// A fit with the integration that it is to be finished with.
-struct IntegratedFit {
-  Fit fit;
-  Integration integration;
-};
-
-/// The best fit of each form of effect number `e`, best first.
-SUREFOOT_ONCE std::vector<IntegratedFit> best_of_forms(std::vector<IntegratedFit> fits, std::size_t e) {
-  drop_items(fits, [](const IntegratedFit& one) { return !one.fit.ok; });  // or not begun: the search was stopped
-  sort_items(fits, [](const IntegratedFit& a, const IntegratedFit& b) { return a.fit.loss < b.fit.loss; });
-  std::vector<IntegratedFit> best;
-  for (IntegratedFit& one : fits) {
-    const bool there = holds_for_any(best, [&](const IntegratedFit& other) {
-      return same_effect(other.fit.hypothesis.effects[e], one.fit.hypothesis.effects[e]);
-    });
-    if (!there) best.push_back(std::move(one));
+/// Places of the best fits of each form of effect number `e`, best first, at most `keep`.
+SUREFOOT_ONCE std::vector<std::size_t> best_of_forms(const std::vector<Fit>& fits, std::size_t e, std::size_t keep) {
+  std::vector<std::size_t> best;
+  for (const std::size_t i :
+       sorted_places(fits.size(), [&](std::size_t a, std::size_t b) { return fits[a].loss < fits[b].loss; })) {
+    if (best.size() == keep) break;
+    bool there = !fits[i].ok;  // or not begun: the search was stopped
+    for (const std::size_t j : best) {
+      there = there || same_effect(fits[j].hypothesis.effects[e], fits[i].hypothesis.effects[e]);
+    }
+    if (!there) best.push_back(i);
   }
   return best;
 }
@@ -111,26 +121,24 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> in_other_forms(const Search& sear
       }
     }
   }
-  std::vector<IntegratedFit> fits(starts.size());
+  std::vector<Fit> fits(starts.size());
+  std::vector<Integration> finishing(starts.size(), search.problem.fit.integration);
   search.parallel(starts.size(), [&](std::size_t i) {
     if (search.problem.stopped()) return;
     FitProblem problem = quick;
-    Integration finishing = search.problem.fit.integration;
     if (finely) {
-      const auto [fitting, screening] =
-          choose_integrations(search.bound, starts[i], quick.weighting.sigma, finishing, quick.recordings, serially());
-      if (is_finer(fitting, finishing)) finishing = fitting;
+      const auto [fitting, screening] = choose_integrations(search.bound, starts[i], quick.weighting.sigma,
+                                                            finishing[i], quick.recordings, serially());
+      if (is_finer(fitting, finishing[i])) finishing[i] = fitting;
       if (is_finer(screening, problem.integration)) problem.integration = screening;
     }
-    fits[i] = {fit(search.bound, starts[i], problem, serially()), finishing};
+    fits[i] = fit(search.bound, starts[i], problem, serially());
   });
-  std::vector<IntegratedFit> best = best_of_forms(std::move(fits), e);
-  if (best.size() > keep) best.resize(keep);
   std::vector<EvaluatedHypothesis> result;
-  for (IntegratedFit& one : best) {
+  for (const std::size_t i : best_of_forms(fits, e, keep)) {
     Search as_fitted = search;
-    as_fitted.problem.fit.integration = one.integration;
-    for (EvaluatedHypothesis& ready : finished(as_fitted, {std::move(one.fit)}, 1)) result.push_back(std::move(ready));
+    as_fitted.problem.fit.integration = finishing[i];
+    for (EvaluatedHypothesis& ready : finished(as_fitted, {fits[i]}, 1)) result.push_back(std::move(ready));
   }
   return result;
 }

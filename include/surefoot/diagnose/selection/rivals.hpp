@@ -35,9 +35,9 @@ void weigh_with_its_own_steps(Search& search, const EvaluatedHypothesis& rival, 
 /// have looked like the wrong one.
 void try_confusable(Search& search, std::vector<EvaluatedHypothesis>& pool);
 
-/// Puts effects of other good structures in the place of those of the best one, with the parameters that both were
-/// found with: what goes together may have been found apart. Where a parameter of the one can nearly imitate the other,
-/// no signature says so.
+/// Puts effects of other good structures in the place of those of the best one, and what its own come to without some
+/// of their parameters, with the parameters that they were found with: what goes together may have been found apart.
+/// Where a parameter of the one can nearly imitate the other, no signature says so.
 void exchange_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool);
 
 /// Single effects and pairs once more, from the parameters of the best structure on: these are nearest to the truth,

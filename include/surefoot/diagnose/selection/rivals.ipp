@@ -183,21 +183,47 @@ struct ReadyEffect {
   Eigen::VectorXd values;
 };
 
+/// Whether one of these is this effect, in any form.
+SUREFOOT_ONCE bool has_in_any_form(const std::vector<AttachedEffect>& effects, const AttachedEffect& one) {
+  return holds_for_any(effects, [&](const AttachedEffect& other) { return same_but_for_form(other, one); });
+}
+
+/// A structure with another effect in the place of number `e`.
+SUREFOOT_ONCE Fit exchanged(const Hypothesis& structure, std::size_t e, const ReadyEffect& other) {
+  Fit result{structure};
+  result.hypothesis.effects[e] = other.effect;
+  result.hypothesis.values[e] = other.values;
+  return result;
+}
+
 /// Effects of the best structures that the first of these has not, in any form.
 SUREFOOT_ONCE std::vector<ReadyEffect> effects_of_others(const Search& search,
                                                          const std::vector<EvaluatedHypothesis>& best) {
+  std::vector<AttachedEffect> there = best.front().hypothesis.effects;
   std::vector<ReadyEffect> others;
   for (const EvaluatedHypothesis& one : best) {
     for (std::size_t e = search.problem.known; e < one.hypothesis.effects.size(); ++e) {
       const AttachedEffect& effect = one.hypothesis.effects[e];
-      const bool there =
-          holds_for_any(others, [&](const ReadyEffect& other) { return same_but_for_form(other.effect, effect); }) ||
-          holds_for_any(best.front().hypothesis.effects,
-                        [&](const AttachedEffect& other) { return same_but_for_form(other, effect); });
-      if (!there) others.push_back({effect, one.hypothesis.values[e]});
+      if (has_in_any_form(there, effect)) continue;
+      there.push_back(effect);
+      others.push_back({effect, one.hypothesis.values[e]});
     }
   }
   return others;
+}
+
+/// A structure with what one of its effects comes to without some of its parameters in the place of that one.
+SUREFOOT_ONCE std::vector<Fit> with_special_cases(const Search& search, const Hypothesis& structure) {
+  std::vector<Fit> fits;
+  for (std::size_t e = search.problem.known; e < structure.effects.size(); ++e) {
+    for (const AttachedEffect& one : search.candidates) {
+      const Eigen::VectorXd values = values_of_special_case(one, structure.effects[e], structure.values[e]);
+      if (values.size() == 0 || has_in_any_form(structure.effects, one)) continue;
+      const std::size_t recordings = search.bound.recordings.size();
+      fits.push_back(exchanged(structure, e, {one, values_before_starts(*one.effect, values, recordings)}));
+    }
+  }
+  return fits;
 }
 
 SUREFOOT_ONCE void exchange_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
@@ -205,18 +231,18 @@ SUREFOOT_ONCE void exchange_effects(const Search& search, std::vector<EvaluatedH
   constexpr double none_is_hopeless = std::numeric_limits<double>::infinity();
   const std::vector<EvaluatedHypothesis> best =
       best_structures(pool, problem.effort.predicted, none_is_hopeless, problem.criteria);
-  if (search.effects(best.front()) < 2) return;  // single effects were all tried
-  std::vector<Fit> fits;
-  for (const ReadyEffect& other : effects_of_others(search, best)) {
-    for (std::size_t e = problem.known; e < best.front().hypothesis.effects.size(); ++e) {
-      Fit exchanged{best.front().hypothesis};
-      exchanged.hypothesis.effects[e] = other.effect;
-      exchanged.hypothesis.values[e] = other.values;
-      fits.push_back(std::move(exchanged));
+  const Hypothesis& first = best.front().hypothesis;
+  std::vector<Fit> special = with_special_cases(search, first), of_others;
+  if (search.effects(best.front()) > 1) {  // single effects were all tried
+    for (const ReadyEffect& other : effects_of_others(search, best)) {
+      for (std::size_t e = problem.known; e < first.effects.size(); ++e)
+        of_others.push_back(exchanged(first, e, other));
     }
   }
-  for (const EvaluatedHypothesis& one : finished_from(search, std::move(fits), problem.effort.compared_finalists)) {
-    keep_best_form(pool, one, problem.criteria);
+  for (std::vector<Fit>* fits : {&special, &of_others}) {  // each get their own finalists
+    for (const EvaluatedHypothesis& one : finished_from(search, std::move(*fits), problem.effort.compared_finalists)) {
+      keep_best_form(pool, one, problem.criteria);
+    }
   }
 }
 

@@ -51,6 +51,7 @@ struct Sizes {
   std::vector<double> position;                             // by state: deviation from its mean
   std::vector<double> state_peak, signal_peak;              // largest absolute values
   std::vector<double> input_low, input_high;                // smallest and largest values, or 0
+  std::vector<double> least;  // absolute values of inputs, then of signals, other than 0; infinity: none
   double time = 1;                                          // of 200 rows [s], or steps
 };
 

@@ -28,6 +28,7 @@ SUREFOOT_ONCE Sizes unit_sizes(const SimulatorInfo& info) {
   sizes.input_high = sizes.input;
   sizes.input_low.assign(info.inputs.size(), -1.0);
   sizes.signal_peak = sizes.signal;
+  sizes.least.assign(info.inputs.size() + info.signals.size(), 0.0);
   return sizes;
 }
 

@@ -16,13 +16,14 @@ struct ParameterConstants {
   Measure measure = {};
   double low = 0, high = 1;
   std::initializer_list<double> starts = {};
-  bool strength = false, of_peak = false;
+  bool strength = false, of_peak = false, beyond_least = false;
 };
 
 inline std::vector<EffectParameter> parameters_of(std::initializer_list<ParameterConstants> constants) {
   std::vector<EffectParameter> parameters;
   for (const ParameterConstants& one : constants) {
-    parameters.push_back({one.name, one.measure, one.low, one.high, one.starts, one.strength, one.of_peak});
+    parameters.push_back(
+        {one.name, one.measure, one.low, one.high, one.starts, one.strength, one.of_peak, one.beyond_least});
   }
   return parameters;
 }
