@@ -43,7 +43,7 @@ struct EffectParameter {
   std::vector<double> starts;  // tried in turn, in every combination; for a strength: a small but visible one
   bool strength = false;       // the effect vanishes, in proportion, as this goes to 0
   bool of_peak = false;        // starts are shares of the largest value in the recordings instead (levels that clip)
-  bool beyond_least = false;   // and begin at the least value other than 0: of an input, below which nothing happens
+  bool beyond_least = false;   // starts are shares of the way from the input's least value other than 0 to that size
 };
 
 /// What an effect may look at in a context of a simulation. Units are those of the model.

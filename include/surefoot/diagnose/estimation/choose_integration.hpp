@@ -31,9 +31,10 @@ ChosenIntegration choose_integrations(const BoundSimulator& bound, const Hypothe
 /// Whether an integration is finer than another one.
 bool is_finer(const Integration& one, const Integration& other);
 
-/// The coarsest step at which as many of the recordings as possible can be simulated at all: one row, or a power of two
-/// shorter, where the model holds something much faster than rows, such as the current of a coil. As it is now where
-/// none helps, and in maps. Cost: mostly a simulation of each recording.
+/// The coarsest step at which as many of the recordings as possible can be simulated at all, without growing far beyond
+/// what they do in half of it: one row, or a power of two shorter, where the model holds something much faster than
+/// rows, such as the current of a coil. As it is now where none helps, and in maps. Cost: mostly two simulations of
+/// each recording, a row and half a row at a step.
 Integration integration_that_runs(const BoundSimulator& bound, const Hypothesis& hypothesis, const Parallel& parallel);
 
 /// The same where it is finer than now: what effects explain leaves smaller residuals. None where it is not.
