@@ -157,6 +157,27 @@ TEST_CASE("a delay of the only input is that of the only sensor, and friction is
   CHECK(friction.empty());
 }
 
+TEST_CASE("an asymmetry is a gain while the input goes one way alone") {
+  machines::Drawn one = with_effect(effect("input_asymmetry", "push", Where::input, Law::asymmetry, 0, 0.2));
+  const std::pair<std::string, std::string> gain("input_gain", "push");
+  const auto both_ways = machines::equivalents(one, 0);
+  CHECK(std::ranges::find(both_ways, gain) == both_ways.end());
+  for (plants::Recording& recording : one.one.system.recordings)
+    for (double& push : recording.inputs[0]) push = std::abs(push);
+  const auto one_way = machines::equivalents(one, 0);
+  CHECK(std::ranges::find(one_way, gain) != one_way.end());
+}
+
+TEST_CASE("friction that hardly rises near rest is that of Coulomb") {
+  machines::Hidden stribeck = effect("stribeck_friction", "v", Where::speed, Law::stribeck_gauss, 1, 1.5);
+  const std::pair<std::string, std::string> coulomb("coulomb_friction", "v");
+  for (const bool rises : {false, true}) {
+    stribeck.b = rises ? 2 : 1e-4, stribeck.c = 0.1;
+    const auto found = machines::equivalents(with_effect(stribeck), 0);
+    CHECK((std::ranges::find(found, coulomb) == found.end()) == rises);
+  }
+}
+
 TEST_CASE("a gain of one wheel is the inverse gain of the other, where radius and base are not known") {
   plants::Random random(8);
   machines::Draft draft = machines::draw_rover(random, {});

@@ -16,12 +16,14 @@ using plants::How;
 using plants::System;
 
 // Effects that coincide in some machines: delays where nothing else happens between command and reading, offsets that
-// pass through linear equations, friction and dead zones while everything goes one way.
+// pass through linear equations, friction, dead zones and asymmetries while everything goes one way, friction that is
+// larger near rest while nothing is.
 const std::map<std::string, std::vector<std::string>>& relatives() {
   static const std::map<std::string, std::vector<std::string>> table{
       {"input_delay", {"sensor_delay"}},
       {"sensor_delay", {"input_delay"}},
-      {"input_gain", {"sensor_scale"}},
+      {"input_gain", {"sensor_scale", "input_asymmetry"}},
+      {"input_asymmetry", {"input_gain"}},
       {"sensor_scale", {"input_gain"}},
       {"constant_force", {"sensor_bias", "constant_rate", "dead_zone", "coulomb_friction"}},
       {"constant_rate", {"sensor_bias", "sensor_drift", "constant_force", "dead_zone"}},
@@ -29,6 +31,7 @@ const std::map<std::string, std::vector<std::string>>& relatives() {
       {"sensor_drift", {"constant_rate"}},
       {"dead_zone", {"constant_force", "constant_rate", "coulomb_friction"}},
       {"coulomb_friction", {"constant_force", "dead_zone"}},
+      {"stribeck_friction", {"coulomb_friction"}},
       {"leak", {"viscous_friction"}},
       {"viscous_friction", {"input_gain", "leak"}}};
   return table;

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,22 @@ TEST_CASE("from the parameters of two effects that stand in for one, that one is
   std::vector<EvaluatedHypothesis> single{bench.with({}), bench.with({"sensor_drift"})};
   begin_anew(search, single);
   CHECK(single.size() == 2);  // the search began with single effects
+}
+
+TEST_CASE("what drove a parameter to its bound is extended from the nominal parameters") {
+  TankBench bench({rate_in_tank, drift_in_tank});
+  bench.problem.noise.setConstant(1, std::pow(0.01 / bench.problem.scale.sigma[0], 2));  // mean squares
+  const SelectionCriteria& criteria = bench.problem.criteria;
+  const Search search = bench.search();
+  EvaluatedHypothesis driven = bench.with({"sensor_drift"});
+  std::vector<EvaluatedHypothesis> pool{bench.with({}), driven};
+  extend_from_nominal(search, pool);
+  CHECK(pool.size() == 2);  // no parameter is at a bound
+
+  driven.hypothesis.parameters[0] = bench.bound.info.parameters[0].low;
+  pool[1] = driven;  // with the errors of its fit, so that it stays the best so far
+  extend_from_nominal(search, pool);
+  CHECK(names_in(pool[best_of(pool, criteria)]) == "constant_rate, sensor_drift");
 }
 
 TEST_CASE("effects of the best structure are taken away and replaced in turn") {

@@ -165,7 +165,8 @@ EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, const Fit& fitted,
 /// Differences of the mean square, by output, that mean nothing: they may come of the form of effects.
 Eigen::VectorXd negligible_differences(const ErrorSquares& without_effects, const SelectionCriteria& criteria);
 
-/// Whether a parameter of an effect is at a bound, which no size that makes sense is; a strength of zero is none.
+/// Whether a parameter, of an effect or of the model, is at a bound, which no size that makes sense is; a strength of
+/// zero is none.
 bool is_at_bound(const Hypothesis& hypothesis, const Variable& variable, const SelectionCriteria& criteria);
 
 /// Log of the prior probability of the effects beyond the first `known` [nat], but for a constant.

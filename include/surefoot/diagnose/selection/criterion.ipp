@@ -121,7 +121,9 @@ SUREFOOT_ONCE bool is_at_bound(const Hypothesis& hypothesis, const Variable& var
   constexpr double middle = 0.5;  // of a range
   const double share = share_of_range(hypothesis, variable);
   // a strength near zero is told by the densities, unless it still says how its input began
-  const bool natural = variable.low == 0 && share < middle && !hypothesis.effects[variable.index].effect->from_rest;
+  const bool says_how_it_began =
+      variable.kind == Variable::Kind::effect && hypothesis.effects[variable.index].effect->from_rest;
+  const bool natural = variable.low == 0 && share < middle && !says_how_it_began;
   return !natural && (share < criteria.bound_share || share > 1 - criteria.bound_share);
 }
 

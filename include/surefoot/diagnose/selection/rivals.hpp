@@ -40,6 +40,11 @@ void try_confusable(Search& search, std::vector<EvaluatedHypothesis>& pool);
 /// Where a parameter of the one can nearly imitate the other, no signature says so.
 void exchange_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool);
 
+/// Further effects of the best structure, from the nominal parameters of the model on, where one of these was driven to
+/// a bound: it makes up for what is still missing, and so far off that nothing helps from there. Only what then leaves
+/// no more than noise counts.
+void extend_from_nominal(Search search, std::vector<EvaluatedHypothesis>& pool);
+
 /// Single effects and pairs once more, from the parameters of the best structure on: these are nearest to the truth,
 /// whatever effects led there, and an early choice that only led there is left behind.
 void begin_anew(const Search& search, std::vector<EvaluatedHypothesis>& pool);

@@ -246,6 +246,31 @@ SUREFOOT_ONCE void exchange_effects(const Search& search, std::vector<EvaluatedH
   }
 }
 
+/// Whether a parameter of the model, which its user bounds, was driven to a bound.
+SUREFOOT_ONCE bool drives_parameters_to_bounds(const Search& search, const Hypothesis& one) {
+  for (const Variable& variable : variables_of(search.bound, one, {}, Free::all_but_effects)) {
+    const bool of_model = variable.kind == Variable::Kind::parameter;
+    if (of_model && is_at_bound(one, variable, search.problem.criteria)) return true;
+  }
+  return false;
+}
+
+SUREFOOT_ONCE void extend_from_nominal(Search search, std::vector<EvaluatedHypothesis>& pool) {
+  const EvaluatedHypothesis best = pool[best_of(pool, search.problem.criteria)];
+  if (search.problem.stopped() || search.effects(best) == 0 || explains(search, best)) return;
+  if (!drives_parameters_to_bounds(search, best.hypothesis)) return;
+  Hypothesis start = best.hypothesis;
+  start.parameters = search.problem.nominal.parameters;
+  start.initial = search.problem.nominal.initial;
+  const EvaluatedHypothesis parent = evaluate_fit(search.bound, Fit{start, 0, true}, search.problem, search.parallel);
+  reweight(search, parent);
+  std::vector<EvaluatedHypothesis> children;
+  extend(search, parent, best, children);
+  for (const EvaluatedHypothesis& child : children) {
+    if (explains(search, child)) keep_best_form(pool, child, search.problem.criteria);
+  }
+}
+
 SUREFOOT_ONCE void begin_anew(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
   const SelectionCriteria& criteria = search.problem.criteria;
   const EvaluatedHypothesis best = pool[best_of(pool, criteria)];

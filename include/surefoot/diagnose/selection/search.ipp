@@ -150,6 +150,7 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
     exchange_effects(search, pool);
     try_confusable(search, pool);
     begin_anew(search, pool);
+    extend_from_nominal(search, pool);
     // what it lacks may not have helped the one that it was grown from
     const bool grows = !same_structure(compared, grown) || !unchanged();
     if (grows && leaves_structure(search, pool[best_of(pool, criteria)])) grow(search, pool, done);

@@ -51,6 +51,9 @@ std::string moved_together_sentence(const SimulatorInfo& info, const std::vector
 /// That forces were not tried, for no state is known to be a speed.
 std::string no_speed_sentence();
 
+/// That a recording was cut, the first time after so many seconds, where its start no longer tells what it does.
+std::string sensitive_recording_sentence(double seconds, std::size_t parts);
+
 /// That no more effects were combined than may be, while something is left.
 std::string most_effects_sentence(int most);
 

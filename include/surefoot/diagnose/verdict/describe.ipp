@@ -160,6 +160,13 @@ SUREFOOT_ONCE std::string most_effects_sentence(int most) {
          "), and something is left: max_effects (--max-effects) allows more";
 }
 
+SUREFOOT_ONCE std::string sensitive_recording_sentence(double seconds, std::size_t parts) {
+  return "from " + in_digits(seconds) +
+         " s on, differences of the start smaller than the noise decide what it does, as where a pendulum may fall "
+         "over to either side: it is used as " +
+         std::to_string(parts) + " parts, each from where it was measured";
+}
+
 SUREFOOT_ONCE std::string not_held_out_sentence() {
   return "the time was over before parameters were fitted without the held-out recordings: errors on these are those "
          "of recordings that were fitted, and too small";

@@ -24,6 +24,11 @@ std::vector<Remark> screen_recordings(const SimulatorInfo& info, std::vector<Rec
 std::vector<Recording> cut_few_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
                                           const RunContext& run);
 
+/// Recordings in which differences smaller than the noise decide what comes later are cut there, and remarked on,
+/// unless those to hold out are named.
+std::vector<Recording> cut_sensitive_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
+                                                const RunContext& run, std::vector<Remark>& remarks);
+
 /// Holds recordings out, or each in turn.
 EstimationSetup hold_out_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
                                     const RunContext& run);

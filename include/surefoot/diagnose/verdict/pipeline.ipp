@@ -21,6 +21,7 @@
 #include "surefoot/diagnose/estimation/instability.hpp"
 #include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
+#include "surefoot/diagnose/estimation/sensitive_starts.hpp"
 #include "surefoot/diagnose/estimation/standard_errors.hpp"
 #include "surefoot/diagnose/log_doctor/reading_faults.hpp"
 #include "surefoot/diagnose/residual_tests/noise.hpp"
@@ -63,20 +64,31 @@ SUREFOOT_ONCE std::vector<Remark> screen_recordings(const SimulatorInfo& info, s
   return remarks;
 }
 
+SUREFOOT_ONCE std::vector<std::size_t> all_of(const BoundSimulator& bound) {
+  std::vector<std::size_t> all;
+  for (std::size_t r = 0; r < bound.recordings.size(); ++r) all.push_back(r);
+  return all;
+}
+
+/// Parameters, fitted to all recordings before any is held out.
+SUREFOOT_ONCE Hypothesis calibrate_alone(const BoundSimulator& bound, const RunContext& run) {
+  FitProblem problem;
+  problem.recordings = all_of(bound);
+  problem.integration = bound.integration;
+  problem.stopped = [run] { return run.search_has_ended(); };
+  return calibrate(bound, nominal_with_known(bound, run.options), problem, run.options.starts, run.seed, run.parallel)
+      .hypothesis;
+}
+
 SUREFOOT_ONCE std::vector<Recording> cut_few_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
                                                         const RunContext& run) {
   const PreparationCriteria criteria;
   if (recordings.size() < criteria.enough && run.options.held_out.empty()) {
     const BoundSimulator whole = bind(recordings);
-    FitProblem problem;
-    for (std::size_t r = 0; r < recordings.size(); ++r) problem.recordings.push_back(r);
-    problem.integration = whole.integration;
-    problem.stopped = [run] { return run.search_has_ended(); };
-    const Fit fitted =
-        calibrate(whole, nominal_with_known(whole, run.options), problem, run.options.starts, run.seed, run.parallel);
-    const auto runs = simulate_all(whole, fitted.hypothesis, problem.recordings, whole.integration, run.parallel);
+    const Hypothesis fitted = calibrate_alone(whole, run);
+    const auto runs = simulate_all(whole, fitted, all_of(whole), whole.integration, run.parallel);
     const std::size_t parts = (criteria.parts + recordings.size() - 1) / recordings.size();
-    std::vector<Recording> cut = cut_recordings(whole, fitted.hypothesis, runs, parts, criteria);
+    std::vector<Recording> cut = cut_recordings(whole, fitted, runs, parts, criteria);
     if (cut.size() >= criteria.fewest) recordings = std::move(cut);
   }
   if (recordings.size() < 2) {
@@ -84,6 +96,43 @@ SUREFOOT_ONCE std::vector<Recording> cut_few_recordings(const BindSimulator& bin
         "one short recording is not enough to tell what is missing: record at least two, or one of 60 rows");
   }
   return recordings;
+}
+
+/// The same with these parameters, which are those of the nominal model at first.
+SUREFOOT_ONCE std::vector<Recording> cut_where_sensitive(const BoundSimulator& whole, const Hypothesis& hypothesis,
+                                                         std::vector<Remark>& remarks) {
+  constexpr double close = 0.5;  // Integration::follow of a simulation that stays near the readings
+  Integration near = whole.integration;
+  near.follow = close;
+  std::vector<Recording> result;
+  for (std::size_t r = 0; r < whole.recordings.size(); ++r) {
+    const Recording& one = whole.recordings[r];
+    const SimulatedRun motion = simulate(whole, hypothesis, r, near);
+    std::vector<Eigen::Index> rows;
+    if (motion.finite) rows = sensitive_rows(whole, hypothesis, r, motion.states);
+    if (rows.empty()) {
+      result.push_back(one);
+      continue;
+    }
+    append_items(result, cut_at_rows(whole, r, motion.states, rows));
+    remarks.push_back({one.name, sensitive_recording_sentence(one.time[rows.front()] - one.time[0], rows.size() + 1)});
+  }
+  return result;
+}
+
+SUREFOOT_ONCE std::vector<Recording> cut_sensitive_recordings(const BindSimulator& bind,
+                                                              std::vector<Recording> recordings, const RunContext& run,
+                                                              std::vector<Remark>& remarks) {
+  const BoundSimulator whole = bind(std::move(recordings));
+  const bool follows = whole.integration.follow > 0 || whole.info.kind == SimulatorKind::map;
+  if (follows || !run.options.held_out.empty()) return whole.recordings;
+  Hypothesis hypothesis = nominal_with_known(whole, run.options);
+  std::vector<Remark> first;
+  std::vector<Recording> cut = cut_where_sensitive(whole, hypothesis, first);
+  if (first.empty()) return cut;
+  // the machine comes by other places with the parameters that the parts tell
+  hypothesis.parameters = calibrate_alone(bind(std::move(cut)), run).parameters;
+  return cut_where_sensitive(whole, hypothesis, remarks);
 }
 
 SUREFOOT_ONCE EstimationSetup hold_out_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
@@ -281,6 +330,7 @@ SUREFOOT_ONCE void remark_on_freed_states(const EstimationSetup& setup, const Hy
 
 SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
                                              const RunContext& run, Diagnosis& diagnosis) {
+  recordings = cut_sensitive_recordings(bind, std::move(recordings), run, diagnosis.remarks);
   recordings = cut_few_recordings(bind, std::move(recordings), run);
   EstimationSetup setup = hold_out_recordings(bind, std::move(recordings), run);
   name_recordings(setup, diagnosis);
@@ -378,6 +428,22 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
   }
 }
 
+/// A simulation of a recording that its start does not tell may go another way, which looks like a fault of the log.
+/// One that is cut where that happens shows whether there is any; then the recordings are these parts.
+SUREFOOT_ONCE void examine_parts_as_well(const BindSimulator& bind, const RunContext& run,
+                                         std::vector<Recording>& recordings, std::vector<Remark>& remarks,
+                                         LogExamination& log) {
+  if (log.faults.empty() && log.suspected.empty()) return;
+  std::vector<Remark> cuts;
+  std::vector<Recording> parts = cut_sensitive_recordings(bind, recordings, run, cuts);
+  if (cuts.empty()) return;
+  LogExamination of_parts = examine_recordings(bind, parts, run);
+  if (!of_parts.faults.empty() || !of_parts.suspected.empty()) return;
+  log = std::move(of_parts);
+  recordings = std::move(parts);
+  append_items(remarks, cuts);
+}
+
 /// As many steps a row as a simulator needs to run over these recordings, which are followed where they must be.
 SUREFOOT_ONCE Integration needed_integration(const BindSimulator& bind, const std::vector<Recording>& recordings,
                                              const RunContext& run) {
@@ -418,6 +484,7 @@ SUREFOOT_ONCE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorI
   if (needed.follow > 0) remarks.push_back({"", following_sentence(1 / needed.follow)});
   const BindSimulator bind_to_run = with_integration(bind, needed);
   LogExamination log = examine_recordings(bind_to_run, recordings, run);
+  examine_parts_as_well(bind_to_run, run, recordings, remarks, log);
   const std::string warning = caution(log.faults);
   try {
     Diagnosis diagnosis = diagnose_and_examine_again(bind_to_run, recordings, std::move(log), remarks, run);

@@ -24,6 +24,23 @@ SUREFOOT_ONCE Eigen::Index lead_in_rows(SimulatorKind kind, Eigen::Index rows, c
   return kind == SimulatorKind::map ? 0 : static_cast<Eigen::Index>(criteria.lead_in * static_cast<double>(rows));
 }
 
+/// Rows [begin, to) of recording r as one that starts in these states (state x row), or from what was measured.
+SUREFOOT_ONCE Recording part_from_states(const BoundSimulator& bound, std::size_t r, const Eigen::MatrixXd& states,
+                                         Eigen::Index begin, Eigen::Index to, const PreparationCriteria& criteria) {
+  const Recording& whole = bound.recordings[r];
+  Eigen::VectorXd initial = surefoot::detail::column_of(states, begin), scale(initial.size());
+  for (Eigen::Index i = 0; i < initial.size(); ++i) {
+    const double typical = root_mean_square(surefoot::detail::row_of(states, i));
+    scale[i] = std::max(criteria.initial_share * typical, criteria.least_initial);
+    const int output = bound.structure.output_of[static_cast<std::size_t>(i)];
+    if (output < 0) continue;
+    const double measured = whole.outputs(output, begin);
+    if (std::isfinite(measured))
+      initial[i] = reading_of(bound.structure, static_cast<std::size_t>(i)).state_at(measured);
+  }
+  return part_of(whole, begin, to, initial, scale);
+}
+
 SUREFOOT_ONCE std::vector<Recording> cut_recordings(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                                     const std::vector<SimulatedRun>& trajectories, std::size_t parts,
                                                     const PreparationCriteria& criteria) {
@@ -31,29 +48,31 @@ SUREFOOT_ONCE std::vector<Recording> cut_recordings(const BoundSimulator& bound,
   std::vector<Recording> result;
   for (std::size_t r = 0; r < bound.recordings.size(); ++r) {
     const Recording& whole = bound.recordings[r];
-    const Eigen::MatrixXd& states = trajectories[r].states;
     for (std::size_t part = 0; part < parts; ++part) {
       const auto count = static_cast<Eigen::Index>(parts), k = static_cast<Eigen::Index>(part);
       const Eigen::Index from = whole.rows() * k / count, to = whole.rows() * (k + 1) / count;
       if (to - from < criteria.part_rows) continue;
       const Eigen::Index begin = from - std::min(from, lead_in_rows(bound.info.kind, to - from, criteria));
-      Eigen::VectorXd initial = surefoot::detail::column_of(states, begin), scale(initial.size());
-      for (Eigen::Index i = 0; i < initial.size(); ++i) {
-        const double typical = root_mean_square(surefoot::detail::row_of(states, i));
-        scale[i] = std::max(criteria.initial_share * typical, criteria.least_initial);
-        const int output = bound.structure.output_of[static_cast<std::size_t>(i)];
-        if (output < 0) continue;
-        const double measured = whole.outputs(output, begin);
-        if (std::isfinite(measured))
-          initial[i] = reading_of(bound.structure, static_cast<std::size_t>(i)).state_at(measured);
-      }
-      Recording one = part_of(whole, begin, to, initial, scale);
+      Recording one = part_from_states(bound, r, trajectories[r].states, begin, to, criteria);
       for (Eigen::Index row = 0; row < from - begin; ++row) {
         for (Eigen::Index k = 0; k < one.outputs.rows(); ++k) one.outputs(k, row) = not_measured;
       }
       if (part == 0) one.initial = hypothesis.initial[r];
       result.push_back(std::move(one));
     }
+  }
+  return result;
+}
+
+SUREFOOT_ONCE std::vector<Recording> cut_at_rows(const BoundSimulator& bound, std::size_t r,
+                                                 const Eigen::MatrixXd& states, const std::vector<Eigen::Index>& rows,
+                                                 const PreparationCriteria& criteria) {
+  std::vector<Recording> result;
+  Eigen::Index begin = 0;
+  for (std::size_t part = 0; part <= rows.size(); ++part) {
+    const Eigen::Index to = part < rows.size() ? rows[part] : bound.recordings[r].rows();
+    result.push_back(part_from_states(bound, r, states, begin, to, criteria));
+    begin = to;
   }
   return result;
 }
