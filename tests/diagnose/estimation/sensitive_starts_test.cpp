@@ -12,7 +12,7 @@
 namespace surefoot::diagnosis {
 namespace {
 
-std::vector<Eigen::Index> rows_of_first(bool near_top) {
+std::vector<std::size_t> rows_of_first(bool near_top) {
   const BoundSimulator bound = bind_simulator(toys::FallingPendulum{}, toys::falling_log(near_top, 9, 0.3));
   const Hypothesis nominal = nominal_hypothesis(bound);
   Integration close = bound.integration;
@@ -22,12 +22,12 @@ std::vector<Eigen::Index> rows_of_first(bool near_top) {
 
 TEST_CASE("a pendulum that falls from its upper rest is cut once it falls, one that hangs is not") {
   CHECK(rows_of_first(false).empty());
-  const std::vector<Eigen::Index> rows = rows_of_first(true);
+  const std::vector<std::size_t> rows = rows_of_first(true);
   REQUIRE_FALSE(rows.empty());
   CHECK(rows.front() >= 25);   // of 400: the first border
   CHECK(rows.front() <= 100);  // it has fallen after two seconds
-  Eigen::Index before = 0;
-  for (const Eigen::Index row : rows) {
+  std::size_t before = 0;
+  for (const std::size_t row : rows) {
     CHECK(row - before >= 20);
     before = row;
   }

@@ -18,8 +18,8 @@ namespace surefoot::diagnosis {
 /// does not say what comes after that row. Empty for most recordings. `states` (state x row) are those of a simulation
 /// close to the readings. Cost: 2 simulations for each measured state, over the recording at most as often as there are
 /// pieces.
-std::vector<Eigen::Index> sensitive_rows(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t r,
-                                         const Eigen::MatrixXd& states);
+std::vector<std::size_t> sensitive_rows(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t r,
+                                        const Eigen::MatrixXd& states);
 
 }  // namespace surefoot::diagnosis
 

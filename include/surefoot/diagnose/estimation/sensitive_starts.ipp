@@ -41,52 +41,50 @@ SUREFOOT_ONCE Eigen::Index row_of_parting(const SimulatedRun& above, const Simul
   return rows;
 }
 
-/// The same of one recording, from these states on, known up to these errors by output; the least over the states that
-/// are measured.
+/// The same of one recording, from these states on, known up to `errors` times the noise; the least over the states
+/// that are measured.
 SUREFOOT_ONCE Eigen::Index first_parting(const BoundSimulator& bound, Hypothesis hypothesis, std::size_t r,
-                                         const Eigen::VectorXd& begin, const Eigen::VectorXd& errors,
-                                         const Eigen::VectorXd& noise) {
-  const auto simulated_from = [&](const Eigen::VectorXd& start) {
-    hypothesis.initial[r] = start;
+                                         const Eigen::VectorXd& begin, double errors, const Eigen::VectorXd& noise) {
+  const auto simulated_from = [&](std::size_t state, double moved) {
+    hypothesis.initial[r] = begin;
+    hypothesis.initial[r][static_cast<Eigen::Index>(state)] += moved;
     return simulate(bound, hypothesis, r, bound.integration);
   };
-  const SimulatedRun middle = simulated_from(begin);
+  const SimulatedRun middle = simulated_from(0, 0);
   Eigen::Index first = bound.recordings[r].rows();
   for (std::size_t i = 0; i < bound.structure.output_of.size(); ++i) {
     const int output = bound.structure.output_of[i];
     if (output < 0 || !(noise[output] > 0)) continue;
-    Eigen::VectorXd above = begin, below = begin;
-    above[static_cast<Eigen::Index>(i)] += errors[output] / reading_of(bound.structure, i).slope;
-    below[static_cast<Eigen::Index>(i)] -= errors[output] / reading_of(bound.structure, i).slope;
-    first = std::min(first, row_of_parting(simulated_from(above), simulated_from(below), middle, noise));
+    const double moved = errors * noise[output] / reading_of(bound.structure, i).slope;
+    first = std::min(first, row_of_parting(simulated_from(i, moved), simulated_from(i, -moved), middle, noise));
   }
   return first;
 }
 
-SUREFOOT_ONCE std::vector<Eigen::Index> sensitive_rows(const BoundSimulator& bound, const Hypothesis& hypothesis,
-                                                       std::size_t r, const Eigen::MatrixXd& states) {
+SUREFOOT_ONCE std::vector<std::size_t> sensitive_rows(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                                      std::size_t r, const Eigen::MatrixXd& states) {
   constexpr Eigen::Index pieces = 16;      // borders of equal pieces, where a recording may be cut
   constexpr Eigen::Index least_rows = 20;  // of a part
   constexpr double within = 2;             // standard errors, 2 / sqrt(n) at the end of a line through n readings
   const Recording& whole = bound.recordings[r];
   const Eigen::Index all = whole.rows(), least = std::max(all / pieces, least_rows);
   const Eigen::VectorXd noise = reading_errors(bound, r);
-  const Eigen::VectorXd errors = within * 2 / std::sqrt(static_cast<double>(least)) * noise;
+  const double errors = within * 2 / std::sqrt(static_cast<double>(least));  // times the noise
   const auto parting_after = [&](Eigen::Index from) {
     const Eigen::VectorXd begin = surefoot::detail::column_of(states, from);
     if (from == 0) return first_parting(bound, hypothesis, r, begin, errors, noise);
     BoundSimulator rest = bound;
-    rest.recordings[r] = part_of(whole, from, all, begin, Eigen::VectorXd::Zero(begin.size()));
+    rest.recordings[r] = part_of(whole, from, all, begin, whole.initial_scale);
     return from + first_parting(rest, hypothesis, r, begin, errors, noise);
   };
-  std::vector<Eigen::Index> rows;
+  std::vector<std::size_t> rows;
   Eigen::Index from = 0;
   while (all - from > 2 * least) {
     const Eigen::Index parting = parting_after(from);
     if (parting >= all) break;
     const Eigen::Index border = (parting * pieces / all) * all / pieces;  // the last one before
     from = std::min(std::max(from + least, border), all - least);
-    rows.push_back(from);
+    rows.push_back(static_cast<std::size_t>(from));
   }
   return rows;
 }

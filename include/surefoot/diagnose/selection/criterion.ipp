@@ -107,7 +107,9 @@ SUREFOOT_ONCE EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, cons
 SUREFOOT_ONCE bool is_spare_strength(const Hypothesis& hypothesis, const Variable& variable) {
   const auto& parameters = hypothesis.effects[variable.index].effect->parameters;
   const auto own = parameters.begin() + static_cast<std::ptrdiff_t>(variable.item);
-  return own->strength && std::any_of(parameters.begin(), own, [](const EffectParameter& one) { return one.strength; });
+  bool another = false;
+  for (auto one = parameters.begin(); one != own; ++one) another = another || one->strength;
+  return own->strength && another;
 }
 
 /// Where in its range a variable is, from 0 to 1.

@@ -80,9 +80,11 @@ SUREFOOT_ONCE void draw_inside(const Search& search, const EvaluatedHypothesis& 
 
 /// The structure that leaves least, however many parameters that takes; none of none.
 SUREFOOT_ONCE std::optional<EvaluatedHypothesis> least_left(const std::vector<EvaluatedHypothesis>& some) {
-  const auto least = std::min_element(some.begin(), some.end(),
-                                      [](const auto& a, const auto& b) { return a.errors.rms() < b.errors.rms(); });
-  return least == some.end() ? std::nullopt : std::optional(*least);
+  const EvaluatedHypothesis* least = nullptr;
+  for (const EvaluatedHypothesis& one : some) {
+    if (least == nullptr || one.errors.rms() < least->errors.rms()) least = &one;
+  }
+  return least == nullptr ? std::nullopt : std::optional(*least);
 }
 
 /// Whether an effect takes away more than any further one does by chance.

@@ -108,14 +108,15 @@ SUREFOOT_ONCE std::vector<Recording> cut_where_sensitive(const BoundSimulator& w
   for (std::size_t r = 0; r < whole.recordings.size(); ++r) {
     const Recording& one = whole.recordings[r];
     const SimulatedRun motion = simulate(whole, hypothesis, r, near);
-    std::vector<Eigen::Index> rows;
+    std::vector<std::size_t> rows;
     if (motion.finite) rows = sensitive_rows(whole, hypothesis, r, motion.states);
     if (rows.empty()) {
       result.push_back(one);
       continue;
     }
-    append_items(result, cut_at_rows(whole, r, motion.states, rows));
-    remarks.push_back({one.name, sensitive_recording_sentence(one.time[rows.front()] - one.time[0], rows.size() + 1)});
+    for (Recording& part : cut_at_rows(whole, r, motion.states, rows)) result.push_back(std::move(part));
+    const double begin = one.time[static_cast<Eigen::Index>(rows.front())] - one.time[0];
+    remarks.push_back({one.name, sensitive_recording_sentence(begin, rows.size() + 1)});
   }
   return result;
 }
@@ -441,7 +442,7 @@ SUREFOOT_ONCE void examine_parts_as_well(const BindSimulator& bind, const RunCon
   if (!of_parts.faults.empty() || !of_parts.suspected.empty()) return;
   log = std::move(of_parts);
   recordings = std::move(parts);
-  append_items(remarks, cuts);
+  for (const Remark& cut : cuts) remarks.push_back(cut);
 }
 
 /// As many steps a row as a simulator needs to run over these recordings, which are followed where they must be.

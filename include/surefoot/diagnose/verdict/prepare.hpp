@@ -30,7 +30,7 @@ std::vector<Recording> cut_recordings(const BoundSimulator& bound, const Hypothe
 /// Recording r as parts that begin at row 0 and at these rows, from what was measured there; other states are these
 /// (state x row), to be estimated from there on.
 std::vector<Recording> cut_at_rows(const BoundSimulator& bound, std::size_t r, const Eigen::MatrixXd& states,
-                                   const std::vector<Eigen::Index>& rows, const PreparationCriteria& criteria = {});
+                                   const std::vector<std::size_t>& rows, const PreparationCriteria& criteria = {});
 
 /// Puts recordings in the order of their names, those of one name in that of their times and inputs: what is concluded
 /// does not depend on the order in which they are given.

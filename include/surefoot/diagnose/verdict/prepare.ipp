@@ -65,12 +65,12 @@ SUREFOOT_ONCE std::vector<Recording> cut_recordings(const BoundSimulator& bound,
 }
 
 SUREFOOT_ONCE std::vector<Recording> cut_at_rows(const BoundSimulator& bound, std::size_t r,
-                                                 const Eigen::MatrixXd& states, const std::vector<Eigen::Index>& rows,
+                                                 const Eigen::MatrixXd& states, const std::vector<std::size_t>& rows,
                                                  const PreparationCriteria& criteria) {
   std::vector<Recording> result;
   Eigen::Index begin = 0;
   for (std::size_t part = 0; part <= rows.size(); ++part) {
-    const Eigen::Index to = part < rows.size() ? rows[part] : bound.recordings[r].rows();
+    const Eigen::Index to = part < rows.size() ? static_cast<Eigen::Index>(rows[part]) : bound.recordings[r].rows();
     result.push_back(part_from_states(bound, r, states, begin, to, criteria));
     begin = to;
   }
