@@ -1,4 +1,4 @@
-// A pendulum that is may fall over to either side, for tests.
+// A pendulum that may fall over to either side, for tests.
 #pragma once
 
 #include <cmath>

@@ -41,7 +41,7 @@ SUREFOOT_ONCE Eigen::Index row_of_parting(const SimulatedRun& above, const Simul
   return rows;
 }
 
-/// The same of one recording, from these states on, known up to `errors` times the noise; the least over the states
+/// The same for recording r, from these states on, known up to `errors` times the noise; the least over the states
 /// that are measured.
 SUREFOOT_ONCE Eigen::Index first_parting(const BoundSimulator& bound, Hypothesis hypothesis, std::size_t r,
                                          const Eigen::VectorXd& begin, double errors, const Eigen::VectorXd& noise) {

@@ -98,7 +98,7 @@ SUREFOOT_ONCE std::vector<Recording> cut_few_recordings(const BindSimulator& bin
   return recordings;
 }
 
-/// The same with these parameters, which are those of the nominal model at first.
+/// All recordings, those that a simulation with these parameters finds sensitive in parts, each with a remark.
 SUREFOOT_ONCE std::vector<Recording> cut_where_sensitive(const BoundSimulator& whole, const Hypothesis& hypothesis,
                                                          std::vector<Remark>& remarks) {
   constexpr double close = 0.5;  // Integration::follow of a simulation that stays near the readings
