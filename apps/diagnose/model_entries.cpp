@@ -79,6 +79,10 @@ ModelState read_state(const TomlTable& table, const TomlEntry& entry, bool ode) 
     state.initial = ModelState::Initial::column;
     state.start.text.erase(0, std::string_view("column:").size());
     if (state.start.text.empty()) fail(state.start.place, "the name of a column is expected after 'column:'");
+    if (!unit_fits(state.start.text, state.unit)) {
+      fail(state.start.place, "the column '" + state.start.text + "' is not in the unit of the state, " + state.unit +
+                                  ": name a column that is, or begin with initial = \"free\"");
+    }
   }
   const toml::value* effort = find(own, "effort");
   const toml::value* unit = find(own, "effort_unit");

@@ -162,6 +162,13 @@ TEST_CASE("a missing unit is refused") {
                       "the column's name ends in rad");
 }
 
+TEST_CASE("a state that begins with a column has the unit of that column") {
+  check_model_refused(
+      with(servo_model, "column:theta_rad", "column:theta_deg"),
+      "the column 'theta_deg' is not in the unit of the state, rad: name a column that is, or begin with "
+      "initial = \"free\"");
+}
+
 TEST_CASE("a parameter without a unit is a plain number") {
   const auto model = parse_model_file(with(servo_model, ", unit = \"ohm\"", ""), "servo.toml");
   const auto place = std::ranges::find(model.parameters, "R", &surefoot::ParameterInfo::name);

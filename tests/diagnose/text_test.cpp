@@ -31,6 +31,12 @@ TEST_CASE("sentences are filled wherever a name stands between braces, as often 
   CHECK(fill_sentence("{unknown} stays", "omega", values) == "{unknown} stays");
 }
 
+TEST_CASE("a value that is hardly known is told with its interval, one that is known without") {
+  const FittedValue known{"level", "N m", 0.15, 0.14, 0.16}, doubtful{"level", "N m", 0.15, 0.02, 0.9};
+  CHECK(fill_sentence("{level} of friction", "omega", {known}) == "0.15 N m of friction");
+  CHECK(fill_sentence("{level} of friction", "omega", {doubtful}) == "0.15 N m (0.02 to 0.9) of friction");
+}
+
 TEST_CASE("lists end with an and") {
   CHECK(in_list({}).empty());
   CHECK(in_list({"a"}) == "a");

@@ -18,6 +18,14 @@ SUREFOOT_ONCE std::string in_digits(double value) {
   return text;
 }
 
+/// "0.2 N m", and between which values it may be where that is much of it.
+SUREFOOT_ONCE std::string with_doubt(const FittedValue& fitted) {
+  constexpr double much = 0.5;  // of the value: the width of its 95 % interval that its digits hide
+  const std::string text = with_unit(fitted.value, fitted.unit);
+  if (!(fitted.high - fitted.low > much * std::abs(fitted.value))) return text;
+  return text + " (" + in_digits(fitted.low) + " to " + in_digits(fitted.high) + ")";
+}
+
 SUREFOOT_ONCE std::string fill_sentence(std::string sentence, const std::string& place,
                                         const std::vector<FittedValue>& values) {
   const auto replace = [&sentence](const std::string& key, const std::string& text) {
@@ -27,7 +35,7 @@ SUREFOOT_ONCE std::string fill_sentence(std::string sentence, const std::string&
     }
   };
   replace("at", place);
-  for (const FittedValue& value : values) replace(value.name, with_unit(value.value, value.unit));
+  for (const FittedValue& value : values) replace(value.name, with_doubt(value));
   return sentence;
 }
 

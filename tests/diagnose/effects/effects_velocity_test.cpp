@@ -211,6 +211,31 @@ TEST_CASE("a smooth friction has three quarters of its level at its onset, and a
   CHECK(effects::smoothed(effects::load_dependent_friction()).form == "drive, smooth");
 }
 
+TEST_CASE("a friction that creeps does in whole rows what a smooth one with so small an onset does in tiny steps") {
+  const Effect creeping = effects::creeping(effects::coulomb_friction());
+  CHECK(creeping.form == "creeping");
+  CHECK(creeping.extends == std::vector<std::string>{""});
+  CHECK(effects::creeping(effects::stribeck_friction_tailed()).extends ==
+        std::vector<std::string>{"tailed", "creeping"});
+  CHECK_NOTHROW(check(creeping));
+  constexpr int fine = 100;  // steps in a row of 10 ms: what lasts 0.5 ms is smooth for these
+  constexpr int rows = 300;
+  constexpr double level = 4, onset = 0.001;
+  std::vector<double> force(rows), in_fine_steps(std::size_t{rows} * fine);
+  for (std::size_t i = 0; i < rows; ++i) force[i] = i < 100 ? 3.6 : i < 200 ? -5.0 : 2.0;
+  for (std::size_t i = 0; i < in_fine_steps.size(); ++i) in_fine_steps[i] = force[i / fine];
+  const auto x = states_of(creeping, {level, onset}, driven(rows, 0.01, 0, 0, force));
+  const auto smooth = states_of(effects::smoothed(effects::coulomb_friction()), {level, onset},
+                                driven(rows * fine, 0.01 / fine, 0, 0, in_fine_steps));
+  const auto plain = states_of(effects::coulomb_friction(), {level}, driven(rows, 0.01, 0, 0, force));
+  CHECK(x(0, 99) == doctest::Approx(0.99 * onset * std::atanh(3.6 / level)).epsilon(1e-6));
+  CHECK(x(1, 99) == 0);
+  for (int row = 0; row < rows; ++row) {
+    CHECK(x(0, row) == doctest::Approx(smooth(0, row * fine)).epsilon(0.01));
+  }
+  CHECK(std::abs(x(0, 99) - plain(0, 99)) > 100 * std::abs(x(0, 99) - smooth(0, 99 * fine)));
+}
+
 TEST_CASE("a supply gives way with the current that is drawn, and never turns round") {
   const Effect effect = effects::supply_sag_current();
   EffectContext m;

@@ -10,6 +10,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/diagnose/diagnose.hpp"
 #include "surefoot/diagnose/simulate_augmented.hpp"
+#include "surefoot/diagnose/verdict/describe.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
 namespace surefoot::diagnosis {
@@ -82,6 +83,27 @@ TEST_CASE("only what forgets its beginning must be followed, and where a state i
   rod.parameters[0] = 25;
   bound.structure.output_of = {-1, -1};
   CHECK(needed_follow(bound, rod, serially()) == 0);
+}
+
+TEST_CASE(
+    "a simulation that follows nothing falls over where a rod is balanced, and swings as measured where it hangs") {
+  BoundSimulator bound = bind_simulator(Rod{}, log_of(25, 1, 0));
+  const Hypothesis upright = nominal_hypothesis(bound);
+  CHECK_FALSE(moves_as_measured(bound, upright));
+  Hypothesis hanging = upright;
+  hanging.parameters[0] = -25;
+  std::vector<Recording> swinging;
+  for (const Recording& one : bound.recordings) {
+    Recording other = one;
+    for (Eigen::Index i = 0; i < other.rows(); ++i) other.inputs(0, i) = 15 * std::sin(3 * other.time[i]);
+    other.outputs = simulate_augmented(Rod{}, toys::machine({-25, 1}), other).outputs;
+    swinging.push_back(std::move(other));
+  }
+  hanging.parameters[1] = 1.1;
+  bound = bind_simulator(Rod{}, swinging);
+  CHECK(moves_as_measured(bound, hanging));
+  CHECK(following_sentence(20, true).find("controller") == std::string::npos);
+  CHECK(following_sentence(20, false).find("unstable without its controller") != std::string::npos);
 }
 
 TEST_CASE("a rod that is balanced by a controller of its own is calibrated, and its friction is named") {

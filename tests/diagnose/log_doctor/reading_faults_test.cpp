@@ -40,6 +40,15 @@ TEST_SUITE("log_doctor") {
     CHECK(lost_rows(without(every_third)) == 0);  // its clock is not regular
   }
 
+  TEST_CASE("equal readings of a noisy sensor are no sign of dropped samples where the model moves by less than that") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    const LogFit fit = fit_log(inputs, toys::servo_log({}));  // noise of 0.002 rad and 0.02 rad/s
+    CHECK(motion_that_shows(fit, 0, 0.0001) == doctest::Approx(4 * 0.002).epsilon(0.1));
+    CHECK(motion_that_shows(fit, 1, 0.0001) == doctest::Approx(4 * 0.02).epsilon(0.1));
+    CHECK(motion_that_shows(fit, 0, 0.1) == 0.2);
+  }
+
   TEST_CASE("where all sensors stand still in the same rows, samples were dropped") {
     const Parallel parallel = serially();
     const LogDoctorInputs inputs = toys::servo_doctor(parallel);

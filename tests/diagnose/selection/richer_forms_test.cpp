@@ -154,7 +154,7 @@ TEST_CASE("a richer form that takes away nothing in a few iterations is not fitt
   int jacobians = 0;
   forms.problem.fit.stopped = [&jacobians] { return ++jacobians > 100; };
   CHECK_FALSE(in_richer_forms(forms.search(), plain, ErrorsOfForm::counted).has_value());
-  CHECK(jacobians <= 2);  // one step, and the question after it
+  CHECK(jacobians <= 4);  // of either form one step, and the question after it
 }
 
 TEST_CASE("forms that differ by less than an error of form are compared in full, but not while effects are sought") {

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "surefoot/diagnose/effects/cogging.hpp"
+#include "surefoot/diagnose/effects/gravity_offset.hpp"
 #include "surefoot/diagnose/effects/quantization.hpp"
 #include "surefoot/diagnose/selection/extend.hpp"
 #include "tests/diagnose/selection/tank_bench.hpp"
@@ -159,6 +161,70 @@ TEST_CASE("a rival is weighed with the steps that it needs, and all go on with t
   weigh_with_its_own_steps(worse, drift, rate, pool);
   CHECK_FALSE(is_finer(worse));
   CHECK(pool.size() == 1);
+}
+
+/// A counterweighted arm that a motor swings far around where it rests.
+struct CounterweightedArm {
+  using State = Vec<2>;
+  using Input = Vec<1>;
+  using Output = Vec<1>;
+
+  SimulatorInfo info() const {
+    return {.name = "arm",
+            .states = {{"angle", "rad"}, {"speed", "rad/s", "N m"}},
+            .inputs = {{"torque", "N m"}},
+            .outputs = {{"angle_rad", "rad"}},
+            .parameters = {{"weight", "N m", 0.85, 0.1, 4}, {"damping", "N m s", 0.12, 0, 2}}};
+  }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& p) const {
+    return {x[1], (u[0] - p[1] * x[1] - p[0] * std::sin(x[0])) / inertia};
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return Output(x[0]); }
+  State effort(const State& /*x*/, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return {1, inertia}; }
+
+  static constexpr double inertia = 0.048;  // [kg m^2]
+};
+
+TEST_CASE("what stands in an effect's place is fitted under guidance where it is lost without that effect") {
+  const NamedEffect offset{"gravity_offset", "speed", {}, {}, {0.21}};
+  std::vector<Recording> recordings;
+  Rng rng(4);
+  for (int r = 0; r < 4; ++r) {
+    Recording one = toys::blank_recording(CounterweightedArm{}.info(), 500, 0.02);
+    for (Eigen::Index i = 0; i < one.rows(); ++i) {
+      one.inputs(0, i) = (0.7 + 0.1 * r) * std::sin((1 + 0.7 * r) * one.time[i]);
+    }
+    one.outputs = simulate_augmented(CounterweightedArm{}, toys::machine({0.95, 0.11}, {offset}), one).outputs;
+    for (double& angle : one.outputs.reshaped()) angle += 0.001 * rng.normal();
+    recordings.push_back(std::move(one));
+  }
+  BoundSimulator bound = bind_simulator(CounterweightedArm{}, std::move(recordings));
+  SearchProblem problem;
+  problem.fit.recordings = problem.screened = {0, 1, 2, 3};
+  problem.fit.weighting.sigma.setConstant(1, 0.001);
+  problem.scale.sigma = error_scale(bound);
+  problem.nominal = nominal_hypothesis(bound);
+  const Parallel parallel = serially();
+  bound.sizes = measure_sizes(bound, problem.nominal, problem.fit.recordings,
+                              simulate_all(bound, problem.nominal, problem.fit.recordings, {}, parallel));
+  const std::vector<AttachedEffect> candidates =
+      attachments(bound, {effects::cogging_per_turn(), effects::gravity_offset()}, std::vector<bool>(2, true));
+  problem.candidates = candidates.size();
+  problem.noise.setConstant(1, std::pow(0.001 / problem.scale.sigma[0], 2));  // mean squares
+  Search search{bound, problem, candidates, parallel};
+  const auto fitted_with = [&](const AttachedEffect& effect, const std::vector<double>& values) {
+    Hypothesis start = problem.nominal;
+    start.parameters << 1.1, 0.11;
+    start.effects = {effect};
+    start.values = {Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()))};
+    return evaluate_fit(bound, fit(bound, start, problem.fit, parallel), problem, parallel);
+  };
+  std::vector<EvaluatedHypothesis> pool{
+      evaluate_fit(bound, fit(bound, problem.nominal, problem.fit, parallel), problem, parallel),
+      fitted_with(candidates[0], {0.15, 0.21, 1})};
+  REQUIRE(names_in(pool[best_of(pool, problem.criteria)]) == "cogging");
+  try_confusable(search, pool);
+  CHECK(names_in(pool[best_of(pool, problem.criteria)]) == "gravity_offset");
 }
 
 }  // namespace

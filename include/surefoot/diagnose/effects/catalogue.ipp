@@ -79,7 +79,9 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
                              effects::elastic_end_stop(true),
                              effects::elastic_end_stop(false)};
   for (std::size_t i = 0, count = all.size(); i < count; ++i) {
-    if (!all[i].dry || all[i].form == "tailed") continue;
+    if (!all[i].dry) continue;
+    if (!all[i].needs_drive && !all[i].needs_damping) all.push_back(effects::creeping(all[i]));
+    if (all[i].form == "tailed") continue;
     if (all[i].needs_drive) {
       const Effect presliding = effects::with_presliding(all[i]);
       all.push_back(presliding);

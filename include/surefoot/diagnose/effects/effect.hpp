@@ -113,6 +113,8 @@ struct Effect {
   std::function<double(const EffectContext&, Values p, Values hidden)> position_rate = {};
   /// Level of dry friction, at least 0: the force that holds the velocity at zero, or opposes it.
   std::function<double(const EffectContext&, Values p)> dry = {};
+  /// Beside `dry`, where that creeps instead of holding: how fast, by the share of its level (-1 to 1) that would hold.
+  double (*creep)(double share, Values p) = nullptr;
   /// Hidden states: values at the start (zero without this), rates, and what is done once after each step.
   std::function<void(const EffectContext&, Values p, HiddenStates hidden)> start = {};
   /// Where the first hidden state starts anywhere: keeps it to what it can be.

@@ -28,4 +28,19 @@ namespace surefoot::effects {
   return friction;
 }
 
+/// The same where `onset` is far below the speeds of the motion, so that steps may be longer than that takes: plain dry
+/// friction in motion, and where that would hold, the speed at which the friction above balances the force.
+[[gnu::cold]] inline Effect creeping(Effect friction) {
+  friction.sentence += ", which gives way at speeds of about {onset} where it holds";
+  std::vector<double> starts{0.001, 0.01};
+  if (friction.parameters.size() > 1) starts = {0.003};  // few combinations with those of the others
+  friction.parameters.push_back(
+      {.name = "onset", .measure = {.value = 1}, .low = 1e-5, .high = 0.05, .starts = std::move(starts)});
+  friction.extends = {friction.form};
+  if (!friction.form.empty()) friction.extends.emplace_back("creeping");
+  friction.form += friction.form.empty() ? "creeping" : ", creeping";
+  friction.creep = +[](double share, Values p) { return p.back() * std::atanh(share); };
+  return friction;
+}
+
 }  // namespace surefoot::effects

@@ -112,6 +112,21 @@ SUREFOOT_ONCE double growth_rate(const BoundSimulator& bound, const Hypothesis& 
   return growth.logarithm / growth.seconds;
 }
 
+/// By how much a channel changes over a fiftieth of its rows: root mean square, where both are known.
+SUREFOOT_ONCE double typical_change(const Eigen::MatrixXd& channels, Eigen::Index k) {
+  constexpr Eigen::Index parts = 50;  // of the recording
+  const Eigen::Index apart = std::max<Eigen::Index>(1, channels.cols() / parts);
+  double sum = 0;
+  int count = 0;
+  for (Eigen::Index row = apart; row < channels.cols(); ++row) {
+    const double change = channels(k, row) - channels(k, row - apart);
+    if (!std::isfinite(change)) continue;
+    sum += change * change;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
 SUREFOOT_ONCE double needed_follow(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                    const Parallel& parallel) {
   constexpr double forgotten = 1000;  // times a difference: what it began with does not matter any more
@@ -123,6 +138,21 @@ SUREFOOT_ONCE double needed_follow(const BoundSimulator& bound, const Hypothesis
   std::vector<std::size_t> all(bound.recordings.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   return std::min(most, faster * growth.logarithm / growth.seconds * shortest_interval(bound, all));
+}
+
+SUREFOOT_ONCE bool moves_as_measured(const BoundSimulator& bound, const Hypothesis& hypothesis) {
+  constexpr double more = 2;  // times: what falls over, or runs away, moves far more than what is held
+  std::size_t alike = 0;
+  for (std::size_t r = 0; r < bound.recordings.size(); ++r) {
+    const SimulatedRun free = simulate(bound, hypothesis, r, bound.integration);
+    bool as_measured = free.finite;
+    for (Eigen::Index k = 0; as_measured && k < free.outputs.rows(); ++k) {
+      const double measured = typical_change(bound.recordings[r].outputs, k);
+      as_measured = typical_change(free.outputs, k) <= more * measured;
+    }
+    alike += as_measured ? 1 : 0;
+  }
+  return 2 * alike > bound.recordings.size();
 }
 
 }  // namespace surefoot::diagnosis

@@ -33,6 +33,10 @@ std::vector<FoundFault> find_gaps(const BoundSimulator& bound, const LogDoctorCr
 /// Rows that a regular clock left out here and there; 0 where it is not regular. What was commanded in them is lost.
 int lost_rows(const Recording& recording);
 
+/// By how much the model must move from row to row, that equal readings of an output are no chance: two steps of its
+/// sensor, or four standard deviations of its noise.
+double motion_that_shows(const LogFit& fit, Eigen::Index output, double resolution);
+
 /// Stuck sensors, clipped readings and repeated rows.
 std::vector<FoundFault> find_reading_faults(const LogFit& fit, const LogDoctorCriteria& criteria);
 

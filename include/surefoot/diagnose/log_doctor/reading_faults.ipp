@@ -11,6 +11,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/items.hpp"
+#include "surefoot/diagnose/estimation/sensor_noise.hpp"
 #include "surefoot/diagnose/log_doctor/column_faults.hpp"
 #include "surefoot/diagnose/log_doctor/reading_faults.hpp"
 
@@ -170,7 +171,8 @@ SUREFOOT_ONCE std::optional<FoundFault> constant_fault(const LogFit& fit, std::s
   return FoundFault{{clipped_rows > stuck_rows ? clipped : stuck}, r};
 }
 
-/// Rows that repeat the reading before although the model moves on by more than the sensor's steps, and all such rows.
+/// Rows that repeat the reading before although the model moves on by more than the sensor's steps and noise, and all
+/// such rows.
 struct RepeatedRows {
   std::vector<RowRange> rows;
   double moving = 0;
@@ -187,9 +189,16 @@ SUREFOOT_ONCE bool catches_up(const Recording& recording, const Eigen::MatrixXd&
   return std::abs(step - whole) < std::abs(step - last);
 }
 
-SUREFOOT_ONCE RepeatedRows repeated_rows(const LogFit& fit, std::size_t r, Eigen::Index output, double resolution,
+SUREFOOT_ONCE double motion_that_shows(const LogFit& fit, Eigen::Index output, double resolution) {
+  constexpr double steps = 2;   // of the sensor
+  constexpr double noises = 4;  // standard deviations of a reading
+  std::vector<std::size_t> all(fit.bound.recordings.size());
+  for (std::size_t r = 0; r < all.size(); ++r) all[r] = r;
+  return std::max(steps * resolution, noises * noise_of(fit.bound, all, output));
+}
+
+SUREFOOT_ONCE RepeatedRows repeated_rows(const LogFit& fit, std::size_t r, Eigen::Index output, double least_motion,
                                          const LogDoctorCriteria& criteria) {
-  constexpr double steps = 2;  // of the sensor: by so much the model must move from row to row
   const Recording& recording = fit.bound.recordings[r];
   const Eigen::MatrixXd& simulated = fit.runs[r].outputs;
   RepeatedRows result;
@@ -198,7 +207,7 @@ SUREFOOT_ONCE RepeatedRows repeated_rows(const LogFit& fit, std::size_t r, Eigen
     const double value = recording.outputs(output, row), before = recording.outputs(output, row - 1);
     if (!std::isfinite(value) || !std::isfinite(before)) continue;
     equal = value == before ? equal + 1 : 0;
-    if (!(std::abs(simulated(output, row) - simulated(output, row - 1)) > steps * resolution)) continue;
+    if (!(std::abs(simulated(output, row) - simulated(output, row - 1)) > least_motion)) continue;
     if (equal >= static_cast<Eigen::Index>(criteria.constant_rows)) continue;  // a stretch
     ++result.moving;
     if (equal > 0 && catches_up(recording, simulated, output, row, row - equal)) {
@@ -217,10 +226,11 @@ SUREFOOT_ONCE double log_likelihood_ratio(double hits, double rows, double share
 SUREFOOT_ONCE std::vector<FoundFault> repeated_row_faults(const LogFit& fit, Eigen::Index output, double resolution,
                                                           const LogDoctorCriteria& criteria) {
   const std::size_t count = fit.bound.recordings.size();
+  const double least_motion = motion_that_shows(fit, output, resolution);
   std::vector<RepeatedRows> repeated(count);
   double all_hits = 0, all_rows = 0;
   for (std::size_t r = 0; r < count; ++r) {
-    if (fit.runs[r].finite) repeated[r] = repeated_rows(fit, r, output, resolution, criteria);
+    if (fit.runs[r].finite) repeated[r] = repeated_rows(fit, r, output, least_motion, criteria);
     all_hits += static_cast<double>(repeated[r].rows.size());
     all_rows += repeated[r].moving;
   }

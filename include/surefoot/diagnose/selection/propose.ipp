@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <functional>
 #include <iterator>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -145,7 +144,9 @@ SUREFOOT_ONCE Proposal predict_gain(const BoundSimulator& bound, const OpenResid
   Eigen::VectorXd against = transposed_product(distinct, open.open);
   for (double& value : against) value = -value;
   Eigen::VectorXd share = surefoot::detail::solve_symmetric(gram, against);
-  std::tie(proposal.least_share, proposal.most_share) = limits_of_shares(bound, candidate, start, count);
+  auto limits = limits_of_shares(bound, candidate, start, count);
+  proposal.least_share = std::move(limits.first);
+  proposal.most_share = std::move(limits.second);
   const std::vector<Eigen::Index> strengths = strengths_of(*candidate.effect);
   for (Eigen::Index m = 0; m < count; ++m) {
     share[m] = std::clamp(share[m], proposal.least_share[m], proposal.most_share[m]);

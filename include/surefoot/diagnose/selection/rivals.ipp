@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/guided_fit.hpp"
 #include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
 #include "surefoot/diagnose/selection/extend.hpp"
@@ -116,6 +117,29 @@ SUREFOOT_ONCE void drop_growing_that_cannot_pay(std::vector<Proposal>& proposals
   });
 }
 
+/// Whether one of these is this effect, in any form.
+SUREFOOT_ONCE bool has_in_any_form(const std::vector<AttachedEffect>& effects, const AttachedEffect& one) {
+  return holds_for_any(effects, [&](const AttachedEffect& other) { return same_but_for_form(other, one); });
+}
+
+/// A fit of what stands in an effect's place, if it promises as much as that effect, but is not fitted as well: without
+/// it, and with a first guess in its place, readings may be lost, so that this is a fit under their guidance. Only what
+/// leaves no more than noise counts, as in extend_from_nominal.
+SUREFOOT_ONCE void guide_what_promises(const Search& search, const EvaluatedHypothesis& rest,
+                                       const EvaluatedHypothesis& best, const Proposal& one, double needed,
+                                       std::vector<EvaluatedHypothesis>& fitted) {
+  constexpr double as_much = 0.9;  // of what is needed
+  constexpr double as_well = 2;    // times the loss of the best structure
+  const FitProblem& problem = search.problem.fit;
+  if (search.problem.stopped() || one.gain < as_much * needed || !can_be_guided(search.bound, problem)) return;
+  for (const EvaluatedHypothesis& other : fitted) {
+    if (has_in_any_form(other.hypothesis.effects, one.effect) && other.loss < as_well * best.loss) return;
+  }
+  const Hypothesis start = with_effect(rest.hypothesis, one.effect, one.start, one.before);
+  EvaluatedHypothesis child = refitted(search, guided(search.bound, start, problem, guided_horizons, search.parallel));
+  if (explains(search, child)) fitted.push_back(std::move(child));
+}
+
 /// Other effects that an effect of the best structure may be confused with, and the same elsewhere.
 SUREFOOT_ONCE void try_in_its_place(Search& search, const EvaluatedHypothesis& best, std::size_t e,
                                     std::vector<EvaluatedHypothesis>& pool) {
@@ -140,7 +164,8 @@ SUREFOOT_ONCE void try_in_its_place(Search& search, const EvaluatedHypothesis& b
     drop_items(proposals, [&](const Proposal& one) { return same_but_for_form(one.effect, found); });
     drop_growing_that_cannot_pay(proposals, needed, problem.effort);
     std::vector<EvaluatedHypothesis> fitted =
-        next_effects(among, rest, std::move(proposals), rivals.size(), problem.effort.compared_finalists);
+        next_effects(among, rest, proposals, rivals.size(), problem.effort.compared_finalists);
+    for (const Proposal& one : proposals) guide_what_promises(among, rest, best, one, needed, fitted);
     enrich(search, fitted, std::numeric_limits<double>::infinity(), ErrorsOfForm::tolerated);
     for (const EvaluatedHypothesis& one : fitted) {
       keep_best_form(pool, one, problem.criteria);
@@ -182,11 +207,6 @@ struct ReadyEffect {
   AttachedEffect effect;
   Eigen::VectorXd values;
 };
-
-/// Whether one of these is this effect, in any form.
-SUREFOOT_ONCE bool has_in_any_form(const std::vector<AttachedEffect>& effects, const AttachedEffect& one) {
-  return holds_for_any(effects, [&](const AttachedEffect& other) { return same_but_for_form(other, one); });
-}
 
 /// A structure with another effect in the place of number `e`.
 SUREFOOT_ONCE Fit exchanged(const Hypothesis& structure, std::size_t e, const ReadyEffect& other) {

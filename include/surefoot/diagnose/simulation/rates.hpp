@@ -121,6 +121,54 @@ inline typename S::State seen_states(const AugmentedSimulator<S>& m, const typen
   return seen;
 }
 
+/// Velocities that stick, each once.
+inline std::vector<int> stuck_velocities(const std::vector<EffectSlot>& dry, const std::vector<Mode>& modes) {
+  std::vector<int> stuck;
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    if (modes[i] != Mode::stuck) continue;
+    if (std::find(stuck.begin(), stuck.end(), dry[i].at) == stuck.end()) stuck.push_back(dry[i].at);
+  }
+  return stuck;
+}
+
+/// The force that holds a velocity, one of those that stick; `free` are the rates if nothing held them.
+template <Simulator S>
+double holding_force(const AugmentedSimulator<S>& m, const ForceResponse<S>& response, const std::vector<Mode>& modes,
+                     int at, const typename S::State& free) {
+  if constexpr (has_response<S>) {
+    if (number_of_pushed(m.structure, at) >= 0) {
+      std::vector<int> stuck;
+      for (const int other : stuck_velocities(m.slots.dry, modes)) {
+        if (number_of_pushed(m.structure, other) >= 0) stuck.push_back(other);
+      }
+      const Eigen::VectorXd forces = forces_for(m, response, stuck, free);
+      for (std::size_t k = 0; k < stuck.size(); ++k) {
+        if (stuck[k] == at) return forces[static_cast<Eigen::Index>(k)];
+      }
+    }
+  }
+  return response.effort[at] * free[at];
+}
+
+/// Adds the creep of what sticks to the rates of positions. `rate` is as if nothing stuck, `model` that of the
+/// simulator alone.
+template <Simulator S>
+void creep(const AugmentedSimulator<S>& m, const ForceResponse<S>& response, const typename S::State& x,
+           const typename S::State& model, const typename S::Input& u, double t, double h,
+           const std::vector<Mode>& modes, typename S::State& rate) {
+  constexpr double most = 0.999;  // of its level, short of where the speed would be infinite
+  const auto& dry = m.slots.dry;
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    const EffectSlot& slot = dry[i];
+    if (modes[i] != Mode::stuck || !slot.effect->creep || slot.position < 0) continue;
+    double limit = 0;  // of all dry friction there
+    for (const EffectSlot& other : dry) limit += other.at == slot.at ? level(m, other, x, model, response, u, t, h) : 0;
+    if (!(limit > 0)) continue;
+    const double share = holding_force(m, response, modes, slot.at, rate) / limit;
+    add_at(rate, slot.position, slot.effect->creep(std::clamp(share, -most, most), slot.p));
+  }
+}
+
 /// Adds dry friction in a given mode of each to the rates; `model` are those of the simulator alone.
 template <Simulator S>
 void rub(AugmentedSimulator<S>& m, const ForceResponse<S>& response, const typename S::State& x,
@@ -131,12 +179,9 @@ void rub(AugmentedSimulator<S>& m, const ForceResponse<S>& response, const typen
     if (modes[i] == Mode::stuck) continue;
     push(m, response, slot.at, -static_cast<double>(modes[i]) * level(m, slot, x, model, response, u, t, h), rate);
   }
+  creep(m, response, x, model, u, t, h, modes, rate);
   if constexpr (has_response<S>) {
-    std::vector<int> stuck;
-    for (std::size_t i = 0; i < modes.size(); ++i) {
-      const int at = m.slots.dry[i].at;
-      if (modes[i] == Mode::stuck && std::find(stuck.begin(), stuck.end(), at) == stuck.end()) stuck.push_back(at);
-    }
+    const std::vector<int> stuck = stuck_velocities(m.slots.dry, modes);
     if (!m.structure.pushed.empty() && !stuck.empty()) return hold(m, response, stuck, rate);
   }
   for (std::size_t i = 0; i < modes.size(); ++i) {

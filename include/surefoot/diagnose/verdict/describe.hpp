@@ -51,6 +51,10 @@ std::string moved_together_sentence(const SimulatorInfo& info, const std::vector
 /// That forces were not tried, for no state is known to be a speed.
 std::string no_speed_sentence();
 
+/// That whole recordings cannot be simulated, and predictions over so many rows are compared instead; for a chaotic
+/// motion or, if not, a machine that is unstable by itself.
+std::string following_sentence(double rows, bool chaotic);
+
 /// That a recording was cut, the first time after so many seconds, where its start no longer tells what it does.
 std::string sensitive_recording_sentence(double seconds, std::size_t parts);
 

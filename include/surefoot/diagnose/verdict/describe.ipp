@@ -167,6 +167,19 @@ SUREFOOT_ONCE std::string sensitive_recording_sentence(double seconds, std::size
          std::to_string(parts) + " parts, each from where it was measured";
 }
 
+SUREFOOT_ONCE std::string following_sentence(double rows, bool chaotic) {
+  const std::string how = "simulations follow the readings, and errors are those of predictions over " +
+                          in_digits(std::round(rows)) + " rows; ";
+  if (chaotic) {
+    return "in the motion that was recorded, differences smaller than the noise grow to what the machine does at all, "
+           "so that no whole recording can be simulated: " +
+           how + "shorter recordings, or ones of smaller motions, would show more";
+  }
+  return "the machine is unstable without its controller, which is not part of the model, so that no whole recording "
+         "can be simulated: " +
+         how + "a model of the controller, with its set points as inputs, would show more";
+}
+
 SUREFOOT_ONCE std::string not_held_out_sentence() {
   return "the time was over before parameters were fitted without the held-out recordings: errors on these are those "
          "of recordings that were fitted, and too small";

@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <limits>
 #include <stop_token>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -248,7 +247,9 @@ SUREFOOT_ONCE void evaluate_errors(const EstimationSetup& setup, const FittedMod
   diagnosis.held_out_after = over_all(after, counts);
   diagnosis.training_before = error_over_all(bound, training, calibrated.runs.whole_training);
   diagnosis.training_after = error_over_all(bound, training, chosen.runs.whole_training);
-  std::tie(diagnosis.gain_low, diagnosis.gain_high) = ratio_interval(before, after, counts, seed, criteria);
+  const auto [low, high] = ratio_interval(before, after, counts, seed, criteria);
+  diagnosis.gain_low = low;
+  diagnosis.gain_high = high;
   diagnosis.channels = mismatch_by_output(setup, models);
   diagnosis.noise_floor = noise_floor(diagnosis.channels, scale);
   if (setup.noise != NoiseKind::measurement || !(diagnosis.noise_floor > 0)) return;  // noise adds up on the way

@@ -10,7 +10,6 @@
 #include <optional>
 #include <stop_token>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -261,7 +260,9 @@ SUREFOOT_ONCE void evaluate_selection(const EstimationSetup& setup, const Calibr
   describe_models(setup, models, choice.selection, run, diagnosis);
   const std::vector<std::string> ties = describe_alternatives(choice.selection, diagnosis);
   weigh_against_none(setup, choice.selection, problem, diagnosis);
-  std::tie(diagnosis.regions, diagnosis.intervals) = locate_mismatch(setup, calibrated, run.seed);
+  MismatchLocation location = locate_mismatch(setup, calibrated, run.seed);
+  diagnosis.regions = std::move(location.first);
+  diagnosis.intervals = std::move(location.second);
   offer_forests(setup, models, diagnosis, run.parallel, run.seed);
   describe_limits(setup, models, problem, candidates, run, diagnosis);
   diagnosis.sentence = verdict_sentence(diagnosis, ties);
@@ -445,13 +446,16 @@ SUREFOOT_ONCE void examine_parts_as_well(const BindSimulator& bind, const RunCon
   for (const Remark& cut : cuts) remarks.push_back(cut);
 }
 
-/// As many steps a row as a simulator needs to run over these recordings, which are followed where they must be.
+/// As many steps a row as a simulator needs to run over these recordings, which are followed where they must be, with
+/// a remark that says why.
 SUREFOOT_ONCE Integration needed_integration(const BindSimulator& bind, const std::vector<Recording>& recordings,
-                                             const RunContext& run) {
+                                             const RunContext& run, std::vector<Remark>& remarks) {
   BoundSimulator bound = bind(recordings);
   const Hypothesis nominal = nominal_with_known(bound, run.options);
   bound.integration = integration_that_runs(bound, nominal, run.parallel);
-  bound.integration.follow = needed_follow(bound, nominal, run.parallel);
+  const double follow = needed_follow(bound, nominal, run.parallel);
+  if (follow > 0) remarks.push_back({"", following_sentence(1 / follow, moves_as_measured(bound, nominal))});
+  bound.integration.follow = follow;
   return bound.integration;
 }
 
@@ -464,13 +468,6 @@ SUREFOOT_ONCE BindSimulator with_integration(const BindSimulator& bind, const In
   };
 }
 
-SUREFOOT_ONCE std::string following_sentence(double rows) {
-  return "the machine is unstable without its controller, which is not part of the model, so that no whole recording "
-         "can be simulated: simulations follow the readings, and errors are those of predictions over " +
-         in_digits(std::round(rows)) +
-         " rows; a model of the controller, with its set points as inputs, would show more";
-}
-
 SUREFOOT_ONCE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorInfo& info,
                                      std::vector<Recording> recordings, const DiagnoseOptions& options,
                                      const Parallel& parallel, std::uint64_t seed, std::stop_token stop) {
@@ -481,8 +478,7 @@ SUREFOOT_ONCE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorI
   sort_recordings(recordings);
   const Eigen::Index kept = shorten_recordings(recordings, options.max_rows);
   if (kept > 0) remarks.push_back({"", shortening_sentence(kept)});
-  const Integration needed = needed_integration(bind, recordings, run);
-  if (needed.follow > 0) remarks.push_back({"", following_sentence(1 / needed.follow)});
+  const Integration needed = needed_integration(bind, recordings, run, remarks);
   const BindSimulator bind_to_run = with_integration(bind, needed);
   LogExamination log = examine_recordings(bind_to_run, recordings, run);
   examine_parts_as_well(bind_to_run, run, recordings, remarks, log);
