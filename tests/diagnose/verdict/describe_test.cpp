@@ -107,6 +107,11 @@ TEST_CASE("every verdict has its sentence") {
   CHECK(verdict_sentence(diagnosis, {}).ends_with("Its error is 4 times the noise."));
 }
 
+TEST_CASE("only an unstable machine, and no chaotic motion, is said to lack its controller") {
+  CHECK(following_sentence(20, true).find("controller") == std::string::npos);
+  CHECK(following_sentence(20, false).find("unstable without its controller") != std::string::npos);
+}
+
 TEST_CASE("where nothing is named, the structure that comes clearly nearest is told") {
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::unexplained;

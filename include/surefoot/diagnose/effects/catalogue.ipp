@@ -80,7 +80,8 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
                              effects::elastic_end_stop(false)};
   for (std::size_t i = 0, count = all.size(); i < count; ++i) {
     if (!all[i].dry) continue;
-    if (!all[i].needs_drive && !all[i].needs_damping) all.push_back(effects::creeping(all[i]));
+    const bool of_load = all[i].needs_drive || all[i].needs_damping;  // has many forms, each of which would be fitted
+    if (!of_load) all.push_back(effects::creeping(all[i]));
     if (all[i].form == "tailed") continue;
     if (all[i].needs_drive) {
       const Effect presliding = effects::with_presliding(all[i]);

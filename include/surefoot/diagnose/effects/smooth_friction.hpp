@@ -13,13 +13,17 @@
 
 namespace surefoot::effects {
 
+/// The further parameter of both forms; of a friction with several of its own it has one start, for few combinations.
+[[gnu::cold]] inline EffectParameter onset_parameter(const Effect& friction, double low, double high,
+                                                     std::vector<double> starts, double only_start) {
+  if (friction.parameters.size() > 1) starts = {only_start};
+  return {.name = "onset", .measure = {.value = 1}, .low = low, .high = high, .starts = std::move(starts)};
+}
+
 /// The same friction, with 76 % of its level at the speed `onset`.
 [[gnu::cold]] inline Effect smoothed(Effect friction) {
   friction.sentence += ", which grows from rest on up to speeds of about {onset}";
-  std::vector<double> starts{0.01, 0.05};
-  if (friction.parameters.size() > 1) starts = {0.02};  // few combinations with those of the others
-  friction.parameters.push_back(
-      {.name = "onset", .measure = {.value = 1}, .low = 0.001, .high = 0.2, .starts = std::move(starts)});
+  friction.parameters.push_back(onset_parameter(friction, 0.001, 0.2, {0.01, 0.05}, 0.02));
   friction.form += friction.form.empty() ? "smooth" : ", smooth";
   for (std::string& form : friction.extends) form += ", smooth";
   friction.force = [level = std::exchange(friction.dry, {})](const EffectContext& m, Values p, Values /*hidden*/) {
@@ -32,10 +36,7 @@ namespace surefoot::effects {
 /// friction in motion, and where that would hold, the speed at which the friction above balances the force.
 [[gnu::cold]] inline Effect creeping(Effect friction) {
   friction.sentence += ", which gives way at speeds of about {onset} where it holds";
-  std::vector<double> starts{0.001, 0.01};
-  if (friction.parameters.size() > 1) starts = {0.003};  // few combinations with those of the others
-  friction.parameters.push_back(
-      {.name = "onset", .measure = {.value = 1}, .low = 1e-5, .high = 0.05, .starts = std::move(starts)});
+  friction.parameters.push_back(onset_parameter(friction, 1e-5, 0.05, {0.001, 0.01}, 0.003));
   friction.extends = {friction.form};
   if (!friction.form.empty()) friction.extends.emplace_back("creeping");
   friction.form += friction.form.empty() ? "creeping" : ", creeping";

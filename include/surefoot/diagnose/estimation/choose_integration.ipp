@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -108,8 +107,7 @@ SUREFOOT_ONCE Integration coarsest_that_runs(const BoundSimulator& bound, const 
 SUREFOOT_ONCE Integration integration_that_runs(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                                 const Parallel& parallel) {
   if (bound.info.kind == SimulatorKind::map) return bound.integration;
-  std::vector<std::size_t> all(bound.recordings.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
+  const std::vector<std::size_t> all = all_recordings(bound);
   return coarsest_that_runs(bound, hypothesis, bound.integration, shortest_interval(bound, all), all, parallel);
 }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -135,9 +134,7 @@ SUREFOOT_ONCE double needed_follow(const BoundSimulator& bound, const Hypothesis
   if (bound.info.kind == SimulatorKind::map || !can_follow(bound)) return 0;
   const GrowthOverRecording growth = median_growth(bound, hypothesis, parallel);
   if (!(growth.logarithm > std::log(forgotten))) return 0;
-  std::vector<std::size_t> all(bound.recordings.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  return std::min(most, faster * growth.logarithm / growth.seconds * shortest_interval(bound, all));
+  return std::min(most, faster * growth.logarithm / growth.seconds * shortest_interval(bound, all_recordings(bound)));
 }
 
 SUREFOOT_ONCE bool moves_as_measured(const BoundSimulator& bound, const Hypothesis& hypothesis) {

@@ -40,9 +40,7 @@ SUREFOOT_ONCE std::vector<double> cell_counts(const BoundSimulator& bound, const
 }
 
 SUREFOOT_ONCE Eigen::VectorXd error_scale(const BoundSimulator& bound) {
-  std::vector<std::size_t> all(bound.recordings.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  Eigen::VectorXd scale = output_deviations(bound, all);
+  Eigen::VectorXd scale = output_deviations(bound, all_recordings(bound));
   for (Eigen::Index k = 0; k < scale.size(); ++k) {
     const double noise = bound.info.outputs[static_cast<std::size_t>(k)].noise;
     if (noise > 0) scale[k] = noise;

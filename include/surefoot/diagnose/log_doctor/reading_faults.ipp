@@ -192,9 +192,7 @@ SUREFOOT_ONCE bool catches_up(const Recording& recording, const Eigen::MatrixXd&
 SUREFOOT_ONCE double motion_that_shows(const LogFit& fit, Eigen::Index output, double resolution) {
   constexpr double steps = 2;   // of the sensor
   constexpr double noises = 4;  // standard deviations of a reading
-  std::vector<std::size_t> all(fit.bound.recordings.size());
-  for (std::size_t r = 0; r < all.size(); ++r) all[r] = r;
-  return std::max(steps * resolution, noises * noise_of(fit.bound, all, output));
+  return std::max(steps * resolution, noises * noise_of(fit.bound, all_recordings(fit.bound), output));
 }
 
 SUREFOOT_ONCE RepeatedRows repeated_rows(const LogFit& fit, std::size_t r, Eigen::Index output, double least_motion,

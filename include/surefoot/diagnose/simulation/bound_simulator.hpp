@@ -66,6 +66,9 @@ class SimulatorPool {
   std::vector<std::vector<S>> idle_;
 };
 
+/// 0 to their number: where a stage looks at all recordings.
+std::vector<std::size_t> all_recordings(const BoundSimulator& bound);
+
 double root_mean_square(const Eigen::VectorXd& values);
 
 double standard_deviation(const Eigen::VectorXd& values);

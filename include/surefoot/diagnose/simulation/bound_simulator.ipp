@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -43,6 +44,12 @@ SUREFOOT_INLINE double standard_deviation(const Eigen::VectorXd& values) {
   if (count < 2) return 0;
   const double mean = sum / static_cast<double>(count);
   return std::sqrt(std::max(0.0, squares / static_cast<double>(count) - mean * mean));
+}
+
+SUREFOOT_ONCE std::vector<std::size_t> all_recordings(const BoundSimulator& bound) {
+  std::vector<std::size_t> all(bound.recordings.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
 }
 
 SUREFOOT_ONCE Eigen::VectorXd nominal_parameters(const SimulatorInfo& info) {

@@ -63,16 +63,10 @@ SUREFOOT_ONCE std::vector<Remark> screen_recordings(const SimulatorInfo& info, s
   return remarks;
 }
 
-SUREFOOT_ONCE std::vector<std::size_t> all_of(const BoundSimulator& bound) {
-  std::vector<std::size_t> all;
-  for (std::size_t r = 0; r < bound.recordings.size(); ++r) all.push_back(r);
-  return all;
-}
-
 /// Parameters, fitted to all recordings before any is held out.
 SUREFOOT_ONCE Hypothesis calibrate_alone(const BoundSimulator& bound, const RunContext& run) {
   FitProblem problem;
-  problem.recordings = all_of(bound);
+  problem.recordings = all_recordings(bound);
   problem.integration = bound.integration;
   problem.stopped = [run] { return run.search_has_ended(); };
   return calibrate(bound, nominal_with_known(bound, run.options), problem, run.options.starts, run.seed, run.parallel)
@@ -85,7 +79,7 @@ SUREFOOT_ONCE std::vector<Recording> cut_few_recordings(const BindSimulator& bin
   if (recordings.size() < criteria.enough && run.options.held_out.empty()) {
     const BoundSimulator whole = bind(recordings);
     const Hypothesis fitted = calibrate_alone(whole, run);
-    const auto runs = simulate_all(whole, fitted, all_of(whole), whole.integration, run.parallel);
+    const auto runs = simulate_all(whole, fitted, all_recordings(whole), whole.integration, run.parallel);
     const std::size_t parts = (criteria.parts + recordings.size() - 1) / recordings.size();
     std::vector<Recording> cut = cut_recordings(whole, fitted, runs, parts, criteria);
     if (cut.size() >= criteria.fewest) recordings = std::move(cut);
