@@ -146,6 +146,15 @@ TEST_CASE("damped bristles are found beside plain friction, though undamped ones
   CHECK(richer->errors.rms() < 0.1 * plain.errors.rms());
 }
 
+TEST_CASE("a richer form that does not come as near as it must in a few iterations is not fitted to the end") {
+  using namespace diagnosis;
+  const FormSearch forms =
+      search_of({"load_dependent_friction", "v", "drive, presliding, damped", {}, {0.4, 0.03, 0.06}});
+  const EvaluatedHypothesis plain = forms.fitted("drive", Eigen::VectorXd::Constant(1, 0.4));
+  CHECK(in_richer_forms(forms.search(), plain, ErrorsOfForm::counted, 0.9).has_value());
+  CHECK_FALSE(in_richer_forms(forms.search(), plain, ErrorsOfForm::counted, 1e-6).has_value());  // less than noise
+}
+
 TEST_CASE("a richer form that takes away nothing in a few iterations is not fitted to the end") {
   using namespace diagnosis;
   FormSearch forms = search_of({"coulomb_friction", "v", "", {}, {4}});

@@ -94,6 +94,10 @@ inline bool has_unknown_initial_state(const BoundSimulator& bound, const std::ve
 /// Mean robust squared residual.
 double mean_loss(const Eigen::VectorXd& residuals, double robust);
 
+/// The same of a hypothesis as it is, whatever its fit would change; NaN where its simulation runs away.
+double loss_of(const BoundSimulator& bound, const Hypothesis& hypothesis, const FitProblem& problem,
+               const Parallel& parallel);
+
 /// Fits a hypothesis, from its own parameters on. Never worse than the start. An initial state that has strayed into
 /// another valley, such as an angle a whole turn away, is read off its recording again.
 /// Where an effect may begin unsettled and was left settled, its beginning is sought all over its range, by recording.

@@ -133,6 +133,12 @@ SUREFOOT_INLINE double mean_loss(const Eigen::VectorXd& residuals, double robust
   return sum / static_cast<double>(residuals.size());
 }
 
+SUREFOOT_ONCE double loss_of(const BoundSimulator& bound, const Hypothesis& hypothesis, const FitProblem& problem,
+                             const Parallel& parallel) {
+  const FitFunctions functions(bound, hypothesis, problem, parallel);
+  return mean_loss(functions.residuals(functions.start()), problem.weighting.robust);
+}
+
 /// A fit and its residuals, recording after recording.
 struct Descent {
   Fit fit;

@@ -45,8 +45,7 @@ SUREFOOT_ONCE Fit restarted_fit(const BoundSimulator& bound, const Fit& fitted, 
   parallel(places.size(), [&](std::size_t k) {
     if (!quick.stopped()) fits[k] = fit(bound, places[k], quick, serially());
   });
-  const FitFunctions here(bound, fitted.hypothesis, quick, serially());
-  double least = clearly_less * mean_loss(here.residuals(here.start()), quick.weighting.robust);
+  double least = clearly_less * loss_of(bound, fitted.hypothesis, quick, serially());
   const Fit* best = nullptr;
   for (const Fit& one : fits) {
     if (!one.ok || !(one.loss < least)) continue;

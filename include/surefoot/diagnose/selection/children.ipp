@@ -83,8 +83,7 @@ SUREFOOT_ONCE Fit fit_settled(const BoundSimulator& bound, const Hypothesis& par
 SUREFOOT_ONCE Fit fit_child(const BoundSimulator& bound, const Hypothesis& parent,
                             const std::vector<Proposal>& additions, const SearchProblem& problem) {
   const FitProblem quick = screening_fit(problem, problem.effort.first_iterations);
-  const FitFunctions without(bound, parent, quick, serially());
-  const double parent_loss = mean_loss(without.residuals(without.start()), quick.weighting.robust);
+  const double parent_loss = loss_of(bound, parent, quick, serially());
   const bool grows = holds_for_any(additions, [](const Proposal& one) {
     return holds_for_any(strengths_of(*one.effect.effect), [&](Eigen::Index k) { return one.start[k] != 0; });
   });

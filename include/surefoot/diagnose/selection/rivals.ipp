@@ -3,8 +3,10 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +21,8 @@
 #include "surefoot/diagnose/selection/rivals.hpp"
 
 namespace surefoot::diagnosis {
+
+inline constexpr double none_hopeless = std::numeric_limits<double>::infinity();
 
 SUREFOOT_ONCE double needed_instead(const Search& search, const EvaluatedHypothesis& rest,
                                     const EvaluatedHypothesis& best, std::size_t effect,
@@ -86,13 +90,34 @@ SUREFOOT_ONCE void weigh_with_its_own_steps(Search& search, const EvaluatedHypot
   const SelectionCriteria& criteria = search.problem.criteria;
   Search fine = search;
   if (search.problem.stopped() || !refine_integration(fine, rival)) return;
-  const EvaluatedHypothesis again = refitted(fine, rival.hypothesis), before = refitted(fine, best.hypothesis);
-  const bool form = same_structure(again.hypothesis, before.hypothesis);
-  if (!((form ? log_odds_of_forms(again, before, criteria) : log_odds(again, before, criteria)) > 0)) return;
+  const EvaluatedHypothesis again = refitted(fine, rival.hypothesis);
+  const auto better_than = [&](const EvaluatedHypothesis& one) {
+    const bool form = same_structure(again.hypothesis, one.hypothesis);
+    return (form ? log_odds_of_forms(again, one, criteria) : log_odds(again, one, criteria)) > 0;
+  };
+  const Fit as_found{best.hypothesis, best.loss, true};  // which a fit makes no worse
+  if (!better_than(evaluate_fit(fine.bound, as_found, fine.problem, fine.parallel))) return;
+  if (!better_than(refitted(fine, best.hypothesis))) return;
   search.problem.fit.integration = fine.problem.fit.integration;
   search.problem.screening = fine.problem.screening;
   pool = fitted_again(search, pool);
   keep_best_form(pool, again, criteria);
+}
+
+/// Richer forms of rivals of the best structure; where one is hopelessly far behind that, of those that begin to come
+/// nearer to it.
+SUREFOOT_ONCE void enrich_rivals(const Search& search, const EvaluatedHypothesis& best,
+                                 std::vector<EvaluatedHypothesis>& rivals) {
+  constexpr double a_start = 0.1;  // of the way to the best structure, in logarithms of what is left
+  const SearchProblem& problem = search.problem;
+  for (const EvaluatedHypothesis& one :
+       best_structures(rivals, problem.effort.finalists, none_hopeless, problem.criteria)) {
+    if (problem.stopped()) return;
+    const bool far = log_odds(one, best, problem.criteria) < -problem.effort.hopeless;
+    const double left = far ? std::pow(std::min(1.0, best.loss / one.loss), a_start) : 1;
+    const auto richer = in_richer_forms(search, one, ErrorsOfForm::tolerated, left);
+    if (richer) keep_best_form(rivals, *richer, problem.criteria);
+  }
 }
 
 /// The other forms of an effect of the best structure.
@@ -102,7 +127,7 @@ SUREFOOT_ONCE void try_other_forms(Search& search, const EvaluatedHypothesis& be
   const bool structured = leaves_structure(search, best);
   const bool finely = structured && !leaves_only_noise(best, problem);
   std::vector<EvaluatedHypothesis> others = in_other_forms(search, best, e, problem.effort.compared_finalists, finely);
-  enrich(search, others, std::numeric_limits<double>::infinity(), ErrorsOfForm::tolerated);
+  enrich_rivals(search, best, others);
   for (const EvaluatedHypothesis& one : others) {
     keep_best_form(pool, one, problem.criteria);
     if (structured) weigh_with_its_own_steps(search, one, best, pool);
@@ -122,21 +147,32 @@ SUREFOOT_ONCE bool has_in_any_form(const std::vector<AttachedEffect>& effects, c
   return holds_for_any(effects, [&](const AttachedEffect& other) { return same_but_for_form(other, one); });
 }
 
-/// A fit of what stands in an effect's place, if it promises as much as that effect, but is not fitted as well: without
-/// it, and with a first guess in its place, readings may be lost, so that this is a fit under their guidance. Only what
-/// leaves no more than noise counts, as in extend_from_nominal.
+/// A fit of what stands in an effect's place, if it promises as much as that effect, but is fitted neither as well nor
+/// to what it promises: without it, and with a first guess in its place, readings may be lost, so that this is a fit
+/// under their guidance. No further where it is worse than the best structure so, too. Only what leaves no more than
+/// noise counts, as in extend_from_nominal.
 SUREFOOT_ONCE void guide_what_promises(const Search& search, const EvaluatedHypothesis& rest,
                                        const EvaluatedHypothesis& best, const Proposal& one, double needed,
                                        std::vector<EvaluatedHypothesis>& fitted) {
   constexpr double as_much = 0.9;  // of what is needed
   constexpr double as_well = 2;    // times the loss of the best structure
+  constexpr double kept = 0.5;     // of the promised gain: a fit that was not lost
   const FitProblem& problem = search.problem.fit;
   if (search.problem.stopped() || one.gain < as_much * needed || !can_be_guided(search.bound, problem)) return;
   for (const EvaluatedHypothesis& other : fitted) {
-    if (has_in_any_form(other.hypothesis.effects, one.effect) && other.loss < as_well * best.loss) return;
+    if (!has_in_any_form(other.hypothesis.effects, one.effect)) continue;
+    const double left = other.errors.rms() / rest.errors.rms();
+    if (other.loss < as_well * best.loss || 1 - left * left > kept * one.gain) return;
   }
-  const Hypothesis start = with_effect(rest.hypothesis, one.effect, one.start, one.before);
-  EvaluatedHypothesis child = refitted(search, guided(search.bound, start, problem, guided_horizons, search.parallel));
+  const std::span<const double> horizons = guided_horizons;
+  FitProblem near = problem;
+  near.integration.follow = guided_follow(search.bound, problem, horizons.front());
+  Hypothesis reached = with_effect(rest.hypothesis, one.effect, one.start, one.before);
+  reached = guided(search.bound, reached, problem, horizons.first(1), search.parallel);
+  const double at_best = loss_of(search.bound, best.hypothesis, near, search.parallel);
+  if (!(loss_of(search.bound, reached, near, search.parallel) < as_well * at_best)) return;
+  reached = guided(search.bound, reached, problem, horizons.subspan(1), search.parallel);
+  EvaluatedHypothesis child = refitted(search, reached);
   if (explains(search, child)) fitted.push_back(std::move(child));
 }
 
@@ -166,7 +202,7 @@ SUREFOOT_ONCE void try_in_its_place(Search& search, const EvaluatedHypothesis& b
     std::vector<EvaluatedHypothesis> fitted =
         next_effects(among, rest, proposals, rivals.size(), problem.effort.compared_finalists);
     for (const Proposal& one : proposals) guide_what_promises(among, rest, best, one, needed, fitted);
-    enrich(search, fitted, std::numeric_limits<double>::infinity(), ErrorsOfForm::tolerated);
+    enrich_rivals(search, best, fitted);
     for (const EvaluatedHypothesis& one : fitted) {
       keep_best_form(pool, one, problem.criteria);
       weigh_with_its_own_steps(search, one, best, pool);
@@ -184,7 +220,7 @@ SUREFOOT_ONCE void try_other_forms_without(const Search& search, const Evaluated
     rest.hypothesis = without_effect(best.hypothesis, e);
     for (std::size_t f = problem.known; f < rest.hypothesis.effects.size() && !problem.stopped(); ++f) {
       std::vector<EvaluatedHypothesis> others = in_other_forms(search, rest, f, 1, false);
-      enrich(search, others, std::numeric_limits<double>::infinity(), ErrorsOfForm::tolerated);
+      enrich_rivals(search, best, others);
       for (const EvaluatedHypothesis& one : others) keep_best_form(pool, one, problem.criteria);
     }
   }
@@ -248,9 +284,8 @@ SUREFOOT_ONCE std::vector<Fit> with_special_cases(const Search& search, const Hy
 
 SUREFOOT_ONCE void exchange_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
   const SearchProblem& problem = search.problem;
-  constexpr double none_is_hopeless = std::numeric_limits<double>::infinity();
   const std::vector<EvaluatedHypothesis> best =
-      best_structures(pool, problem.effort.predicted, none_is_hopeless, problem.criteria);
+      best_structures(pool, problem.effort.predicted, none_hopeless, problem.criteria);
   const Hypothesis& first = best.front().hypothesis;
   std::vector<Fit> special = with_special_cases(search, first), of_others;
   if (search.effects(best.front()) > 1) {  // single effects were all tried

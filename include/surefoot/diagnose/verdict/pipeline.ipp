@@ -283,8 +283,7 @@ SUREFOOT_ONCE void refit_with_finer_steps(EstimationSetup& setup, Selection& sel
   const auto finer =
       finer_integration(bound, chosen, problem.weighting.sigma, bound.integration, split.training, run.parallel);
   if (!finer) return;
-  const FitFunctions coarse(bound, chosen, problem, run.parallel);
-  const double before = mean_loss(coarse.residuals(coarse.start()), problem.weighting.robust);
+  const double before = loss_of(bound, chosen, problem, run.parallel);
   FitProblem fine = problem;
   fine.integration = *finer;
   Fit refitted = fit(bound, chosen, fine, run.parallel);
