@@ -87,6 +87,37 @@ TEST_CASE("a fit is never worse than its start, however few its iterations and o
   }
 }
 
+TEST_CASE("a fit ends where it does not come near what it is to reach, and only there") {
+  const BoundSimulator clean = bind_simulator(ServoPendulum{}, toys::servo_recordings({}, 3, 1));
+  const Hypothesis start = nominal_hypothesis(clean);
+  Hypothesis truth = start;
+  truth.parameters << 1.4, 3.9, 0.014;
+  const auto fitted_to = [&](double unmodelled, double reach, int& jacobians) {
+    BoundSimulator bound = clean;
+    for (std::size_t r = 0; r < bound.recordings.size(); ++r) {
+      bound.recordings[r].outputs = simulate(clean, truth, r, {}).outputs;
+      for (Eigen::Index i = 0; i < bound.recordings[r].rows(); ++i) {
+        bound.recordings[r].outputs(0, i) += unmodelled * std::sin(static_cast<double>(i));
+      }
+    }
+    FitProblem problem = problem_of(3, 0.001);
+    problem.tolerance = 0;
+    problem.reach = reach;
+    problem.stopped = [&jacobians] { return ++jacobians < 0; };
+    return fit(bound, start, problem, serially());
+  };
+  int needed = 0, patient = 0, ended = 0;
+  CHECK(fitted_to(0, 1e-6, needed).hypothesis.parameters[0] == doctest::Approx(1.4).epsilon(1e-5));
+  const double left = fitted_to(0.1, 0, patient).loss;
+  CHECK(fitted_to(0.1, 1e-6, ended).loss < 1.1 * left);
+  CHECK(ended < patient);
+
+  CHECK(comes_nearer(10, 7.9, 1));  // 10 / 10^0.1 is 7.94
+  CHECK_FALSE(comes_nearer(10, 8, 1));
+  CHECK(comes_nearer(2, 1.9, 3));  // nearer than asked already
+  CHECK_FALSE(comes_nearer(2, 2, 3));
+}
+
 // A wheel that turns by itself; what is measured is where a mark on its rim is: an angle and the same angle a whole
 // turn away look alike to that sensor, and not to the one of the angle.
 struct MarkedWheel {

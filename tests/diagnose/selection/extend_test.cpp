@@ -80,8 +80,11 @@ TEST_CASE("what effects explain is integrated more finely, never more coarsely")
   CHECK(now.order == fine.order);
   CHECK(now.step == fine.step);
   CHECK(is_finer(screening, screening_fit(search.problem, 4).integration));
-  choose_screening(search, best);
-  CHECK(is_finer(fine, screening_fit(search.problem, 4).integration));
+  search.problem.fit.weighting.sigma[0] = 1e-6;
+  Hypothesis far = best.hypothesis;
+  far.values[0][0] = 0.1;  // half of it
+  choose_screening(search, evaluate_fit(bench.bound, Fit{far, 0, true}, bench.problem, bench.parallel));
+  CHECK(is_finer(fine, screening_fit(search.problem, 4).integration));  // by what is left, whatever the weights
 }
 
 TEST_CASE("the best structures are fitted again, always with the model without effects, and none gets worse") {
@@ -106,6 +109,28 @@ TEST_CASE("the best structures are fitted again, always with the model without e
   same[0].loss = 7;
   refit_best(stopped, same);
   CHECK(same[0].loss == 7);
+}
+
+TEST_CASE("other places are tried where the best structure leaves more than noise, of which there may be none") {
+  const TankBench bench({rate_in_tank});
+  std::vector<EvaluatedHypothesis> none;
+  try_around(bench.search(), none);
+  CHECK(none.empty());
+  Hypothesis lost = bench.start({"constant_rate"});
+  lost.parameters[0] = bench.bound.info.parameters[0].high;
+  const EvaluatedHypothesis far = evaluate_fit(bench.bound, Fit{lost, 0, true}, bench.problem, bench.parallel);
+  int fits = 0;
+  const auto tried = [&](bool structured) {
+    Search search = bench.search();
+    search.problem.structured = [structured](const Hypothesis&, const FitProblem&) { return structured; };
+    search.problem.fit.stopped = [&fits] { return ++fits < 0; };
+    std::vector<EvaluatedHypothesis> pool{far};
+    fits = 0;
+    try_around(search, pool);
+    return fits > 0;
+  };
+  CHECK(tried(true));
+  CHECK_FALSE(tried(false));
 }
 
 TEST_CASE("a first effect is settled with the inputs and steps that it needs before it is given a second one") {

@@ -151,8 +151,9 @@ TEST_CASE("a richer form that does not come as near as it must in a few iteratio
   const FormSearch forms =
       search_of({"load_dependent_friction", "v", "drive, presliding, damped", {}, {0.4, 0.03, 0.06}});
   const EvaluatedHypothesis plain = forms.fitted("drive", Eigen::VectorXd::Constant(1, 0.4));
-  CHECK(in_richer_forms(forms.search(), plain, ErrorsOfForm::counted, 0.9).has_value());
-  CHECK_FALSE(in_richer_forms(forms.search(), plain, ErrorsOfForm::counted, 1e-6).has_value());  // less than noise
+  CHECK(in_richer_forms(forms.search(), plain, ErrorsOfForm::counted, plain.loss).has_value());
+  constexpr double out_of_reach = 1e-60;
+  CHECK_FALSE(in_richer_forms(forms.search(), plain, ErrorsOfForm::counted, out_of_reach).has_value());
 }
 
 TEST_CASE("a richer form that takes away nothing in a few iterations is not fitted to the end") {

@@ -40,11 +40,16 @@ TEST_CASE("what an earlier search found is taken up, with its rivals") {
   const TankBench bench({rate_in_tank});
   std::vector<EvaluatedHypothesis> pool{bench.with({})};
   Search search = bench.search();
-  take_up(search, {}, pool);
+  CHECK_FALSE(take_up(search, {}, pool));
   CHECK(pool.size() == 1);
-  take_up(search, {bench.start({"constant_rate"})}, pool);
+  search.problem.structured = [](const Hypothesis& one, const FitProblem&) { return one.effects.empty(); };
+  CHECK(take_up(search, {bench.start({"constant_rate"})}, pool));
   CHECK(names_in(pool[best_of(pool, bench.problem.criteria)]) == "constant_rate");
   CHECK(pool.size() > 1);
+
+  Search open = bench.search();
+  pool = {bench.with({})};
+  CHECK_FALSE(take_up(open, {bench.start({"constant_rate"})}, pool));  // more is missing
 }
 
 TEST_CASE("an effect that is not worth its parameters once all has settled is taken away") {

@@ -28,6 +28,7 @@ struct FitProblem {
   int max_iterations = 18;
   int secant_steps = 3;                                  // as in LeastSquaresOptions: a Jacobian costs many simulations
   double tolerance = 1e-4;                               // relative decrease of the loss at which it ends
+  double reach = 0;                                      // loss that it must come near, to go on (comes_nearer)
   std::function<bool()> stopped = [] { return false; };  // asked before each iteration
 };
 
@@ -39,6 +40,9 @@ struct Fit {
   double loss = std::numeric_limits<double>::infinity();  // mean of the robust squared residuals
   bool ok = false;
 };
+
+/// Whether a few iterations came near enough to a loss that is to be reached: a tenth of the way to it, in logarithms.
+bool comes_nearer(double before, double now, double reach);
 
 /// Everything on this thread.
 Parallel serially();

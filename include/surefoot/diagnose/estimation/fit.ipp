@@ -139,6 +139,11 @@ SUREFOOT_ONCE double loss_of(const BoundSimulator& bound, const Hypothesis& hypo
   return mean_loss(functions.residuals(functions.start()), problem.weighting.robust);
 }
 
+SUREFOOT_INLINE bool comes_nearer(double before, double now, double reach) {
+  constexpr double a_start = 0.1;  // of the way
+  return now < before * std::pow(std::min(1.0, reach / before), a_start);
+}
+
 /// A fit and its residuals, recording after recording.
 struct Descent {
   Fit fit;
@@ -174,8 +179,16 @@ SUREFOOT_ONCE Descent descend(const BoundSimulator& bound, const Hypothesis& sta
     }
     return there;
   };
+  std::vector<double> losses;  // by iteration
+  options.on_progress = [&](int, double cost) { losses.push_back(cost / (0.5 * static_cast<double>(first.size()))); };
+  const auto lost = [&] {
+    constexpr std::size_t a_few = 4;
+    const std::size_t count = losses.size();
+    return problem.reach > 0 && count > a_few && !comes_nearer(losses[count - 1 - a_few], losses.back(), problem.reach);
+  };
   const auto jacobian = [&](const Eigen::VectorXd& x) -> Eigen::MatrixXd {
-    if (problem.stopped()) return Eigen::MatrixXd::Zero(first.size(), x.size());  // nothing to gain: it ends here
+    const bool ends = problem.stopped() || lost();
+    if (ends) return Eigen::MatrixXd::Zero(first.size(), x.size());  // nothing to gain
     return functions.jacobian(x, residuals(x));
   };
   const auto fitted = least_squares(residuals, z, options, jacobian);

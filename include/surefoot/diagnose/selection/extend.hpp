@@ -23,8 +23,8 @@ void reweight(Search& search, const EvaluatedHypothesis& best);
 /// for what a hypothesis leaves; true if it is finer now.
 bool refine_integration(Search& search, const EvaluatedHypothesis& best);
 
-/// Chooses anew how coarse the steps may be while fits are only compared.
-void choose_screening(Search& search, const EvaluatedHypothesis& best);
+/// Chooses anew how coarse the steps may be while fits are only compared, by what their parent leaves.
+void choose_screening(Search& search, const EvaluatedHypothesis& parent);
 
 /// Whether a hypothesis leaves more than noise: what leaves only noise needs no second effect, nor another start.
 bool leaves_structure(const Search& search, const EvaluatedHypothesis& one);

@@ -43,15 +43,20 @@ SUREFOOT_ONCE bool keep_best_form(std::vector<EvaluatedHypothesis>& pool, const 
   return true;
 }
 
+/// What simulations leave of each output, or what an error of the integration may be.
+SUREFOOT_ONCE Eigen::VectorXd sizes_of_errors(const Search& search, const std::vector<SimulatedRun>& runs) {
+  Eigen::VectorXd sizes = residual_sizes(search.bound, search.problem.fit.recordings, runs);
+  for (Eigen::Index k = 0; k < sizes.size(); ++k) {
+    sizes[k] = std::max(sizes[k], search.problem.criteria.least_error * search.problem.scale.sigma[k]);
+  }
+  return sizes;
+}
+
 SUREFOOT_ONCE void reweight(Search& search, const EvaluatedHypothesis& best) {
   FitProblem& problem = search.problem.fit;
   const auto runs =
       simulate_all(search.bound, best.hypothesis, problem.recordings, problem.integration, search.parallel);
-  const Eigen::VectorXd sizes = residual_sizes(search.bound, problem.recordings, runs);
-  for (Eigen::Index k = 0; k < sizes.size(); ++k) {
-    const double least = search.problem.criteria.least_error * search.problem.scale.sigma[k];
-    problem.weighting.sigma[k] = std::max(sizes[k], least);
-  }
+  problem.weighting.sigma = sizes_of_errors(search, runs);
   problem.weighting.scale = recording_scales(search.bound, problem, runs);
   search.problem.screened = some_by_error(search.bound, problem.recordings, runs, search.problem.screened.size());
 }
@@ -66,9 +71,11 @@ SUREFOOT_ONCE bool refine_integration(Search& search, const EvaluatedHypothesis&
   return finer;
 }
 
-SUREFOOT_ONCE void choose_screening(Search& search, const EvaluatedHypothesis& best) {
+SUREFOOT_ONCE void choose_screening(Search& search, const EvaluatedHypothesis& parent) {
   const FitProblem& problem = search.problem.fit;
-  search.problem.screening = choose_integrations(search.bound, best.hypothesis, problem.weighting.sigma,
+  const auto runs =
+      simulate_all(search.bound, parent.hypothesis, problem.recordings, problem.integration, search.parallel);
+  search.problem.screening = choose_integrations(search.bound, parent.hypothesis, sizes_of_errors(search, runs),
                                                  problem.integration, problem.recordings, search.parallel)
                                  .screening;
 }
@@ -111,6 +118,8 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> fitted_again(const Search& search
 SUREFOOT_ONCE void try_around(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
   constexpr std::uint64_t restart_seed = 1;
   const SearchProblem& problem = search.problem;
+  const bool beatable = !pool.empty() && leaves_structure(search, pool[best_of(pool, problem.criteria)]);
+  if (!beatable) return;
   const FitProblem quick = screening_fit(problem, problem.effort.restart_iterations);
   constexpr double none_is_hopeless = std::numeric_limits<double>::infinity();
   for (const EvaluatedHypothesis& one :

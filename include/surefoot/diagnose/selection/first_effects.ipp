@@ -23,6 +23,8 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> extend_from(Search& search, Hypot
   start.values.resize(search.problem.known);
   const EvaluatedHypothesis bare = evaluate_fit(search.bound, Fit{start, 0, true}, search.problem, search.parallel);
   reweight(search, bare);
+  if (best != nullptr) choose_screening(search, bare);  // what the best leaves needs finer steps
+  search.problem.fit.reach = 0;                         // in other units
   search.problem.scatter = false;
   extend(search, bare, best != nullptr ? *best : bare, children);
   return children;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -18,9 +19,10 @@ enum class ErrorsOfForm { tolerated, counted };
 /// A structure with its effects, one after the other, in a form that extends theirs (Effect::extends) where recordings
 /// show it to be better at the odds that name an effect; none where nothing is. Cost: by such form a fit of where
 /// recordings begin, if it has that free, a few iterations if that helps, and a whole fit if these do.
-/// `left`: share of the loss that it must come below within these iterations.
+/// `reach`: a loss that these iterations must come nearer to.
 std::optional<EvaluatedHypothesis> in_richer_forms(const Search& search, const EvaluatedHypothesis& found,
-                                                   ErrorsOfForm errors_of_form, double left = 1);
+                                                   ErrorsOfForm errors_of_form,
+                                                   double reach = std::numeric_limits<double>::infinity());
 
 /// A structure with its effect number `e` in its other forms that extend none, all else as it was found: the best
 /// `keep`, fitted and evaluated. `finely`: each with steps as fine as it needs where it begins, for a form that is

@@ -142,21 +142,22 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> in_other_forms(const Search& sear
   return result;
 }
 
-/// Whether a few iterations take away some of what a richer form must, and leave less than this share.
+/// Whether a few iterations take away some of what a richer form must, and come nearer to what is to be reached.
 SUREFOOT_ONCE bool promises(const Search& search, const EvaluatedHypothesis& found, const Hypothesis& start,
-                            double left) {
+                            double reach) {
   const SearchProblem& problem = search.problem;
   FitProblem quick = screening_fit(problem, problem.effort.first_iterations);
   quick.integration = problem.fit.integration;  // richer forms may be stiffer
   const double before = loss_of(search.bound, found.hypothesis, quick, serially());
   const double needed = gain_for(std::log(problem.criteria.named_odds), found.errors);
   const Fit begun = fit(search.bound, start, quick, search.parallel);
-  return begun.ok && begun.loss < std::min(left, 1 - needed / problem.effort.underestimated) * before;
+  return begun.ok && begun.loss < (1 - needed / problem.effort.underestimated) * before &&
+         comes_nearer(before, begun.loss, reach);
 }
 
 /// Not ok where it cannot help.
 SUREFOOT_ONCE Fit fit_richer(const Search& search, const EvaluatedHypothesis& found, std::size_t e,
-                             const AttachedEffect& richer, double left) {
+                             const AttachedEffect& richer, double reach) {
   const FitProblem& problem = search.problem.fit;
   Hypothesis start = with_form(search, found.hypothesis, e, richer);
   if (start.effects.empty()) return {};
@@ -167,12 +168,12 @@ SUREFOOT_ONCE Fit fit_richer(const Search& search, const EvaluatedHypothesis& fo
     if (!first.ok || !(first.loss < found.loss)) return {};
     start = first.hypothesis;
   }
-  if (!promises(search, found, start, left)) return {};
+  if (!promises(search, found, start, reach)) return {};
   return fit(search.bound, start, problem, search.parallel);
 }
 
 SUREFOOT_ONCE std::optional<EvaluatedHypothesis> in_richer_forms(const Search& search, const EvaluatedHypothesis& found,
-                                                                 ErrorsOfForm errors_of_form, double left) {
+                                                                 ErrorsOfForm errors_of_form, double reach) {
   const SearchProblem& problem = search.problem;
   const double needed = std::log(problem.criteria.named_odds);
   EvaluatedHypothesis best = found;
@@ -180,7 +181,7 @@ SUREFOOT_ONCE std::optional<EvaluatedHypothesis> in_richer_forms(const Search& s
   for (std::size_t e = problem.known; e < found.hypothesis.effects.size(); ++e) {
     for (const AttachedEffect& richer : search.candidates) {
       if (!extends(richer, best.hypothesis.effects[e]) || problem.stopped()) continue;
-      const Fit fitted = fit_richer(search, best, e, richer, left);
+      const Fit fitted = fit_richer(search, best, e, richer, reach);
       if (!fitted.ok) continue;
       const EvaluatedHypothesis one = evaluate_fit(search.bound, fitted, problem, search.parallel);
       const bool counted = errors_of_form == ErrorsOfForm::counted;

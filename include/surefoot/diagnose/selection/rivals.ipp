@@ -46,12 +46,14 @@ SUREFOOT_ONCE void swap_effects(const Search& search, std::vector<EvaluatedHypot
     const bool extended = search.effects(best) == 1 || is_among(rest.hypothesis, done);
     if (extended) continue;  // before; from no effects at all, when the first one was chosen
     done.push_back(rest.hypothesis);
-    std::vector<Proposal> proposals = proposals_for(search, rest);
+    Search coarse = search;
+    choose_screening(coarse, rest);
+    std::vector<Proposal> proposals = proposals_for(coarse, rest);
     drop_what_cannot_pay(proposals, needed_instead(search, rest, best, e, proposals), problem.effort);
     const std::string& name = best.hypothesis.effects[e].effect->name;  // the right name may be at a wrong place
     put_first(proposals, [&](const Proposal& one) { return one.effect.effect->name == name; });
     for (const EvaluatedHypothesis& other :
-         next_effects(search, rest, std::move(proposals),
+         next_effects(coarse, rest, std::move(proposals),
                       std::min(problem.effort.compared_shortlist, problem.effort.further_shortlist),
                       problem.effort.compared_finalists)) {
       keep_best_form(pool, other, problem.criteria);
@@ -108,14 +110,13 @@ SUREFOOT_ONCE void weigh_with_its_own_steps(Search& search, const EvaluatedHypot
 /// nearer to it.
 SUREFOOT_ONCE void enrich_rivals(const Search& search, const EvaluatedHypothesis& best,
                                  std::vector<EvaluatedHypothesis>& rivals) {
-  constexpr double a_start = 0.1;  // of the way to the best structure, in logarithms of what is left
   const SearchProblem& problem = search.problem;
   for (const EvaluatedHypothesis& one :
        best_structures(rivals, problem.effort.finalists, none_hopeless, problem.criteria)) {
     if (problem.stopped()) return;
     const bool far = log_odds(one, best, problem.criteria) < -problem.effort.hopeless;
-    const double left = far ? std::pow(std::min(1.0, best.loss / one.loss), a_start) : 1;
-    const auto richer = in_richer_forms(search, one, ErrorsOfForm::tolerated, left);
+    if (far && problem.fit.reach > 0) continue;  // the best structure cannot be beaten
+    const auto richer = in_richer_forms(search, one, ErrorsOfForm::tolerated, far ? best.loss : none_hopeless);
     if (richer) keep_best_form(rivals, *richer, problem.criteria);
   }
 }
@@ -194,7 +195,8 @@ SUREFOOT_ONCE void try_in_its_place(Search& search, const EvaluatedHypothesis& b
     for (const AttachedEffect& one : search.candidates) {
       if (same_but_for_form(one, found)) measured.push_back(one);
     }
-    const Search among{search.bound, problem, measured, search.parallel};
+    Search among{search.bound, problem, measured, search.parallel};
+    choose_screening(among, rest);
     std::vector<Proposal> proposals = proposals_for(among, rest);
     const double needed = needed_instead(search, rest, best, e, proposals);
     drop_items(proposals, [&](const Proposal& one) { return same_but_for_form(one.effect, found); });

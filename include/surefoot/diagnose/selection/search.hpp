@@ -36,8 +36,9 @@ std::vector<std::size_t> informative(const BoundSimulator& bound, const Hypothes
 bool take_back_holds(Search& search, std::vector<EvaluatedHypothesis>& pool);
 
 /// Into a pool that holds the model without effects what an earlier search found, fitted again, and first effects that
-/// come near the best of it.
-void take_up(Search& search, const std::vector<Hypothesis>& begun, std::vector<EvaluatedHypothesis>& pool);
+/// come near the best of it. True if the best then leaves no more than noise, with weights by what it leaves: what the
+/// earlier search compared with it need not be compared again.
+bool take_up(Search& search, const std::vector<Hypothesis>& begun, std::vector<EvaluatedHypothesis>& pool);
 
 /// The whole search, from a fitted hypothesis without effects and from `begun`, what an earlier search found.
 Selection select_effects(const BoundSimulator& bound, const Fit& calibrated, SearchProblem problem,

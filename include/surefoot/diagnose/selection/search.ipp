@@ -100,20 +100,36 @@ SUREFOOT_ONCE bool take_back_holds(Search& search, std::vector<EvaluatedHypothes
   return changed;
 }
 
-SUREFOOT_ONCE void take_up(Search& search, const std::vector<Hypothesis>& begun,
+SUREFOOT_ONCE bool take_up(Search& search, const std::vector<Hypothesis>& begun,
                            std::vector<EvaluatedHypothesis>& pool) {
-  if (begun.empty()) return;
+  if (begun.empty()) return false;
   const SelectionCriteria& criteria = search.problem.criteria;
   const EvaluatedHypothesis bare = pool.front();
   for (const Hypothesis& one : begun) {
-    if (search.problem.stopped()) return;
+    if (search.problem.stopped()) return false;
     keep_best_form(pool, refitted(search, one), criteria);
   }
   const EvaluatedHypothesis best = pool[best_of(pool, criteria)];
-  if (search.effects(best) == 0) return;
+  if (search.effects(best) == 0) return false;
   std::vector<EvaluatedHypothesis> children;
   extend(search, bare, best, children);
   for (const EvaluatedHypothesis& child : children) keep_best_form(pool, child, criteria);
+  Search own = search;
+  const EvaluatedHypothesis nearest = pool[best_of(pool, criteria)];
+  reweight(own, nearest);
+  refine_integration(own, nearest);
+  if (search.effects(nearest) == 0 || leaves_structure(own, refitted(own, nearest.hypothesis))) return false;
+  search.problem = own.problem;
+  pool = fitted_again(search, pool);
+  return true;
+}
+
+/// Where the best structure leaves no more than noise does it can be tied, but not beaten: from now on fits end where
+/// they do not come near it.
+SUREFOOT_ONCE void end_hopeless_fits(Search& search, const EvaluatedHypothesis& best) {
+  if (leaves_structure(search, best)) return;
+  FitProblem& problem = search.problem.fit;
+  problem.reach = loss_of(search.bound, best.hypothesis, problem, search.parallel);
 }
 
 SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& calibrated, SearchProblem problem,
@@ -127,9 +143,9 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
   std::vector<EvaluatedHypothesis> pool{evaluate_fit(bound, calibrated, search.problem, parallel)};
   search.problem.least = pool.front().errors.least = negligible_differences(pool.front().errors, criteria);
   choose_screening(search, pool.front());
-  take_up(search, begun, pool);
+  const bool compared_before = take_up(search, begun, pool);
   std::vector<Hypothesis> done;
-  grow(search, pool, done);
+  if (!compared_before) grow(search, pool, done);
   if (yields(search, pool)) {
     Selection selection = ranked(search, pool);
     selection.yields = true;
@@ -137,11 +153,12 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
     return selection;
   }
   Hypothesis grown = pool[best_of(pool, criteria)].hypothesis;
-  for (int round = 0; round < 2 && search.effects(pool[best_of(pool, criteria)]) > 0; ++round) {
+  for (int round = compared_before ? 2 : 0; round < 2 && search.effects(pool[best_of(pool, criteria)]) > 0; ++round) {
     reweight(search, pool[best_of(pool, criteria)]);
     refit_best(search, pool);
     enrich(search, pool, search.problem.effort.hopeless, ErrorsOfForm::counted);
     if (take_back_holds(search, pool)) done.clear();
+    end_hopeless_fits(search, pool[best_of(pool, criteria)]);
     take_effects_away(search, pool);
     const Hypothesis compared = pool[best_of(pool, criteria)].hypothesis;
     const auto unchanged = [&] { return same_structure(pool[best_of(pool, criteria)].hypothesis, compared); };
@@ -151,6 +168,7 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
     try_confusable(search, pool);
     begin_anew(search, pool);
     extend_from_nominal(search, pool);
+    search.problem.fit.reach = 0;
     // what it lacks may not have helped the one that it was grown from
     const bool grows = !same_structure(compared, grown) || !unchanged();
     if (grows && leaves_structure(search, pool[best_of(pool, criteria)])) grow(search, pool, done);
