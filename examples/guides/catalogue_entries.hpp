@@ -160,9 +160,9 @@ inline std::vector<Form> forms() {
       {"end_stop", "lower, elastic", "F = stiffness max(level - q - settling v, 0) where q < level"},
 
       // on a state
-      {"leak", "", "rate = rate - leak x", {0.03}, "the more there is, the more is missing; it decays too quickly"},
-      {"leak", "hole", "rate = rate - rate_at_one sqrt(max(x, 0))"},
-      {"constant_rate", "", "rate = rate + rate", {0.008}, "an offset that does not care how much there is"},
+      {"leak", "", "x' = ... - leak x", {0.03}, "the more there is, the more is missing; it decays too quickly"},
+      {"leak", "hole", "x' = ... - rate_at_one sqrt(max(x, 0))"},
+      {"constant_rate", "", "x' = ... + rate", {0.008}, "an offset that does not care how much there is"},
       {"overflow", "", "x is at most level", {0.35}, "the top is cut off, and what was lost is missing afterwards"},
       {"overflow", "spill", "x is at most level; share of what exceeds it is added to another state"},
       {"overflow", "weir", "x' = x' - outflow ((x - level) / level)^(3/2) where x > level"},

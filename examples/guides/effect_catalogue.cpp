@@ -162,23 +162,31 @@ class Catalogue {
                               "'");
       }
     }
-    text_ << "# Effect catalogue\n\n"
-             "The "
-          << names.size() << " pieces of missing physics that `surefoot-diagnose` knows by name, in " << all.size()
-          << " forms. Each picture shows a machine without the effect (grey) and with it (red), and beside it the "
-             "residual, before any calibration: parameters of a model can take up a part of it, and noise hides what "
-             "is small. [How a diagnosis decides](how-it-decides.md) between them is another page; "
-             "[one of your own](add-an-effect.md) is twenty lines.\n\n"
-             "In formulas q is a position, v its speed, F a force, u an input, y a reading, x a state, d the "
-             "displacement of a step. Units are those of the machine of the picture; bounds of the search are "
-             "multiples of "
-             "the typical size that a parameter of this kind has in the recordings. The machines are an arm (torque "
-             "in, angle out), "
-             "two tanks (inflow in, level of the upper one out), and a robot that walks.\n\n"
-             "Forms whose hidden states a recording may find at any value are also there as `..., not settled` ("
-          << unsettled
-          << " more): each recording then tells where it begins.\n\n"
-             "This page is written by `examples/guides/effect_catalogue.cpp` from the compiled library.\n";
+    text_
+        << "# Effect catalogue\n\n"
+           "The "
+        << names.size() << " pieces of missing physics that `surefoot-diagnose` knows by name, in " << all.size()
+        << " forms. Each picture shows a machine without the effect (grey) and with it (red), and beside it the "
+           "residual, before any calibration: parameters of a model can take up a part of it, and noise hides what "
+           "is small. [How a diagnosis decides](how-it-decides.md) between them is another page; "
+           "[one of your own](add-an-effect.md) is twenty lines.\n\n"
+           "In formulas q is a position, v its speed, F a force, u an input, y a reading, x a state, d the "
+           "displacement of a step. Units are those of the machine of the picture; bounds of the search are "
+           "multiples of "
+           "the typical size that a parameter of this kind has in the recordings. A typical size is a root mean "
+           "square over all recordings, along the calibrated model: of an input, of a state (of a position about its "
+           "mean), of a rate, or of the forces on a speed; of a time it is 200 rows. The machines are an arm (torque "
+           "in, angle out), "
+           "two tanks (inflow in, level of the upper one out), and a robot that walks.\n\n"
+           "Some effects are the same exactly on some machines, and a diagnosis then names all of them: one late "
+           "input and late sensors of all outputs, in open loop from rest. What parameters of the model can do is not "
+           "named at all: a gain of an input that one of them scales. `presliding` dry friction and plain hysteresis "
+           "share a formula: with a width up to 0.05 typical sizes of the position it is called friction, beyond "
+           "that hysteresis.\n\n"
+           "Forms whose hidden states a recording may find at any value are also there as `..., not settled` ("
+        << unsettled
+        << " more): each recording then tells where it begins.\n\n"
+           "This page is written by `examples/guides/effect_catalogue.cpp` from the compiled library.\n";
     for (const Section& section : sections()) {
       text_ << "\n## " << section.title << "\n\nAttaches to " << section.where << ".\n";
       for (const std::string& name : names) {
