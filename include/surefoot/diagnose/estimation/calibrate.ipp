@@ -52,10 +52,8 @@ SUREFOOT_ONCE Fit scattered_fit(const BoundSimulator& bound, Fit best, const Hyp
   const std::vector<Hypothesis> starts = scattered(bound, around, points, seed);
   std::vector<double> losses(starts.size());
   parallel(starts.size(), [&](std::size_t k) {
-    const FitFunctions functions(bound, starts[k], problem, serially());
-    const Eigen::VectorXd residuals = functions.residuals(functions.start());
-    losses[k] = all_finite(residuals) ? mean_loss(residuals, problem.weighting.robust)
-                                      : std::numeric_limits<double>::infinity();
+    const double loss = loss_of(bound, starts[k], problem, serially());
+    losses[k] = std::isfinite(loss) ? loss : std::numeric_limits<double>::infinity();
   });
   const auto lower = [&](std::size_t a, std::size_t b) { return losses[a] < losses[b]; };
   const std::vector<std::size_t> order = sorted_places(starts.size(), lower);

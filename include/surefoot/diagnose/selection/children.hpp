@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "surefoot/diagnose/estimation/items.hpp"
@@ -69,6 +70,9 @@ std::vector<EvaluatedHypothesis> next_pairs(const Search& search, const Evaluate
 /// The same effect, in one form, at two places: `most` of these get a fit.
 std::vector<EvaluatedHypothesis> next_tied_pairs(const Search& search, const EvaluatedHypothesis& parent,
                                                  const std::vector<Proposal>& proposals, std::size_t most);
+
+/// Of best_structures: all, however far behind the best.
+inline constexpr double none_is_hopeless = std::numeric_limits<double>::infinity();
 
 /// The most plausible ones, best first, and none that is `hopeless` behind the best [nat].
 std::vector<EvaluatedHypothesis> best_structures(std::vector<EvaluatedHypothesis> pool, std::size_t count,

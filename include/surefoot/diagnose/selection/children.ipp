@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -239,7 +238,6 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> combined(const Search& search,
   const SearchProblem& problem = search.problem;
   std::vector<EvaluatedHypothesis> best = singles;
   drop_items(best, [&](const EvaluatedHypothesis& one) { return search.effects(one) != 1; });
-  constexpr double none_is_hopeless = std::numeric_limits<double>::infinity();
   best = best_structures(best, problem.effort.combined, none_is_hopeless, problem.criteria);
   std::vector<Fit> fits;
   for (std::size_t i = 0; i < best.size(); ++i) {

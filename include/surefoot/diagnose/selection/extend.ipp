@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -121,7 +120,6 @@ SUREFOOT_ONCE void try_around(const Search& search, std::vector<EvaluatedHypothe
   const bool beatable = !pool.empty() && leaves_structure(search, pool[best_of(pool, problem.criteria)]);
   if (!beatable) return;
   const FitProblem quick = screening_fit(problem, problem.effort.restart_iterations);
-  constexpr double none_is_hopeless = std::numeric_limits<double>::infinity();
   for (const EvaluatedHypothesis& one :
        best_structures(pool, problem.effort.restarted, none_is_hopeless, problem.criteria)) {
     const bool calibrated = search.effects(one) == 0;  // from many places, before the search
@@ -156,7 +154,7 @@ SUREFOOT_ONCE bool settle_alone(Search& search, std::vector<EvaluatedHypothesis>
     std::vector<EvaluatedHypothesis> forms =
         in_other_forms(own, best, own.problem.known, own.problem.effort.compared_finalists, false);
     forms.push_back(best);
-    enrich(own, forms, std::numeric_limits<double>::infinity(), ErrorsOfForm::tolerated);
+    enrich(own, forms, none_is_hopeless, ErrorsOfForm::tolerated);
     best = with_integration_of_its_own(own, forms[best_of(forms, criteria)]);
     if (!explains(own, best)) return false;
   }

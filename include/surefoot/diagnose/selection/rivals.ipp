@@ -22,8 +22,6 @@
 
 namespace surefoot::diagnosis {
 
-inline constexpr double none_hopeless = std::numeric_limits<double>::infinity();
-
 SUREFOOT_ONCE double needed_instead(const Search& search, const EvaluatedHypothesis& rest,
                                     const EvaluatedHypothesis& best, std::size_t effect,
                                     const std::vector<Proposal>& proposals) {
@@ -110,13 +108,14 @@ SUREFOOT_ONCE void weigh_with_its_own_steps(Search& search, const EvaluatedHypot
 /// nearer to it.
 SUREFOOT_ONCE void enrich_rivals(const Search& search, const EvaluatedHypothesis& best,
                                  std::vector<EvaluatedHypothesis>& rivals) {
+  constexpr double any_loss = std::numeric_limits<double>::infinity();
   const SearchProblem& problem = search.problem;
   for (const EvaluatedHypothesis& one :
-       best_structures(rivals, problem.effort.finalists, none_hopeless, problem.criteria)) {
+       best_structures(rivals, problem.effort.finalists, none_is_hopeless, problem.criteria)) {
     if (problem.stopped()) return;
     const bool far = log_odds(one, best, problem.criteria) < -problem.effort.hopeless;
     if (far && problem.fit.reach > 0) continue;  // the best structure cannot be beaten
-    const auto richer = in_richer_forms(search, one, ErrorsOfForm::tolerated, far ? best.loss : none_hopeless);
+    const auto richer = in_richer_forms(search, one, ErrorsOfForm::tolerated, far ? best.loss : any_loss);
     if (richer) keep_best_form(rivals, *richer, problem.criteria);
   }
 }
@@ -287,7 +286,7 @@ SUREFOOT_ONCE std::vector<Fit> with_special_cases(const Search& search, const Hy
 SUREFOOT_ONCE void exchange_effects(const Search& search, std::vector<EvaluatedHypothesis>& pool) {
   const SearchProblem& problem = search.problem;
   const std::vector<EvaluatedHypothesis> best =
-      best_structures(pool, problem.effort.predicted, none_hopeless, problem.criteria);
+      best_structures(pool, problem.effort.predicted, none_is_hopeless, problem.criteria);
   const Hypothesis& first = best.front().hypothesis;
   std::vector<Fit> special = with_special_cases(search, first), of_others;
   if (search.effects(best.front()) > 1) {  // single effects were all tried

@@ -153,7 +153,8 @@ SUREFOOT_ONCE Selection select_effects(const BoundSimulator& bound, const Fit& c
     return selection;
   }
   Hypothesis grown = pool[best_of(pool, criteria)].hypothesis;
-  for (int round = compared_before ? 2 : 0; round < 2 && search.effects(pool[best_of(pool, criteria)]) > 0; ++round) {
+  const int rounds = compared_before ? 0 : 2;
+  for (int round = 0; round < rounds && search.effects(pool[best_of(pool, criteria)]) > 0; ++round) {
     reweight(search, pool[best_of(pool, criteria)]);
     refit_best(search, pool);
     enrich(search, pool, search.problem.effort.hopeless, ErrorsOfForm::counted);

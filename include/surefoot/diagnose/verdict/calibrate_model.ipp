@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -94,14 +95,12 @@ SUREFOOT_ONCE FreedTogether free_what_is_left(const EstimationSetup& setup, cons
 SUREFOOT_ONCE Fit no_worse_than(const Hypothesis& nominal, const Fit& calibrated, const EstimationSetup& setup,
                                 const Parallel& parallel) {
   const FitProblem& problem = setup.problem;
-  const auto loss_of = [&](const Hypothesis& one) {
-    const FitFunctions functions(setup.bound, one, problem, parallel);
-    const Eigen::VectorXd residuals = functions.residuals(functions.start());
-    return all_finite(residuals) ? mean_loss(residuals, problem.weighting.robust)
-                                 : std::numeric_limits<double>::infinity();
+  const auto left_by = [&](const Hypothesis& one) {
+    const double loss = loss_of(setup.bound, one, problem, parallel);
+    return std::isfinite(loss) ? loss : std::numeric_limits<double>::infinity();
   };
   const Hypothesis begun = with_estimated_initial_states(setup.bound, nominal, problem.recordings, problem, parallel);
-  if (!(loss_of(begun) < loss_of(calibrated.hypothesis))) return calibrated;
+  if (!(left_by(begun) < left_by(calibrated.hypothesis))) return calibrated;
   const Fit again = fit(setup.bound, begun, problem, parallel);
   return again.ok ? again : calibrated;
 }
