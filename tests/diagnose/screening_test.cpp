@@ -50,12 +50,27 @@ TEST_CASE("single outliers are taken out, those and no others, and named") {
 TEST_CASE("an outlier may be small beside the signal: what counts is how it stands out, and what the sensor resolves") {
   Recording fine = tank();
   for (Eigen::Index i = 0; i < 400; ++i) fine.outputs(0, i) = std::sin(0.01 * static_cast<double>(i));
-  fine.outputs(0, 200) += 0.008;  // two steps
+  fine.outputs(0, 160) += 0.008;  // of 1
   CHECK(remove_outliers(info, fine).size() == 1);
+  CHECK(std::isnan(fine.outputs(0, 160)));
   Recording coarse = tank();  // a sensor at rest that flickers by its last digit
   coarse.outputs.setConstant(1);
   for (const Eigen::Index row : {40, 200, 300}) coarse.outputs(0, row) = 1.01;
   CHECK(remove_outliers(info, coarse).empty());
+}
+
+TEST_CASE("where readings rise, the neighbour of an outlier is not taken for it") {
+  Recording rising = tank();
+  Eigen::MatrixXd simulated = rising.outputs;
+  for (Eigen::Index i = 0; i < 400; ++i) {
+    const auto row = static_cast<double>(i);
+    simulated(0, i) = 3 * std::sin(0.02 * row);
+    rising.outputs(0, i) = simulated(0, i) + 1e-3 * std::sin(1.7 * row);
+  }
+  rising.outputs(0, 160) += 0.12;  // falls by 0.06 a row there: the one before it bends by half as much the other way
+  REQUIRE(remove_outliers(info, rising).empty());
+  CHECK(remove_outliers(info, rising, simulated).size() == 1);
+  CHECK(std::isnan(rising.outputs(0, 160)));
 }
 
 TEST_CASE("what a model says shows outliers among readings that move fast by themselves, and only those") {

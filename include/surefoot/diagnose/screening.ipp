@@ -96,10 +96,11 @@ SUREFOOT_ONCE std::vector<Remark> remove_outliers(const SimulatorInfo& info, Rec
     const Eigen::VectorXd readings = detail::row_of(recording.outputs, k);
     Eigen::VectorXd y = readings;
     for (Eigen::Index i = 0; i < simulated.cols(); ++i) y[i] -= simulated(k, i);
+    Eigen::VectorXd bend = Eigen::VectorXd::Zero(y.size());  // at each reading
     std::vector<double> bends;
     for (Eigen::Index i = 1; i + 1 < y.size(); ++i) {
-      const double bend = std::abs(y[i] - 0.5 * (y[i - 1] + y[i + 1]));
-      if (std::isfinite(bend)) bends.push_back(bend);
+      bend[i] = std::abs(y[i] - 0.5 * (y[i - 1] + y[i + 1]));
+      if (std::isfinite(bend[i])) bends.push_back(bend[i]);
     }
     if (bends.size() < 30) continue;
     const auto high = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() * 19 / 20);
@@ -111,10 +112,10 @@ SUREFOOT_ONCE std::vector<Remark> remove_outliers(const SimulatorInfo& info, Rec
     }
     const double limit = far * std::max(*high, resolution);
     for (Eigen::Index i = 1; i + 1 < y.size(); ++i) {
-      const double bend = std::abs(y[i] - 0.5 * (y[i - 1] + y[i + 1]));
-      if (!(bend > limit) || std::abs(y[i + 1] - y[i - 1]) > 0.5 * bend) continue;
+      if (!(bend[i] > limit) || std::abs(y[i + 1] - y[i - 1]) > 0.5 * bend[i]) continue;
+      if (bend[i - 1] > bend[i] || bend[i + 1] > bend[i]) continue;  // it is the other one that is off
       const double before = readings[i] - readings[i - 1], after = readings[i] - readings[i + 1];
-      if (std::abs(before + after) < bend) continue;  // it is the simulation that jumps
+      if (std::abs(before + after) < bend[i]) continue;  // it is the simulation that jumps
       if (!(before * after > 0)) continue;  // between its neighbours: a bend, as where friction stops a motion
       recording.outputs(k, i) = std::numeric_limits<double>::quiet_NaN();
       char text[200];

@@ -13,7 +13,7 @@ namespace surefoot::diagnosis {
 namespace {
 
 // Noise of 0.01 m, and on top of it a slow sine.
-Mismatch mismatch_with(double sine) {
+Mismatch mismatch_with(double sine, const PredictionNoise& predictions = {}) {
   std::vector<Recording> recordings;
   std::vector<SimulatedRun> runs;
   for (std::uint64_t r = 0; r < 3; ++r) {
@@ -26,7 +26,8 @@ Mismatch mismatch_with(double sine) {
     runs.push_back({Eigen::MatrixXd::Zero(1, 600), Eigen::MatrixXd::Zero(1, 600)});
   }
   const BoundSimulator bound = bind_simulator(toys::LeakyTank{}, recordings);
-  return measure_mismatch(bound, {0, 1, 2}, runs, Eigen::VectorXd::Constant(1, 0.01), NoiseKind::measurement);
+  return measure_mismatch(bound, {0, 1, 2}, runs, Eigen::VectorXd::Constant(1, 0.01), NoiseKind::measurement,
+                          predictions);
 }
 
 TEST_CASE("noise alone is no mismatch") {
@@ -41,6 +42,11 @@ TEST_CASE("the energy of a mismatch is what it adds to the noise") {
   CHECK(mismatch.p_value < 1e-6);
   CHECK(mismatch.share == doctest::Approx(2.0 / 3).epsilon(0.15));
   CHECK(mismatch.energy == doctest::Approx(2).epsilon(0.25));
+}
+
+TEST_CASE("what noise alone leaves of predictions is no mismatch") {
+  CHECK(mismatch_with(0.02, {{1}, {2e-4}}).share < 0.1);
+  CHECK(mismatch_with(0.02, {{1}, {1e-4}}).share == doctest::Approx(1.0 / 3).epsilon(0.3));
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ std::vector<Eigen::VectorXd> noisy(double memory, const std::function<double(Eig
 }
 
 double noise_of_series(const std::vector<Eigen::VectorXd>& series) {
-  return noise_from_spectrum(fast_spectrum(series));
+  return noise_from_spectrum(fast_spectrum(series)).deviation;
 }
 
 TEST_CASE("noise is found beneath slow errors that are many times as large, white or fading from row to row") {
@@ -47,11 +47,20 @@ TEST_CASE("noise is found beneath slow errors that are many times as large, whit
   }
 }
 
+TEST_CASE("what noise keeps from row to row is found") {
+  for (const double memory : {0.0, 0.3, 0.6}) {
+    const FadingNoise noise = noise_from_spectrum(fast_spectrum(noisy(memory, [](auto) { return 0.0; })));
+    CHECK(std::abs(noise.rho - memory) < 0.15);
+    CHECK_FALSE(noise.slow);
+  }
+}
+
 TEST_CASE("errors that walk at random are no noise of a sensor") {
   std::vector<Eigen::VectorXd> all = noisy(0, [](auto) { return 0.0; });
   for (Eigen::VectorXd& series : all) {
     for (Eigen::Index i = 1; i < series.size(); ++i) series[i] += series[i - 1];
   }
+  CHECK(noise_from_spectrum(fast_spectrum(all)).slow);
   CHECK(noise_of_series(all) < 1);  // what is new in a row, where the whole is some ten times that
 }
 

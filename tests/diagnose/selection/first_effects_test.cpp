@@ -53,6 +53,22 @@ TEST_CASE("a first effect that leaves only noise needs no other start") {
   CHECK(children.size() > 1);
 }
 
+TEST_CASE("the search goes on with the integration that a first effect was fitted with, where it is lost in its own") {
+  for (const double noise : {0.01, 1e-4}) {
+    TankBench bench({rate_in_tank});
+    bench.read_with_straight_inputs({rate_in_tank}, noise);
+    Search search = bench.search();
+    search.problem.structured = [](const Hypothesis& one, const FitProblem& fit) {
+      const std::vector<InputHold>& inputs = fit.integration.inputs;
+      return one.effects.size() != 1 || inputs.empty() || inputs[0] != InputHold::linear;
+    };
+    std::vector<EvaluatedHypothesis> children{bench.with({"sensor_bias"})};
+    begin_elsewhere(search, false, children);
+    const bool lost = noise < 0.01;
+    CHECK((search.problem.fit.integration.inputs == std::vector{InputHold::linear}) == lost);
+  }
+}
+
 TEST_CASE("where the model has lost the readings, first effects are sought along them first") {
   const TankBench bench({rate_in_tank});
   EvaluatedHypothesis none = bench.with({});

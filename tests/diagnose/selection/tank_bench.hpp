@@ -50,15 +50,15 @@ struct TankBench {
   TankBench(const TankBench&) = delete;
   TankBench& operator=(const TankBench&) = delete;
 
-  /// Takes new readings of the tanks with these effects, whose valve goes straight from row to row.
-  void read_with_straight_inputs(const std::vector<NamedEffect>& truth) {
+  /// Takes new readings of the tanks with these effects, whose valve goes straight from row to row; `noise` [m].
+  void read_with_straight_inputs(const std::vector<NamedEffect>& truth, double noise = 0.01) {
     Rng rng(2);
     Integration straight;
     straight.inputs = {InputHold::linear};
     for (Recording& recording : bound.recordings) {
       recording.outputs =
           simulate_augmented(toys::LeakyTank{}, toys::machine({1, 1}, truth, straight), recording).outputs;
-      for (double& level : recording.outputs.reshaped()) level += 0.01 * rng.normal();
+      for (double& level : recording.outputs.reshaped()) level += noise * rng.normal();
     }
   }
 

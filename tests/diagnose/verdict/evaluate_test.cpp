@@ -79,6 +79,13 @@ TEST_CASE("the noise of an output is what no lag predicts, unless it is stated")
     return output_noise(setup.bound, setup.split.training, 0, {.typical = 0.1}, white, error);
   };
   CHECK(with_spectrum(0.0004, 0.2) == doctest::Approx(0.02));
+  const auto by_slow_spectrum = [&](double p) {  // as 1 / frequency^2
+    const FastSpectrum slow{.frequency = {0.8, 1.2, 1.6}, .power = {0.09, 0.04, 0.0225}};
+    return output_noise(setup.bound, setup.split.training, 0, {.predicted = 0.9, .p_value = p, .typical = 0.03}, slow,
+                        1);
+  };
+  CHECK(by_slow_spectrum(1e-6) == doctest::Approx(0.15));
+  CHECK(by_slow_spectrum(0.5) == doctest::Approx(0.03));  // nothing lasts: all of it is noise
   for (Recording& one : setup.bound.recordings) {
     for (double& level : one.outputs.reshaped()) level = std::round(level);  // a sensor that rarely moves
   }

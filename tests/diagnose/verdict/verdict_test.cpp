@@ -62,7 +62,7 @@ TEST_CASE("beside effects more structure is tolerated, and all of it if they too
   CHECK(verdict_on(evidence) == Verdict::missing_physics);
   evidence.structure_share = 0.31;
   CHECK(verdict_on(evidence) == Verdict::unexplained);
-  evidence.structure_energy = 0.19;
+  evidence.structure_energy = 0.04;
   CHECK(verdict_on(evidence) == Verdict::missing_physics);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "surefoot/diagnose/estimation/noise_regime.hpp"
+#include "surefoot/diagnose/residual_tests/prediction_noise.hpp"
 #include "surefoot/diagnose/residual_tests/whiteness.hpp"
 
 namespace surefoot::diagnosis {
@@ -18,9 +19,10 @@ struct Mismatch {
   double p_value = 1;  // smallest over outputs, corrected for their number
 };
 
+/// Of simulations that follow the readings, beyond what noise alone leaves of these.
 Mismatch measure_mismatch(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
                           const std::vector<SimulatedRun>& trajectories, const Eigen::VectorXd& sigma, NoiseKind noise,
-                          std::vector<WhitenessTest>* by_output = nullptr);
+                          const PredictionNoise& predictions = {}, std::vector<WhitenessTest>* by_output = nullptr);
 
 }  // namespace surefoot::diagnosis
 

@@ -15,13 +15,18 @@ namespace surefoot::diagnosis {
 
 SUREFOOT_ONCE Mismatch measure_mismatch(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
                                         const std::vector<SimulatedRun>& trajectories, const Eigen::VectorXd& sigma,
-                                        NoiseKind noise, std::vector<WhitenessTest>* by_output) {
+                                        NoiseKind noise, const PredictionNoise& predictions,
+                                        std::vector<WhitenessTest>* by_output) {
   Mismatch result;
   for (Eigen::Index k = 0; k < sigma.size(); ++k) {
     const Eigen::Index memory = memory_of(noise);
-    const WhitenessTest structure = test_whiteness(bound, recordings, trajectories, k, memory, 10 * memory);
+    WhitenessTest structure = test_whiteness(bound, recordings, trajectories, k, memory, 10 * memory);
+    const double square = structure.rms * structure.rms;
+    if (!predictions.structure.empty() && square > 0) {
+      structure.share = std::max(0.0, structure.share - predictions.structure[static_cast<std::size_t>(k)] / square);
+    }
     if (by_output != nullptr) by_output->push_back(structure);
-    result.energy += structure.share * structure.rms * structure.rms / (sigma[k] * sigma[k]);
+    result.energy += structure.share * square / (sigma[k] * sigma[k]);
     if (structure.p_value < 0.01) result.share = std::max(result.share, structure.share);
     result.p_value = std::min(result.p_value, structure.p_value * static_cast<double>(sigma.size()));
   }

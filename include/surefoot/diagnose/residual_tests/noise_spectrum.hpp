@@ -25,10 +25,17 @@ struct FastSpectrum {
 /// Of series without NaN. Cost: 50 rows * 64.
 FastSpectrum fast_spectrum(const std::vector<Eigen::VectorXd>& series);
 
-/// Standard deviation of noise x' = rho x + e, white or fading from row to row, whose power s^2 / |1 - rho e^(-iw)|^2
-/// fits best in logarithms. Where rho would be more than 0.9, what falls so is the model's error, and the noise as if
-/// it were white, by the fastest frequency. 0 if the spectrum is empty, or nothing is left at some frequency.
-double noise_from_spectrum(const FastSpectrum& spectrum);
+/// Noise x' = rho x + e, white or fading from row to row.
+struct FadingNoise {
+  double deviation = 0;  // of x
+  double rho = 0;        // share that the next row keeps
+  bool slow = false;     // rho would be more than 0.9
+};
+
+/// The noise whose power s^2 / |1 - rho e^(-iw)|^2 fits best in logarithms. Where it is slow, what falls so is the
+/// model's error, if anything lasts for more than ten rows, and the noise as if it were white, by the fastest
+/// frequency. 0 if the spectrum is empty, or nothing is left at some frequency.
+FadingNoise noise_from_spectrum(const FastSpectrum& spectrum);
 
 }  // namespace surefoot::diagnosis
 

@@ -90,12 +90,13 @@ SUREFOOT_ONCE FastSpectrum fast_spectrum(const std::vector<Eigen::VectorXd>& ser
   return spectrum;
 }
 
-SUREFOOT_ONCE double noise_from_spectrum(const FastSpectrum& spectrum) {
+SUREFOOT_ONCE FadingNoise noise_from_spectrum(const FastSpectrum& spectrum) {
   constexpr double most_memory = 0.9;
-  double least = std::numeric_limits<double>::infinity(), noise = 0;
+  double least = std::numeric_limits<double>::infinity();
+  FadingNoise noise;
   const std::size_t count = spectrum.power.size();
   const bool nothing_left = std::find(spectrum.power.begin(), spectrum.power.end(), 0) != spectrum.power.end();
-  if (count == 0 || nothing_left) return 0;
+  if (count == 0 || nothing_left) return noise;
   for (double rho = 0; rho < 0.99; rho += 0.01) {
     std::vector<double> logarithms;
     double mean = 0, off = 0;
@@ -107,7 +108,8 @@ SUREFOOT_ONCE double noise_from_spectrum(const FastSpectrum& spectrum) {
     for (const double one : logarithms) off += (one - mean) * (one - mean);
     if (!(off < least)) continue;
     least = off;
-    noise = rho > most_memory ? std::sqrt(spectrum.power.back()) : std::sqrt(std::exp(mean) / (1 - rho * rho));
+    noise = {std::sqrt(std::exp(mean) / (1 - rho * rho)), rho};
+    if (rho > most_memory) noise = {std::sqrt(spectrum.power.back()), 0, true};
   }
   return noise;
 }

@@ -24,8 +24,10 @@ std::vector<EvaluatedHypothesis> extended_under_guidance(Search& search);
 bool has_lost_readings(const EvaluatedHypothesis& one);
 
 /// Where first effects leave more than noise: the best from places around, first effects under guidance, unless they
-/// come from there, and from the nominal parameters on, and pairs of the best.
-void begin_elsewhere(Search search, bool guided, std::vector<EvaluatedHypothesis>& children);
+/// come from there, and from the nominal parameters on, and pairs of the best. The search goes on with the steps, and
+/// ways of inputs between rows, that the best was fitted with, where it runs away without them: steps that were fine
+/// enough for the calibration of a stiff machine may be too long for it.
+void begin_elsewhere(Search& search, bool guided, std::vector<EvaluatedHypothesis>& children);
 
 /// First effects of the model without any: along the readings first where it has lost them.
 std::vector<EvaluatedHypothesis> first_effects(Search& search, const EvaluatedHypothesis& none);

@@ -61,7 +61,8 @@ SUREFOOT_ONCE bool has_lost_readings(const EvaluatedHypothesis& one) {
   return one.errors.rms() > share;
 }
 
-SUREFOOT_ONCE void begin_elsewhere(Search search, bool guided, std::vector<EvaluatedHypothesis>& children) {
+/// As begin_elsewhere, in steps that change on the way.
+SUREFOOT_ONCE void seek_elsewhere(Search& search, bool guided, std::vector<EvaluatedHypothesis>& children) {
   const SelectionCriteria& criteria = search.problem.criteria;
   const auto done = [&] { return !children.empty() && explains(search, children[best_of(children, criteria)]); };
   if (done()) return;
@@ -82,6 +83,19 @@ SUREFOOT_ONCE void begin_elsewhere(Search search, bool guided, std::vector<Evalu
   }
   if (criteria.max_effects < 2 || children.empty() || done()) return;
   for (const EvaluatedHypothesis& pair : combined(search, children)) keep_best_form(children, pair, criteria);
+}
+
+SUREFOOT_ONCE void begin_elsewhere(Search& search, bool guided, std::vector<EvaluatedHypothesis>& children) {
+  constexpr double far = 100;  // times the loss: no error of an integrator that follows the motion
+  Search own = search;
+  seek_elsewhere(own, guided, children);
+  if (children.empty()) return;
+  const Hypothesis& best = children[best_of(children, search.problem.criteria)].hypothesis;
+  own.problem.fit.weighting = search.problem.fit.weighting;
+  const double as_fitted = loss_of(search.bound, best, own.problem.fit, search.parallel);
+  if (loss_of(search.bound, best, search.problem.fit, search.parallel) < far * as_fitted) return;
+  search.problem.fit.integration = own.problem.fit.integration;
+  search.problem.screening = own.problem.screening;
 }
 
 SUREFOOT_ONCE std::vector<EvaluatedHypothesis> first_effects(Search& search, const EvaluatedHypothesis& none) {

@@ -40,9 +40,10 @@ ForestResidual offer_forest(const EstimationSetup& setup, const FittedModel& cho
                             const Parallel& parallel, std::uint64_t seed, const EvaluationCriteria& criteria = {});
 
 /// Standard deviation of the noise of one output: as stated; or, where it is not, by the spectrum of residuals, and no
-/// less than rounding to the steps of the readings gives; or, where rows are too few for a spectrum, the part of the
-/// residuals of the median recording that no lag predicts, at least what differs from row to row and at most four times
-/// that (an autoregression that keeps 0.9). Never more than the `error` of the model.
+/// less than rounding to the steps of the readings gives; or, where rows are too few for a spectrum, or it looks like a
+/// slow error though nothing lasts, the part of the residuals of the median recording that no lag predicts, at least
+/// what differs from row to row and at most four times that (an autoregression that keeps 0.9). Never more than the
+/// `error` of the model.
 double output_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings, Eigen::Index output,
                     const WhitenessTest& residuals, const FastSpectrum& spectrum, double error);
 

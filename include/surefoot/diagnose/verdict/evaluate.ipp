@@ -102,14 +102,14 @@ SUREFOOT_ONCE double output_noise(const BoundSimulator& bound, const std::vector
                                   double error) {
   constexpr double significance = 0.01;  // of structure in the residuals
   constexpr double of_a_step = 1 / 3.4641;  // the deviation of what is anywhere in it, 1 / sqrt(12)
-  constexpr double remembering = 4;      // times as large as what differs from row to row: noise of which 0.9 remains
+  constexpr double remembering = 4;  // times as large as what differs from row to row: noise of which 0.9 remains
   const double stated = bound.info.outputs[static_cast<std::size_t>(output)].noise;
   if (stated > 0) return stated;
-  const double by_spectrum = noise_from_spectrum(spectrum);
-  if (by_spectrum > 0) {
-    return std::min(std::max(by_spectrum, of_a_step * resolution(bound, recordings, output)), error);
-  }
-  const double structured = residuals.p_value < significance ? residuals.predicted : 0;
+  const FadingNoise noise = noise_from_spectrum(spectrum);
+  const bool lasting = residuals.p_value < significance;
+  const bool told = noise.deviation > 0 && (lasting || !noise.slow);  // few rows tell one memory from another badly
+  if (told) return std::min(std::max(noise.deviation, of_a_step * resolution(bound, recordings, output)), error);
+  const double structured = lasting ? residuals.predicted : 0;
   const double unpredictable = residuals.typical * std::sqrt(1 - structured);
   const double fast = fast_noise(bound, recordings, output);
   const double most = fast > 0 ? remembering * fast : unpredictable;  // 0: a coarse sensor that rarely moves
@@ -155,6 +155,8 @@ SUREFOOT_ONCE std::vector<ChannelMismatch> mismatch_by_output(const EstimationSe
         left = fast_spectrum(filled_series(bound, training, models.chosen.runs.training, output));
       }
       channel.noise = output_noise(bound, training, output, models.chosen.by_output[k], left, channel.rmse_after);
+      const auto& amplified = setup.predictions.amplification;
+      if (!amplified.empty()) channel.noise *= amplified[k];
     } else {
       channel.noise = noise_of_steps(bound, training, output, channel.rmse_after);
     }

@@ -66,7 +66,7 @@ SUREFOOT_ONCE FittedModel fitted_model(const EstimationSetup& setup, const Hypot
                                        const Parallel& parallel) {
   FittedModel model = simulate_model(setup, hypothesis, parallel, true);
   model.mismatch = measure_mismatch(setup.bound, setup.split.training, model.runs.training,
-                                    setup.problem.weighting.sigma, setup.noise, &model.by_output);
+                                    setup.problem.weighting.sigma, setup.noise, setup.predictions, &model.by_output);
   return model;
 }
 

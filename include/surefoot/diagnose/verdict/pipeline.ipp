@@ -277,7 +277,7 @@ SUREFOOT_ONCE void evaluate_selection(const EstimationSetup& setup, const Calibr
 /// The choice, fitted to all recordings, may need finer steps than the search took: it is fitted once more with these,
 /// unless that leads astray.
 SUREFOOT_ONCE void refit_with_finer_steps(EstimationSetup& setup, Selection& selection, const RunContext& run) {
-  auto& [bound, split, noise, problem, freed] = setup;
+  auto& [bound, split, noise, problem, predictions, freed] = setup;
   Hypothesis& chosen = selection.chosen.hypothesis;
   if (chosen.effects.size() == selection.nominal.hypothesis.effects.size()) return;
   const auto finer =
@@ -379,9 +379,11 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
                                                    const RunContext& run) {
   bool begins_anew = false;
   const double examined = run.seconds();
-  const std::optional<Diagnosis> without_suspected = diagnose_without_suspected(bind, logged, log, remarks, run);
+  std::optional<Diagnosis> without_suspected = diagnose_without_suspected(bind, logged, log, remarks, run);
   bool confirmed = without_suspected.has_value();
-  if (confirmed && run.options.repair && !run.has_time_for_as_much_again(examined)) return *without_suspected;
+  if (confirmed && run.options.repair && !run.has_time_for_as_much_again(examined)) {
+    return std::move(*without_suspected);
+  }
   while (true) {
     const double started = run.seconds();
     const std::vector<LogFault> considered = log.faults;
