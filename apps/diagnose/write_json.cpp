@@ -39,6 +39,7 @@ Json mismatch_json(const Diagnosis& diagnosis) {
                         {"noise", finite_or_null(channel.noise)},
                         {"noise_stated", channel.noise_stated},
                         {"p_value", finite_or_null(channel.p_value)}});
+    if (channel.noise_amplification > 1) channels.back()["noise_amplification"] = channel.noise_amplification;
   }
   for (const auto& region : diagnosis.regions) {
     regions.push_back({{"rule", region.rule},

@@ -41,6 +41,7 @@ struct ChannelMismatch {
   double noise = 0;    // standard deviation of what no model can predict, as stated or as far as can be seen
   double p_value = 1;  // that the calibrated model is off by chance only
   bool noise_stated = false;
+  double noise_amplification = 1;  // of the noise, in errors of predictions that follow the readings; 1 where none do
 };
 
 /// Where the mismatch is: a rule over features of the motion.
@@ -82,9 +83,9 @@ struct Alternative {
 struct RecordingFit {
   std::string recording;
   double before = 0,
-         after = 0;  // error in units of the noise, or of the output's standard deviation where that is unknown
-  double fitted = 0;          // error after, where its own readings took part in the fit; else the same as `after`
-  double independent = 0;     // count of independent errors: of all, those beyond their autocorrelation
+         after = 0;        // error in units of the noise, or of the output's standard deviation where that is unknown
+  double fitted = 0;       // error after, where its own readings took part in the fit; else the same as `after`
+  double independent = 0;  // count of independent errors: of all, those beyond their autocorrelation
   bool beyond_noise = false;  // `fitted` is significantly further off than noise explains
 };
 
@@ -102,11 +103,11 @@ struct Remark {
 
 /// A fault of the log, not of the machine, that would pass for missing physics.
 struct LogFault {
-  std::string kind = {};       // sign_flipped, angle_unit, time_unit, columns_swapped, clock_offset, clock_skew, stuck_sensor,
-                          // clipped, dropped_samples or odd_recording
+  std::string kind = {};       // sign_flipped, angle_unit, time_unit, columns_swapped, clock_offset, clock_skew,
+                               // stuck_sensor, clipped, dropped_samples or odd_recording
   std::string recording = {};  // empty: all
   std::string channel = {};    // input or output; empty: the time, or all of it
-  double size = 0;        // how much a clock is off, a factor, or how many rows
+  double size = 0;             // how much a clock is off, a factor, or how many rows
   std::string unit = {};
   std::string sentence = {}, cure = {};
   bool repaired = false;
@@ -156,7 +157,7 @@ struct Diagnosis {
   std::vector<FoundEffect> known_effects;  // that the model had before, with parameters of the augmented fit
   std::vector<Alternative> alternatives;
   std::vector<DetectionLimit> limits;
-  double probability = 1;  // posterior, of the effects that are named, or that there is none
+  double probability = 1;          // posterior, of the effects that are named, or that there is none
   double probability_of_none = 0;  // that none of the structures that were fitted is all of what is missing
   std::string next_experiment;
   double training_before = 0, training_after = 0;  // errors, in units as in RecordingFit
@@ -166,11 +167,11 @@ struct Diagnosis {
   double noise_floor = std::numeric_limits<double>::quiet_NaN();  // NaN: cannot be told
   double noise_ratio =
       std::numeric_limits<double>::quiet_NaN();  // held out, each output in units of its noise; NaN: the same
-  double gain_low = 0, gain_high = 0;  // 95 % interval of held_out_after / held_out_before over recordings
+  double gain_low = 0, gain_high = 0;            // 95 % interval of held_out_after / held_out_before over recordings
   std::vector<RecordingFit> per_recording;
   std::vector<Curve> curves;
-  int integration_order = 4;    // with which all this was simulated, see Integration
-  double integration_step = 0;  // [s]
+  int integration_order = 4;           // with which all this was simulated, see Integration
+  double integration_step = 0;         // [s]
   std::vector<InputHold> input_holds;  // as the model says or as recordings show
   std::vector<bool> freed_states;      // by state: the model said where it begins, recordings say otherwise
   double seconds = 0;

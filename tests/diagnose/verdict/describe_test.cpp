@@ -76,6 +76,9 @@ TEST_CASE("every verdict has its sentence") {
   CHECK(verdict_sentence(diagnosis, {}).ends_with("to 1.2 times the noise as estimated."));
   diagnosis.channels[1].noise_stated = true;
   CHECK(verdict_sentence(diagnosis, {}).ends_with("to 1.2 times the noise."));
+  diagnosis.channels[0].noise_amplification = 1.4;
+  CHECK(verdict_sentence(diagnosis, {}).ends_with("to 1.2 times what the noise leaves of predictions."));
+  diagnosis.channels[0].noise_amplification = 1;
   CHECK(verdict_sentence(diagnosis, {}).find("with its nominal parameters") != std::string::npos);
   diagnosis.verdict = Verdict::parameters_only;
   CHECK(verdict_sentence(diagnosis, {"lag"}).find("with calibrated parameters") != std::string::npos);

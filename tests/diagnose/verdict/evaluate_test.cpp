@@ -60,6 +60,9 @@ TEST_CASE("a coarse sensor does not hide what a fine one shows") {
   outputs[0].noise = 0.01;
   outputs[1].rmse_after = outputs[1].noise = 0.2;
   CHECK(noise_ratio(outputs) == doctest::Approx(5));
+  outputs[0].noise_amplification = 7;  // of predictions: nothing but noise is left there either
+  CHECK(noise_ratio(outputs) == doctest::Approx(1));
+  outputs[0].noise_amplification = 1;
   outputs[1].noise = 0;
   CHECK(std::isnan(noise_ratio(outputs)));
 }

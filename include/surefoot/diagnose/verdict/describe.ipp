@@ -205,11 +205,15 @@ SUREFOOT_ONCE std::string next_experiment(const Hypothesis& chosen, const Hypoth
   return text;
 }
 
-/// "1.04 times the noise", which may be estimated from what is left, or nothing where that is unknown.
+/// "1.04 times the noise", or what it leaves of predictions, which may be estimated from what is left; nothing where
+/// that is unknown.
 SUREFOOT_ONCE std::string against_noise(const Diagnosis& diagnosis) {
   if (!std::isfinite(diagnosis.noise_ratio)) return "";
   const bool stated = holds_for_all(diagnosis.channels, [](const ChannelMismatch& one) { return one.noise_stated; });
-  return in_digits(diagnosis.noise_ratio) + (stated ? " times the noise" : " times the noise as estimated");
+  const bool predicted =
+      holds_for_any(diagnosis.channels, [](const ChannelMismatch& one) { return one.noise_amplification > 1; });
+  return in_digits(diagnosis.noise_ratio) + " times " +
+         (predicted ? "what the noise leaves of predictions" : "the noise") + (stated ? "" : " as estimated");
 }
 
 /// Recordings that are further off than noise explains, in a sentence of their own.

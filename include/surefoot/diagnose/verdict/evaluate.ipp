@@ -156,7 +156,7 @@ SUREFOOT_ONCE std::vector<ChannelMismatch> mismatch_by_output(const EstimationSe
       }
       channel.noise = output_noise(bound, training, output, models.chosen.by_output[k], left, channel.rmse_after);
       const auto& amplified = setup.predictions.amplification;
-      if (!amplified.empty()) channel.noise *= amplified[k];
+      if (!amplified.empty()) channel.noise_amplification = amplified[k];
     } else {
       channel.noise = noise_of_steps(bound, training, output, channel.rmse_after);
     }
@@ -166,12 +166,16 @@ SUREFOOT_ONCE std::vector<ChannelMismatch> mismatch_by_output(const EstimationSe
   return result;
 }
 
+/// Error that noise alone leaves of an output.
+SUREFOOT_ONCE double left_by_noise(const ChannelMismatch& one) { return one.noise * one.noise_amplification; }
+
 SUREFOOT_ONCE double noise_floor(const std::vector<ChannelMismatch>& outputs, const Eigen::VectorXd& scale) {
   double squares = 0;
   for (std::size_t k = 0; k < outputs.size(); ++k) {
     if (!(outputs[k].noise > 0)) return std::numeric_limits<double>::quiet_NaN();
     const double unit = scale[static_cast<Eigen::Index>(k)];
-    squares += outputs[k].noise * outputs[k].noise / (unit * unit) / static_cast<double>(outputs.size());
+    const double left = left_by_noise(outputs[k]) / unit;
+    squares += left * left / static_cast<double>(outputs.size());
   }
   return std::sqrt(squares);
 }
@@ -179,7 +183,7 @@ SUREFOOT_ONCE double noise_floor(const std::vector<ChannelMismatch>& outputs, co
 SUREFOOT_ONCE double noise_ratio(const std::vector<ChannelMismatch>& outputs) {
   double squares = 0;
   for (const ChannelMismatch& one : outputs) {
-    const double ratio = one.noise > 0 ? one.rmse_after / one.noise : std::numeric_limits<double>::quiet_NaN();
+    const double ratio = one.noise > 0 ? one.rmse_after / left_by_noise(one) : std::numeric_limits<double>::quiet_NaN();
     squares += ratio * ratio / static_cast<double>(outputs.size());
   }
   return std::sqrt(squares);
@@ -191,7 +195,7 @@ SUREFOOT_ONCE void cap_noise(Diagnosis& diagnosis, double least, const Eigen::Ve
   const auto outputs = static_cast<double>(diagnosis.channels.size());
   for (std::size_t k = 0; k < diagnosis.channels.size(); ++k) {
     const ChannelMismatch& one = diagnosis.channels[k];
-    const double noise = one.noise / scale[static_cast<Eigen::Index>(k)];
+    const double noise = left_by_noise(one) / scale[static_cast<Eigen::Index>(k)];
     (one.noise_stated ? stated : estimated) += noise * noise / outputs;
   }
   const double left = least * least - stated;
