@@ -59,18 +59,18 @@ TEST_CASE("an outlier may be small beside the signal: what counts is how it stan
   CHECK(remove_outliers(info, coarse).empty());
 }
 
-TEST_CASE("where readings rise, the neighbour of an outlier is not taken for it") {
-  Recording rising = tank();
-  Eigen::MatrixXd simulated = rising.outputs;
+TEST_CASE("where readings move fast, the neighbour of an outlier is not taken for it") {
+  Recording moving = tank();
+  Eigen::MatrixXd simulated = moving.outputs;
   for (Eigen::Index i = 0; i < 400; ++i) {
     const auto row = static_cast<double>(i);
     simulated(0, i) = 3 * std::sin(0.02 * row);
-    rising.outputs(0, i) = simulated(0, i) + 1e-3 * std::sin(1.7 * row);
+    moving.outputs(0, i) = simulated(0, i) + 1e-3 * std::sin(1.7 * row);
   }
-  rising.outputs(0, 160) += 0.12;  // falls by 0.06 a row there: the one before it bends by half as much the other way
-  REQUIRE(remove_outliers(info, rising).empty());
-  CHECK(remove_outliers(info, rising, simulated).size() == 1);
-  CHECK(std::isnan(rising.outputs(0, 160)));
+  moving.outputs(0, 160) += 0.12;  // falls by 0.06 a row there: the one before it bends by half as much the other way
+  REQUIRE(remove_outliers(info, moving).empty());
+  CHECK(remove_outliers(info, moving, simulated).size() == 1);
+  CHECK(std::isnan(moving.outputs(0, 160)));
 }
 
 TEST_CASE("what a model says shows outliers among readings that move fast by themselves, and only those") {

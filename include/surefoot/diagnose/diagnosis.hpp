@@ -165,8 +165,8 @@ struct Diagnosis {
   double held_out_forest = std::numeric_limits<double>::quiet_NaN();  // a forest on residuals instead of effects
   ForestResidual forest_residual;
   double noise_floor = std::numeric_limits<double>::quiet_NaN();  // NaN: cannot be told
-  double noise_ratio =
-      std::numeric_limits<double>::quiet_NaN();  // held out, each output in units of its noise; NaN: the same
+  double noise_ratio = std::numeric_limits<double>::quiet_NaN();  // held out, each output in units of what noise leaves
+                                                                  // of it; NaN: the same
   double gain_low = 0, gain_high = 0;            // 95 % interval of held_out_after / held_out_before over recordings
   std::vector<RecordingFit> per_recording;
   std::vector<Curve> curves;

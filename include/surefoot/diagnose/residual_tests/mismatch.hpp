@@ -22,7 +22,8 @@ struct Mismatch {
 /// Of simulations that follow the readings, beyond what noise alone leaves of these.
 Mismatch measure_mismatch(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
                           const std::vector<SimulatedRun>& trajectories, const Eigen::VectorXd& sigma, NoiseKind noise,
-                          const PredictionNoise& predictions = {}, std::vector<WhitenessTest>* by_output = nullptr);
+                          const PredictionNoise& noise_of_predictions = {},
+                          std::vector<WhitenessTest>* by_output = nullptr);
 
 }  // namespace surefoot::diagnosis
 

@@ -17,6 +17,11 @@ struct PredictionNoise {
   std::vector<double> structure;      // mean square of what is related beyond the memory of noise [output unit^2]
 };
 
+/// The amplification of an output; 1 where simulations follow nothing.
+inline double amplification_of(const PredictionNoise& noise, std::size_t output) {
+  return noise.amplification.empty() ? 1 : noise.amplification[output];
+}
+
 /// By a trial: a machine that moves as the hypothesis is simulated now, read with noise of the size that was
 /// stated, or that the fast part of what is left shows, as is how much of it the next row keeps. Cost: two simulations
 /// of these recordings, and a test of each output.

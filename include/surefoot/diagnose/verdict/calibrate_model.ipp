@@ -39,7 +39,7 @@ SUREFOOT_ONCE bool holds_structure(const EstimationSetup& setup, const Hypothesi
   if (setup.noise == NoiseKind::final_pose) return true;
   const auto runs = simulate_all(setup.bound, hypothesis, fit.recordings, fit.integration, parallel);
   const Mismatch mismatch = measure_mismatch(setup.bound, fit.recordings, runs, setup.problem.weighting.sigma,
-                                             setup.noise, setup.predictions);
+                                             setup.noise, setup.noise_of_predictions);
   return mismatch.p_value < criteria.structure_significance && mismatch.share > criteria.structure_share;
 }
 
@@ -106,13 +106,15 @@ SUREFOOT_ONCE Fit no_worse_than(const Hypothesis& nominal, const Fit& calibrated
 }
 
 SUREFOOT_ONCE Calibration calibrate_model(EstimationSetup& setup, const RunContext& run) {
-  auto& [bound, split, noise, problem, predictions, freed] = setup;
+  auto& [bound, split, noise, problem, noise_of_predictions, freed] = setup;
   const Parallel& parallel = run.parallel;
   const Hypothesis nominal = nominal_with_known(bound, run.options);
   noise = noise_kind(bound, nominal, split.training);
   bound.integration.restart = noise == NoiseKind::process ? 1 : 0;
-  if (noise == NoiseKind::measurement) free_measured_initial_states(bound, split.training);
-  if (noise == NoiseKind::measurement) predictions = prediction_noise(bound, nominal, split.training, parallel);
+  if (noise == NoiseKind::measurement) {
+    free_measured_initial_states(bound, split.training);
+    noise_of_predictions = prediction_noise(bound, nominal, split.training, parallel);
+  }
   problem.integration = bound.integration;
   problem.stopped = [run] { return run.search_has_ended(); };
   if (!nominal.effects.empty()) {  // the bounds of their parameters are multiples of these

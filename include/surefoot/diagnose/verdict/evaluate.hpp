@@ -52,8 +52,8 @@ std::vector<ChannelMismatch> mismatch_by_output(const EstimationSetup& setup, co
 /// Error that noise alone leaves, in units of `scale` (by output); NaN if that of any output cannot be told.
 double noise_floor(const std::vector<ChannelMismatch>& outputs, const Eigen::VectorXd& scale);
 
-/// Error on held-out recordings, each output in units of its own noise, root mean square over outputs: a coarse sensor
-/// does not hide what a fine one shows. NaN if the noise of any output cannot be told.
+/// Error on held-out recordings, each output in units of what its own noise leaves of it, root mean square over
+/// outputs: a coarse sensor does not hide what a fine one shows. NaN if the noise of any output cannot be told.
 double noise_ratio(const std::vector<ChannelMismatch>& outputs);
 
 /// Noise that was estimated is no more than the `least` error on held-out recordings that any other structure or a

@@ -155,8 +155,7 @@ SUREFOOT_ONCE std::vector<ChannelMismatch> mismatch_by_output(const EstimationSe
         left = fast_spectrum(filled_series(bound, training, models.chosen.runs.training, output));
       }
       channel.noise = output_noise(bound, training, output, models.chosen.by_output[k], left, channel.rmse_after);
-      const auto& amplified = setup.predictions.amplification;
-      if (!amplified.empty()) channel.noise_amplification = amplified[k];
+      channel.noise_amplification = amplification_of(setup.noise_of_predictions, k);
     } else {
       channel.noise = noise_of_steps(bound, training, output, channel.rmse_after);
     }

@@ -16,7 +16,7 @@ struct EstimationSetup {
   RecordingSplit split;
   NoiseKind noise = NoiseKind::measurement;
   FitProblem problem = {};           // of the training recordings
-  PredictionNoise predictions = {};  // of the model as it is, if it follows the readings
+  PredictionNoise noise_of_predictions = {};  // of the model as it is, if it follows the readings
   std::vector<bool> freed = {};      // states of which the model said where they begin, and recordings otherwise
 };
 

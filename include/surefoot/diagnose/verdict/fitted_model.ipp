@@ -65,8 +65,9 @@ SUREFOOT_ONCE FittedModel simulate_model(const EstimationSetup& setup, const Hyp
 SUREFOOT_ONCE FittedModel fitted_model(const EstimationSetup& setup, const Hypothesis& hypothesis,
                                        const Parallel& parallel) {
   FittedModel model = simulate_model(setup, hypothesis, parallel, true);
-  model.mismatch = measure_mismatch(setup.bound, setup.split.training, model.runs.training,
-                                    setup.problem.weighting.sigma, setup.noise, setup.predictions, &model.by_output);
+  model.mismatch =
+      measure_mismatch(setup.bound, setup.split.training, model.runs.training, setup.problem.weighting.sigma,
+                       setup.noise, setup.noise_of_predictions, &model.by_output);
   return model;
 }
 

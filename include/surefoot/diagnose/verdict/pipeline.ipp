@@ -277,7 +277,7 @@ SUREFOOT_ONCE void evaluate_selection(const EstimationSetup& setup, const Calibr
 /// The choice, fitted to all recordings, may need finer steps than the search took: it is fitted once more with these,
 /// unless that leads astray.
 SUREFOOT_ONCE void refit_with_finer_steps(EstimationSetup& setup, Selection& selection, const RunContext& run) {
-  auto& [bound, split, noise, problem, predictions, freed] = setup;
+  auto& [bound, split, noise, problem, noise_of_predictions, freed] = setup;
   Hypothesis& chosen = selection.chosen.hypothesis;
   if (chosen.effects.size() == selection.nominal.hypothesis.effects.size()) return;
   const auto finer =

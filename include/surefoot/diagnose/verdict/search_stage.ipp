@@ -59,10 +59,8 @@ SUREFOOT_ONCE SearchProblem search_problem(const EstimationSetup& setup, const C
   problem.scale = error_scale_of(setup);
   problem.noise.resize(problem.scale.sigma.size());
   for (Eigen::Index k = 0; k < problem.noise.size(); ++k) {
-    const auto& amplified = setup.predictions.amplification;
-    const double left =
-        noise_of(setup.bound, training, k) * (amplified.empty() ? 1 : amplified[static_cast<std::size_t>(k)]);
-    const double ratio = left / problem.scale.sigma[k];
+    const double amplified = amplification_of(setup.noise_of_predictions, static_cast<std::size_t>(k));
+    const double ratio = noise_of(setup.bound, training, k) * amplified / problem.scale.sigma[k];
     problem.noise[k] = setup.noise == NoiseKind::measurement ? ratio * ratio : 0;
   }
   problem.nominal = calibration.nominal;
