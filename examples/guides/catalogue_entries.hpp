@@ -138,6 +138,8 @@ inline std::vector<Form> forms() {
        "frequency",
        {0.3, 25, 0.05},
        "ringing of a fixed frequency after each jolt"},
+      {"joint_elasticity", "two modes",
+       "the same, and another of second_ratio beside it, which swings at second_frequency"},
       {"cogging",
        "",
        "F = sine sin(2 pi q / period) + cosine cos(2 pi q / period)",

@@ -91,7 +91,7 @@ std::vector<Candidate> outside_candidates(const Machine& machine) {
     const State& state = machine.states[i];
     if (state.is_speed) add(list, "gusts asymmetric_damping heat_fade", Where::speed, i);
     if (state.is_speed && state.position >= 0)
-      add(list, "detent sticky_patch growing_inertia two_resonators weak_zone", Where::speed, i);
+      add(list, "detent sticky_patch growing_inertia weak_zone", Where::speed, i);
     if (state.is_amount)
       add(list, machine.family == "tanks" ? "ripple choke exchange" : "ripple radiation", Where::state, i);
   }

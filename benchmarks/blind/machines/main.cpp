@@ -4,7 +4,10 @@
 #include <cstdio>
 #include <exception>
 #include <fstream>
+#include <map>
+#include <optional>
 #include <stdexcept>
+#include <string>
 
 #include "equivalents.hpp"
 
@@ -13,6 +16,7 @@ namespace {
 constexpr const char* usage =
     "usage: concealed_machines --out DIR --cases N --seed S [--machines development|examination]\n"
     "                          [--inputs held|linear|before]   between rows, which model files do not say\n"
+    "                          [--hidden nothing|one|two|outside]   effects in every case; by default all of these\n"
     "writes DIR/cases/case_0001/{model.toml,rec_01.csv,...} and DIR/truth/case_0001.json\n";
 
 struct Options {
@@ -20,13 +24,21 @@ struct Options {
   std::size_t cases = 0;
   std::uint64_t seed = 1;
   machines::Grammar grammar;
-  bool logged_late = false;  // each row holds the inputs that acted before it
+  bool logged_late = false;            // each row holds the inputs that acted before it
+  std::optional<plants::Kind> hidden;  // in every case; else as kinds() says
 };
 
 std::uint64_t whole_number(const std::string& option, const std::string& given) {
   const bool digits = !given.empty() && given.size() < 19 && given.find_first_not_of("0123456789") == std::string::npos;
   if (!digits) throw std::invalid_argument(option + " needs a whole number, not '" + given + "'");
   return std::stoull(given);
+}
+
+const std::map<std::string, plants::Kind>& kind_names() {
+  using plants::Kind;
+  static const std::map<std::string, Kind> names{
+      {"nothing", Kind::nothing}, {"one", Kind::one}, {"two", Kind::two}, {"outside", Kind::outside}};
+  return names;
 }
 
 Options parse(int argc, char** argv) {
@@ -50,6 +62,11 @@ Options parse(int argc, char** argv) {
         throw std::invalid_argument("--inputs is held, linear or before, not '" + given + "'");
       options.grammar.linear_inputs = given == "linear";
       options.logged_late = given == "before";
+    } else if (option == "--hidden") {
+      const auto at = kind_names().find(given);
+      if (at == kind_names().end())
+        throw std::invalid_argument("--hidden is nothing, one, two or outside, not '" + given + "'");
+      options.hidden = at->second;
     } else {
       throw std::invalid_argument("unknown option " + option);
     }
@@ -78,7 +95,8 @@ void log_late(std::vector<plants::Recording>& recordings) {
 
 void generate(const Options& options) {
   plants::Random plan(options.seed);
-  const std::vector<plants::Kind> planned = kinds(options.cases, plan);
+  std::vector<plants::Kind> planned = kinds(options.cases, plan);
+  if (options.hidden) std::ranges::fill(planned, *options.hidden);
   std::filesystem::create_directories(options.out / "truth");
   for (std::size_t i = 0; i < options.cases; ++i) {
     plants::Random random(options.seed * 1000003 + i);

@@ -242,6 +242,50 @@ TEST_CASE("an elastic joint knows when dry friction holds it") {
   CHECK((x.row(0).transpose() - truth).cwiseAbs().maxCoeff() < 0.02);
 }
 
+// As above, of the first mass with two others on it, each on a spring of its own, without friction.
+Eigen::VectorXd three_masses(const effects::TwoModes& modes, int rows, double step, double q, double v) {
+  constexpr double h = 1e-5;
+  std::array<double, 2> other = {q, q}, speed = {v, v};
+  Eigen::VectorXd positions(rows);
+  for (int row = 0; row < rows; ++row) {
+    positions[row] = q;
+    for (int i = 0; i < static_cast<int>(std::lround(step / h)); ++i) {
+      double force = -36 * q;
+      for (std::size_t k = 0; k < other.size(); ++k) {
+        const double reduced = modes.ratio[k] / (1 + modes.ratio[k]), frequency = modes.frequency[k];
+        const double pull = reduced * frequency * (frequency * (other[k] - q) + 2 * modes.damping * (speed[k] - v));
+        force += pull;
+        speed[k] -= h * pull / modes.ratio[k];
+      }
+      v += h * force;
+      q += h * v;
+      for (std::size_t k = 0; k < other.size(); ++k) other[k] += h * speed[k];
+    }
+  }
+  return positions;
+}
+
+TEST_CASE("a joint with two modes moves as three masses do, whatever the step and the order of integration") {
+  for (const double step : {0.01, 0.002}) {
+    const Eigen::VectorXd truth =
+        three_masses({.ratio = {0.5, 0.3}, .frequency = {20, 45}, .damping = 0.1}, 101, step, 0.3, 1);
+    for (const int order : {2, 4}) {
+      const auto x = simulated(effects::joint_elasticity_two_modes(), {0.5, 20, 0.1, 0.3, 45},
+                               recording_of(101, step, 0.3, 1), {}, order);
+      CAPTURE(step);
+      CAPTURE(order);
+      CHECK((x.states.row(0).transpose() - truth).cwiseAbs().maxCoeff() < 0.01);
+    }
+  }
+}
+
+TEST_CASE("a second mode without inertia is none") {
+  const auto both =
+      simulated(effects::joint_elasticity_two_modes(), {0.5, 20, 0.1, 0, 45}, recording_of(101, 0.005, 0.3, 1));
+  const auto one = simulated(effects::joint_elasticity(), {0.5, 20, 0.1}, recording_of(101, 0.005, 0.3, 1));
+  CHECK((both.states - one.states).cwiseAbs().maxCoeff() < 1e-3);
+}
+
 TEST_CASE("a joint with a gap moves as two masses do") {
   const effects::TwoMasses masses{.ratio = 0.5, .frequency = 60, .damping = 0.2, .half_width = 0.05};
   const Eigen::VectorXd truth = two_masses(masses, 0, 201, 0.005, 0.3, 1);

@@ -180,6 +180,23 @@ TEST_CASE("forms that differ by less than an error of form are compared in full,
   CHECK(log_odds(*richer, plain, forms.problem.criteria) < std::log(forms.problem.criteria.named_odds));
 }
 
+TEST_CASE("what a form adds is found though everything else was fitted to make up for it") {
+  using namespace diagnosis;
+  for (const Eigen::Vector2d& frequencies :
+       {Eigen::Vector2d(8, 17.6), Eigen::Vector2d(15, 9), Eigen::Vector2d(12, 18)}) {
+    CAPTURE(frequencies.transpose());
+    FormSearch forms =
+        search_of({"joint_elasticity", "v", "two modes", {}, {0.2, frequencies[0], 0.06, 0.2, frequencies[1]}});
+    const EvaluatedHypothesis plain = forms.fitted("", Eigen::Vector3d(0.26, frequencies[0], 0.05));
+    const auto richer = in_richer_forms(forms.search(), plain, ErrorsOfForm::counted);
+    REQUIRE(richer.has_value());
+    const Eigen::VectorXd& values = richer->hypothesis.values[0];
+    CHECK(std::min(values[1], values[4]) == doctest::Approx(frequencies.minCoeff()).epsilon(0.02));
+    CHECK(std::max(values[1], values[4]) == doctest::Approx(frequencies.maxCoeff()).epsilon(0.02));
+    CHECK(richer->errors.rms() < 0.1 * plain.errors.rms());
+  }
+}
+
 TEST_CASE("other forms of an effect are tried from the fit that was found, the best first") {
   using namespace diagnosis;
   FormSearch forms = search_of({"coulomb_friction", "v", "smooth", {}, {4, 0.08}});

@@ -70,6 +70,7 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
                              effects::backlash_gap(),
                              effects::backlash_motor(),
                              effects::joint_elasticity(),
+                             effects::joint_elasticity_two_modes(),
                              effects::cogging(),
                              effects::cogging_harmonics(),
                              effects::cogging_per_turn(),

@@ -7,12 +7,14 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
+#include "surefoot/diagnose/estimation/guided_fit.hpp"
 #include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/estimation/starting_values.hpp"
@@ -75,19 +77,35 @@ SUREFOOT_ONCE std::vector<Hypothesis> starts_in_form(const Search& search, const
   return starts;
 }
 
-/// The start in a richer form that comes nearest to its special case.
+/// Whether a richer form adds something that moves by itself, with a strength of its own, and does not only bend.
+SUREFOOT_ONCE bool adds_motion(const Effect& richer, const Effect& special) {
+  return richer.hidden_states > special.hidden_states && strengths_of(richer).size() > strengths_of(special).size();
+}
+
+/// The start in a richer form that comes nearest to its special case. Where the form adds something, for which
+/// everything else was fitted to make up, as they are they say little: the one that leaves least under the guidance of
+/// the readings, as reached so (guided_fit.hpp).
 SUREFOOT_ONCE Hypothesis with_form(const Search& search, const Hypothesis& found, std::size_t e,
                                    const AttachedEffect& richer) {
-  const FitProblem& problem = search.problem.fit;
+  const std::span<const double> horizons = guided_horizons;
+  const FitProblem& whole = search.problem.fit;
+  const bool adds = adds_motion(*richer.effect, *found.effects[e].effect) && can_be_guided(search.bound, whole);
+  FitProblem problem = whole;
+  if (adds) {
+    problem.recordings = search.problem.screened;
+    problem.integration.follow = guided_follow(search.bound, problem, horizons.front());
+  }
   Hypothesis best;
   double least = std::numeric_limits<double>::infinity();
   for (Hypothesis& one : starts_in_form(search, found, e, richer)) {
+    if (search.problem.stopped()) break;
+    if (adds) one = guided(search.bound, one, problem, horizons.first(1), search.parallel);
     const double loss = loss_of(search.bound, one, problem, search.parallel);
     if (!best.effects.empty() && !(loss < least)) continue;
     least = loss;
     best = std::move(one);
   }
-  return best;
+  return adds && !best.effects.empty() ? guided(search.bound, best, whole, horizons.subspan(1), search.parallel) : best;
 }
 
 /// Places of the best fits of each form of effect number `e`, best first, at most `keep`.

@@ -12,10 +12,9 @@ namespace surefoot::diagnosis {
 /// residuals, gains of the root mean square error.
 struct VerdictCriteria {
   // Residuals of the training recordings hold what noise does not:
-  double structure_significance = 0.001;      // of the residuals' structure; small, as any model is wrong a little
-  double tolerated_share = 0.12;              // that may stay without a name: too little to be worth a parameter
-  double tolerated_share_with_effects = 0.3;  // the same beside effects, whose form is never quite that of the machine
-  double tolerated_energy = 0.05;  // of what the calibrated model leaves: other formulas of an effect leave a hundredth
+  double structure_significance = 0.001;  // of the residuals' structure; small, as any model is wrong a little
+  double tolerated_share = 0.12;          // that may stay without a name: too little to be worth a parameter
+  double tolerated_energy = 0.05;         // beside effects, of what there was: other formulas of them leave a hundredth
 
   // Errors on held-out recordings against the noise (whole recordings only):
   double largest_ratio = 1.5;   // root mean square in units of the noise floor: beyond, something else is there

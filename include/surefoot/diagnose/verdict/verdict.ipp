@@ -12,10 +12,8 @@ SUREFOOT_ONCE bool is_unexplained(const VerdictEvidence& evidence, const Verdict
   // Rows that are off by no more than was known of this machine: what can be predicted of that is no change.
   if (within_process_noise(evidence.process_ratio, criteria)) return false;
 
-  const bool beside_effects = evidence.effects_found && evidence.noise != NoiseKind::process;
-  const double tolerated = beside_effects ? criteria.tolerated_share_with_effects : criteria.tolerated_share;
   const bool structured = evidence.structure_p_value < criteria.structure_significance &&
-                          evidence.structure_share > tolerated &&
+                          evidence.structure_share > criteria.tolerated_share &&
                           (!evidence.effects_found || evidence.structure_energy > criteria.tolerated_energy);
   if (structured) return true;
 
