@@ -82,9 +82,9 @@ SUREFOOT_ONCE bool adds_motion(const Effect& richer, const Effect& special) {
   return richer.hidden_states > special.hidden_states && strengths_of(richer).size() > strengths_of(special).size();
 }
 
-/// The start in a richer form that comes nearest to its special case. Where the form adds something, for which
-/// everything else was fitted to make up, as they are they say little: the one that leaves least under the guidance of
-/// the readings, as reached so (guided_fit.hpp).
+/// The start in a richer form that comes nearest to its special case. Where the form adds what moves by itself, starts
+/// say little as they are, since everything else was fitted to make up for it: the one that leaves least under the
+/// guidance of the readings, as reached so (guided_fit.hpp).
 SUREFOOT_ONCE Hypothesis with_form(const Search& search, const Hypothesis& found, std::size_t e,
                                    const AttachedEffect& richer) {
   const std::span<const double> horizons = guided_horizons;

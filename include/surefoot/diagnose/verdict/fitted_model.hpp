@@ -15,9 +15,9 @@ struct EstimationSetup {
   BoundSimulator bound;
   RecordingSplit split;
   NoiseKind noise = NoiseKind::measurement;
-  FitProblem problem = {};           // of the training recordings
+  FitProblem problem = {};                    // of the training recordings
   PredictionNoise noise_of_predictions = {};  // of the model as it is, if it follows the readings
-  std::vector<bool> freed = {};      // states of which the model said where they begin, and recordings otherwise
+  std::vector<bool> freed = {};  // states of which the model said where they begin, and recordings otherwise
 };
 
 /// Simulations by a model; each list goes with the training or the held-out recordings.

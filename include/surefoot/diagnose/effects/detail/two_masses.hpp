@@ -30,13 +30,16 @@ struct Offset {
   double d = 0, w = 0;
 };
 
+/// Substeps that a swing of this frequency [rad/s] needs within a step [s]: of a tenth of a radian.
+inline int swing_substeps(double frequency, double step) { return 1 + static_cast<int>(frequency * step / 0.1); }
+
 /// The linear map of an offset over a step, d and w after it by d, w and a before.
 struct SwingMap {
   Offset by_d, by_w, by_a;
 };
 
 inline SwingMap swing_map(double frequency, double damping, double step) {
-  const int substeps = 1 + static_cast<int>(frequency * step / 0.1);
+  const int substeps = swing_substeps(frequency, step);
   const double h = step / substeps, keep = 1 / (1 + 2 * h * damping * frequency);
   const auto after = [&](Offset at, double a) {
     for (int i = 0; i < substeps; ++i) {
@@ -68,7 +71,7 @@ inline Offset swing(const TwoMasses& masses, Offset at, double a, double step) {
     return {map.by_d.d * at.d + map.by_w.d * at.w + map.by_a.d * a,
             map.by_d.w * at.d + map.by_w.w * at.w + map.by_a.w * a};
   }
-  const int substeps = 1 + static_cast<int>(frequency * step / 0.1);
+  const int substeps = swing_substeps(frequency, step);
   const double h = step / substeps, damping = 2 * masses.damping * frequency;
   for (int i = 0; i < substeps; ++i) {
     const double bend = beyond_gap(at.d, masses.half_width);

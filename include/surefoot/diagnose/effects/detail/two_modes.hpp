@@ -2,14 +2,15 @@
 //
 // As in two_masses.hpp, each with its own ratio r, frequency f and share s = r/(1 + r):
 //   w' = -pull - a - s2 pull2   (and the other way round),   force = inertia (s pull + s2 pull2),
-// a the acceleration of the first by everything else. Linear, so that a step is one map, found in short substeps of the
-// implicit Euler method for the speeds. Hidden states: d, w, d2, w2, speed of the first after the last step.
+// a the acceleration of the first by everything else. Linear, so that a step is one map, found in short substeps by the
+// semi-implicit Euler method, with implicit dampers. Hidden states: d, w, d2, w2, last speed of the first.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 
+#include "surefoot/diagnose/effects/detail/two_masses.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -38,12 +39,12 @@ struct TwoModesMap {
     return result;
   }
 
-  /// Mean of the acceleration of the first that the springs cause during a step: from what became of both speeds.
-  double mean_pull(Values at, double a) const {
+  /// Mean acceleration of the first by springs and dampers during a step, from what became of both speeds.
+  double mean_acceleration(Values at, double a) const {
     const Swings end = after(at, a);
     const double first = (at[1] - end[1]) / step - a, second = (at[3] - end[3]) / step - a;
-    const double others = share[0] * share[1];
-    return (share[0] * (first - share[1] * second) + share[1] * (second - share[0] * first)) / (1 - others);
+    const double by_first = first - share[1] * second, by_second = second - share[0] * first;
+    return (share[0] * by_first + share[1] * by_second) / (1 - share[0] * share[1]);
   }
 };
 
@@ -55,7 +56,7 @@ inline TwoModesMap two_modes_map(const TwoModes& modes, double step) {
     f[i] = std::min(modes.frequency[i], 2 / step);
     map.share[i] = modes.ratio[i] / (1 + modes.ratio[i]);
   }
-  const int substeps = 1 + static_cast<int>(std::max(f[0], f[1]) * step / 0.1);
+  const int substeps = swing_substeps(std::max(f[0], f[1]), step);
   const double h = step / substeps;
   for (std::size_t i = 0; i < f.size(); ++i) damp[i] = 2 * h * modes.damping * f[i];
   const double s = map.share[0], s2 = map.share[1];
@@ -88,7 +89,7 @@ inline const TwoModesMap& last_two_modes_map(const TwoModes& modes, double step)
 }
 
 inline double force_of(const TwoModes& modes, const EffectContext& m, Values hidden) {
-  return m.step > 0 ? m.effort * last_two_modes_map(modes, m.step).mean_pull(hidden, m.rate) : 0;
+  return m.step > 0 ? m.effort * last_two_modes_map(modes, m.step).mean_acceleration(hidden, m.rate) : 0;
 }
 
 /// As that of two masses: the speed of the first tells which acceleration by everything else it really had.
@@ -96,7 +97,7 @@ inline void advance(const TwoModes& modes, const EffectContext& m, HiddenStates 
   if (!(m.step > 0)) return;
   const TwoModesMap& map = last_two_modes_map(modes, m.step);
   const double total = (m.value - hidden[4]) / m.step;
-  const double at_rest = map.mean_pull(hidden, 0), slope = 1 + map.mean_pull(hidden, 1) - at_rest;
+  const double at_rest = map.mean_acceleration(hidden, 0), slope = 1 + map.mean_acceleration(hidden, 1) - at_rest;
   const double a = slope > 0.05 ? (total - at_rest) / slope : total;
   const Swings after = map.after(hidden, a);
   for (std::size_t k = 0; k < after.size(); ++k) hidden[k] = after[k];
