@@ -132,11 +132,15 @@ TEST_CASE("every effect does something, in the way of its place") {
   }
 }
 
-// What an effect does at a random context, with parameters p, as numbers.
-std::vector<double> marks_of(const Effect& effect, const std::vector<double>& p, std::uint64_t seed) {
+// What an effect does at a random context, with parameters p, as numbers; with one part of the context at zero.
+std::vector<double> marks_of(const Effect& effect, const std::vector<double>& p, std::uint64_t seed,
+                             double EffectContext::*none = nullptr) {
   Rng rng(seed);
   EffectContext m;
-  for (double* field : {&m.time, &m.value, &m.position, &m.rate, &m.drive, &m.load}) *field = 2 * rng.uniform() - 1;
+  for (double* field : {&m.time, &m.value, &m.position, &m.rate, &m.drive, &m.load, &m.damping}) {
+    *field = 2 * rng.uniform() - 1;
+  }
+  if (none != nullptr) m.*none = 0;
   m.step = 0.001 + 0.009 * rng.uniform();
   m.effort = 0.1 + rng.uniform();
   std::vector<double> memory(static_cast<std::size_t>(effect.hidden_states), 0.0);
@@ -183,6 +187,25 @@ TEST_CASE("without strength an effect changes nothing") {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
       for (const double mark : marks_of(effect, p, seed)) CHECK(std::abs(mark) < 1e-10);
     }
+  }
+}
+
+TEST_CASE("an effect asks for the parts of the force that it depends on, and for no others") {
+  for (const Effect& effect : all_effects()) {
+    if (effect.planar) continue;  // whose drive is the length of a step
+    CAPTURE(effect.name);
+    CAPTURE(effect.form);
+    std::vector<double> p;
+    for (const EffectParameter& parameter : effect.parameters) p.push_back((parameter.low + parameter.high) / 2);
+    const auto depends_on = [&](double EffectContext::*part) {
+      for (std::uint64_t seed = 0; seed < 50; ++seed) {
+        if (marks_of(effect, p, seed) != marks_of(effect, p, seed, part)) return true;
+      }
+      return false;
+    };
+    CHECK(depends_on(&EffectContext::drive) == effect.needs_drive);
+    CHECK(depends_on(&EffectContext::load) == effect.needs_load);
+    CHECK(depends_on(&EffectContext::damping) == effect.needs_damping);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "surefoot/diagnose/effects/constant_force.hpp"
@@ -39,6 +40,18 @@ TEST_CASE("a first effect whose fit ended in a valley is tried from places aroun
   begin_elsewhere(search, false, children);
   REQUIRE(children.size() == 1);
   CHECK(children[0].hypothesis.values[0][0] == doctest::Approx(0.2).epsilon(0.1));
+}
+
+TEST_CASE("first effects that a rival explanation beats are not sought from elsewhere") {
+  const TankBench bench({drift_in_tank});
+  Search search = bench.search();
+  int asked = 0;  // whether something explains the recordings
+  search.problem.structured = [&asked](const Hypothesis&, const FitProblem&) { return ++asked > 0; };
+  first_effects(search, bench.with({}));
+  const int everywhere = std::exchange(asked, 0);
+  search.problem.rival = 1e9;
+  CHECK_FALSE(first_effects(search, bench.with({})).empty());
+  CHECK(asked < 0.7 * everywhere);
 }
 
 TEST_CASE("a first effect that leaves only noise needs no other start") {

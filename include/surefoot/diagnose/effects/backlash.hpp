@@ -97,6 +97,7 @@ inline TwoMasses gap_joint(Values p) {
           .experiment = "slow reversals at two amplitudes: lost motion is the same for both",
           .form = "motor",
           .hidden_states = 4,
+          .needs_load = true,
           .needs_damping = true,
           .is_impulsive = true,
           .force =

@@ -81,10 +81,10 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
                              effects::elastic_end_stop(false)};
   for (std::size_t i = 0, count = all.size(); i < count; ++i) {
     if (!all[i].dry) continue;
-    const bool of_load = all[i].needs_drive || all[i].needs_damping;  // has many forms, each of which would be fitted
+    const bool of_load = all[i].needs_drive || all[i].needs_load;  // has many forms, each of which would be fitted
     if (!of_load) all.push_back(effects::creeping(all[i]));
     if (all[i].form == "tailed") continue;
-    if (all[i].needs_drive) {
+    if (of_load) {
       const Effect presliding = effects::with_presliding(all[i]);
       all.push_back(presliding);
       if (all[i].extends.empty()) all.push_back(effects::damped(presliding, all[i]));

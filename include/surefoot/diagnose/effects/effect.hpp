@@ -55,7 +55,7 @@ struct EffectContext {
   double rate = 0;      // of the state it is attached to, as the simulator has it
   double effort = 1;    // what turns this rate into a force or torque
   double drive = 0;     // force due to the inputs, if the effect asks for it (needs_drive)
-  double load = 0;      // force that remains with inputs and speed at zero, likewise (or needs_damping)
+  double load = 0;      // force that remains with inputs and speed at zero, likewise (needs_load)
   double damping = 0;   // by how much the force falls per unit of `value` (needs_damping)
 };
 
@@ -87,6 +87,7 @@ struct Effect {
   std::optional<Measure> start_measure = {};  // of the first hidden state, where a recording may find it at any value
   bool starts_anywhere = false;  // and does: what `start` says is off by a number that each recording tells
   bool needs_drive = false;
+  bool needs_load = false;
   bool needs_damping = false;
   bool is_impulsive =
       false;              // its signature does not grow in proportion: starts are ranked as they are, and not scaled

@@ -27,26 +27,31 @@ namespace surefoot::effects {
           .confusable_with = names_of({"coulomb_friction", "stribeck_friction", "input_gain"}),
           .experiment = "the same slow ramp with reversals under two or three different loads",
           .form = std::move(form),
-          .needs_drive = true,
           .dry = std::move(dry)};
 }
 
 [[gnu::cold]] inline Effect load_dependent_friction() {
-  return load_friction(
+  Effect effect = load_friction(
       "drive", "dry friction of {factor} times the driving force at {at}",
       +[](const EffectContext& m, Values p) { return p[0] * std::abs(m.drive); });
+  effect.needs_drive = true;
+  return effect;
 }
 
 [[gnu::cold]] inline Effect load_dependent_friction_under_load() {
-  return load_friction(
+  Effect effect = load_friction(
       "load", "dry friction of {factor} times the load at {at}",
       +[](const EffectContext& m, Values p) { return p[0] * std::abs(m.load); });
+  effect.needs_load = true;
+  return effect;
 }
 
 [[gnu::cold]] inline Effect load_dependent_friction_in_gears() {
-  return load_friction(
+  Effect effect = load_friction(
       "gears", "dry friction of {factor} times the force that the gears pass on at {at}",
       +[](const EffectContext& m, Values p) { return p[0] * 0.5 * std::abs(m.drive - m.load); });
+  effect.needs_drive = effect.needs_load = true;
+  return effect;
 }
 
 /// Bearings and meshes on both sides of a gear: of each force its own share.
@@ -54,6 +59,7 @@ namespace surefoot::effects {
   Effect effect = load_friction(
       "both", "dry friction of {factor} times the driving force and {load_factor} times the load at {at}",
       +[](const EffectContext& m, Values p) { return p[0] * std::abs(m.drive) + p[1] * std::abs(m.load); });
+  effect.needs_drive = effect.needs_load = true;
   EffectParameter of_load = effect.parameters[0];
   of_load.name = "load_factor";
   of_load.starts = {0, 0.05};

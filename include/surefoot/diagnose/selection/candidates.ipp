@@ -164,7 +164,7 @@ SUREFOOT_ONCE std::vector<AttachedEffect> attachments(const BoundSimulator& boun
   int rank = -1;
   for (const Effect& effect : effects) {
     ++rank;
-    if ((effect.needs_drive || effect.needs_damping) && info.inputs.empty()) continue;  // nothing drives it
+    if ((effect.needs_drive || effect.needs_load) && info.inputs.empty()) continue;  // nothing drives it
     const auto shared = std::make_shared<const Effect>(effect);
     const auto attach = [&](std::size_t at, const std::string& place, int other = -1) {
       result.push_back({shared, static_cast<int>(at), other, place, rank});

@@ -2,10 +2,12 @@
 // parameters. Weights follow what the best one so far leaves.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "surefoot/diagnose/selection/children.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
+#include "surefoot/diagnose/selection/explains.hpp"
 #include "surefoot/diagnose/selection/richer_forms.hpp"
 
 namespace surefoot::diagnosis {
@@ -26,18 +28,12 @@ bool refine_integration(Search& search, const EvaluatedHypothesis& best);
 /// Chooses anew how coarse the steps may be while fits are only compared, by what their parent leaves.
 void choose_screening(Search& search, const EvaluatedHypothesis& parent);
 
-/// Whether a hypothesis leaves more than noise: what leaves only noise needs no second effect, nor another start.
-bool leaves_structure(const Search& search, const EvaluatedHypothesis& one);
-
-/// Whether a hypothesis leaves only noise, or so little more that an error of form may be all it is: no other start
-/// could do better, though a further effect may.
-bool explains(const Search& search, const EvaluatedHypothesis& one);
-
 /// A hypothesis, fitted and evaluated again.
 EvaluatedHypothesis refitted(const Search& search, const Hypothesis& one);
 
-/// Richer forms for the best structures, none of them `hopeless` behind the best [nat].
-void enrich(const Search& search, std::vector<EvaluatedHypothesis>& pool, double hopeless, ErrorsOfForm errors_of_form);
+/// Richer forms for the best structures, none of them `hopeless` behind the best [nat]; `reach` as of in_richer_forms.
+void enrich(const Search& search, std::vector<EvaluatedHypothesis>& pool, double hopeless, ErrorsOfForm errors_of_form,
+            double reach = std::numeric_limits<double>::infinity());
 
 /// The best structures, and the model without effects, fitted and evaluated with the present weights and recordings.
 std::vector<EvaluatedHypothesis> fitted_again(const Search& search, const std::vector<EvaluatedHypothesis>& pool);

@@ -79,24 +79,16 @@ SUREFOOT_ONCE void choose_screening(Search& search, const EvaluatedHypothesis& p
                                  .screening;
 }
 
-SUREFOOT_ONCE bool leaves_structure(const Search& search, const EvaluatedHypothesis& one) {
-  return search.problem.structured(one.hypothesis, search.problem.fit);
-}
-
-SUREFOOT_ONCE bool explains(const Search& search, const EvaluatedHypothesis& one) {
-  return leaves_only_noise(one, search.problem) || !leaves_structure(search, one);
-}
-
 SUREFOOT_ONCE EvaluatedHypothesis refitted(const Search& search, const Hypothesis& one) {
   return evaluate_fit(search.bound, fit(search.bound, one, search.problem.fit, serially()), search.problem, serially());
 }
 
 SUREFOOT_ONCE void enrich(const Search& search, std::vector<EvaluatedHypothesis>& pool, double hopeless,
-                          ErrorsOfForm errors_of_form) {
+                          ErrorsOfForm errors_of_form, double reach) {
   const auto& [bound, problem, candidates, parallel] = search;
   for (const EvaluatedHypothesis& one : best_structures(pool, problem.effort.finalists, hopeless, problem.criteria)) {
     if (problem.stopped()) return;
-    const auto richer = in_richer_forms(search, one, errors_of_form);
+    const auto richer = in_richer_forms(search, one, errors_of_form, reach);
     if (richer) keep_best_form(pool, *richer, problem.criteria);
   }
 }
@@ -154,7 +146,7 @@ SUREFOOT_ONCE bool settle_alone(Search& search, std::vector<EvaluatedHypothesis>
     std::vector<EvaluatedHypothesis> forms =
         in_other_forms(own, best, own.problem.known, own.problem.effort.compared_finalists, false);
     forms.push_back(best);
-    enrich(own, forms, none_is_hopeless, ErrorsOfForm::tolerated);
+    enrich(own, forms, none_is_hopeless, ErrorsOfForm::tolerated, loss_at_noise(best, own.problem));
     best = with_integration_of_its_own(own, forms[best_of(forms, criteria)]);
     if (!explains(own, best)) return false;
   }

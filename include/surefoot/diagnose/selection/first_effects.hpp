@@ -29,7 +29,8 @@ bool has_lost_readings(const EvaluatedHypothesis& one);
 /// enough for the calibration of a stiff machine may be too long for it.
 void begin_elsewhere(Search& search, bool guided, std::vector<EvaluatedHypothesis>& children);
 
-/// First effects of the model without any: along the readings first where it has lost them.
+/// First effects of the model without any: along the readings first where it has lost them, and elsewhere, too, unless
+/// the rival explanation of the problem does better.
 std::vector<EvaluatedHypothesis> first_effects(Search& search, const EvaluatedHypothesis& none);
 
 }  // namespace surefoot::diagnosis

@@ -109,7 +109,9 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> first_effects(Search& search, con
   std::vector<EvaluatedHypothesis> others;
   if (!search.problem.stopped()) extend(search, none, none, others);
   for (const EvaluatedHypothesis& one : others) keep_best_form(children, one, criteria);
-  if (structured) begin_elsewhere(search, guided, children);
+  std::vector<EvaluatedHypothesis> compared = children;
+  compared.push_back(none);
+  if (structured && !yields(search, compared)) begin_elsewhere(search, guided, children);
   return children;
 }
 

@@ -8,9 +8,6 @@
 
 namespace surefoot::diagnosis {
 
-/// Whether the rival explanation of the problem does better than the best of a pool of first effects.
-bool yields(const Search& search, const std::vector<EvaluatedHypothesis>& pool);
-
 /// Fits children that a bound of an effect alone makes less probable than the best structure once more from inside:
 /// where a scale is free, as of a tank that no sensor sees, nothing but chance puts them there.
 void draw_inside(const Search& search, const EvaluatedHypothesis& best, std::vector<EvaluatedHypothesis>& children);

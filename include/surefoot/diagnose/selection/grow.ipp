@@ -39,12 +39,6 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> smaller(const Search& search, con
   return rests;
 }
 
-SUREFOOT_ONCE bool yields(const Search& search, const std::vector<EvaluatedHypothesis>& pool) {
-  const SelectionCriteria& criteria = search.problem.criteria;
-  const auto none = find_item(pool, [&](const auto& one) { return search.effects(one) == 0; });
-  return none != nullptr && log_odds(pool[best_of(pool, criteria)], *none, criteria) < search.problem.rival;
-}
-
 /// With the parameters of effects that are at bounds a tenth of their range inside, and all else fitted around them.
 SUREFOOT_ONCE std::optional<Hypothesis> drawn_inside(const Search& search, Hypothesis one) {
   constexpr double inside = 0.1, middle = 0.5;  // of its range

@@ -89,9 +89,9 @@ void split_force(const AugmentedSimulator<S>& m, const ForceResponse<S>& respons
                  const EffectSlot& slot, const typename S::State& x, const typename S::State& f,
                  const typename S::Input& u) {
   const Effect& effect = *slot.effect;
-  if (!effect.needs_drive && !effect.needs_damping) return;
   if (effect.needs_drive) now.drive = driven_force(m, response, slot, x, f, u);
   if (effect.needs_damping) now.damping = damping_of(m, response, slot, x, f, u);
+  if (!effect.needs_load) return;
   auto rest = copied(x);
   rest[slot.at] = 0;
   now.load = undriven_force(m, response, slot, rest, u);
