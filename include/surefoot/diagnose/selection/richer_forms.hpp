@@ -17,7 +17,8 @@ namespace surefoot::diagnosis {
 enum class ErrorsOfForm { tolerated, counted };
 
 /// A structure with its effects, one after the other, in a form that extends theirs (Effect::extends) where recordings
-/// show it to be better at the odds that name an effect; none where nothing is. Cost: by such form a fit of where
+/// show it to be better at the odds that name an effect; none where nothing is. A form that adds what moves by itself
+/// bends to anything that is not understood: it must leave no more than noise. Cost: by such form a fit of where
 /// recordings begin, if it has that free, a few iterations if that helps, and a whole fit if these do.
 /// `reach`: a loss that these iterations must come nearer to.
 std::optional<EvaluatedHypothesis> in_richer_forms(const Search& search, const EvaluatedHypothesis& found,
