@@ -201,15 +201,15 @@ SUREFOOT_ONCE std::optional<EvaluatedHypothesis> in_richer_forms(const Search& s
     for (const AttachedEffect& richer : search.candidates) {
       if (!extends(richer, best.hypothesis.effects[e]) || problem.stopped()) continue;
       const bool adds = adds_motion(*richer.effect, *best.hypothesis.effects[e].effect);
-      const double nearer = adds ? std::min(reach, loss_at_noise(best, problem)) : reach;
-      const Fit fitted = fit_richer(search, best, e, richer, nearer);
+      const double goal = adds ? std::min(reach, loss_at_noise(best, problem)) : reach;
+      const Fit fitted = fit_richer(search, best, e, richer, goal);
       if (!fitted.ok) continue;
       const EvaluatedHypothesis one = evaluate_fit(search.bound, fitted, problem, search.parallel);
-      if (adds && !explains(search, one)) continue;  // what moves by itself bends to what is not understood
       const bool counted = errors_of_form == ErrorsOfForm::counted;
       const double odds =
           counted ? log_odds_of_forms(one, best, problem.criteria) : log_odds(one, best, problem.criteria);
       if (!(odds > needed)) continue;
+      if (adds && !explains(search, one)) continue;  // what moves by itself bends to what is not understood
       best = one;
       any = true;
     }
