@@ -39,7 +39,7 @@ const std::map<std::string, std::vector<std::string>>& relatives() {
 
 // The alternative fitted to `reference` (its readings are noise-free): squared differences that remain.
 double remaining(const Drawn& drawn, const std::vector<Hidden>& hidden, std::size_t k,
-                 std::vector<Recording>& reference, const Same& same) {
+                 std::span<const Recording> reference, const Same& same) {
   const System system = with_free_strength(drawn.one.system, drawn.machine, hidden, k);
   const How how{same.substeps, false, false, nullptr, true};
   const Values fitted = plants::calibrate_from(system, plants::actual_values(system), {}, reference, how);
@@ -51,7 +51,7 @@ double remaining(const Drawn& drawn, const std::vector<Hidden>& hidden, std::siz
 // The same from either sign of the strength where it has one: what is too much on one side may be too little on
 // another.
 double remaining_from_both(const Drawn& drawn, std::vector<Hidden> hidden, std::size_t k,
-                           std::vector<Recording>& reference, const Same& same) {
+                           std::span<const Recording> reference, const Same& same) {
   const double as_drawn = remaining(drawn, hidden, k, reference, same);
   if (!is_signed(hidden[k].name)) return as_drawn;
   hidden[k].a = -hidden[k].a;
@@ -88,6 +88,17 @@ double rows_of(std::span<const Recording> recordings) {
   return rows;
 }
 
+// Whether the alternative is the same in all recordings, as far as those of the reference say. What it leaves of one
+// alone is the least that it can leave of all: most alternatives are refused by that.
+bool coincides(const Drawn& drawn, const std::vector<Hidden>& hidden, std::size_t k,
+               std::span<const Recording> reference, const Same& same) {
+  const double scale = rows_of(drawn.one.system.recordings) / rows_of(reference);
+  for (const std::size_t count : {std::size_t{1}, reference.size()})
+    if (!(scale * remaining_from_both(drawn, hidden, k, reference.first(count), same) < same.most_squares))
+      return false;
+  return true;
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> equivalents(const Drawn& drawn, std::size_t k, const Same& criterion) {
@@ -97,8 +108,7 @@ std::vector<std::pair<std::string, std::string>> equivalents(const Drawn& drawn,
   const Machine& machine = drawn.machine->machine;
   const Sizes sizes = measure(*drawn.machine, drawn.one.system.recordings);
   const auto related = relatives().find(truth.name);
-  std::vector<Recording> reference = references(drawn, k, same);
-  const double scale = rows_of(drawn.one.system.recordings) / rows_of(reference);
+  const std::vector<Recording> reference = references(drawn, k, same);
   std::set<std::pair<std::string, std::string>> found;
   std::set<std::pair<std::string, std::string>> tried{{truth.name, truth.attached_to}};
   for (const std::string& place : truth.also) tried.insert({truth.name, place});
@@ -118,7 +128,7 @@ std::vector<std::pair<std::string, std::string>> equivalents(const Drawn& drawn,
       other.a = truth.a;
     std::vector<Hidden> hidden = drawn.hidden;
     hidden[k] = other;
-    if (!(scale * remaining_from_both(drawn, hidden, k, reference, same) < same.most_squares)) continue;
+    if (!coincides(drawn, hidden, k, reference, same)) continue;
     found.emplace(other.name, other.attached_to);
     for (const std::string& place : other.also) found.emplace(other.name, place);
     for (const std::string& place : other.multiples) found.emplace(other.name, place);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -74,6 +75,30 @@ TEST_SUITE("log_doctor") {
     still.bound.recordings[2].outputs.row(0) *= 0.5 * fit.typical[0] / log[2].outputs.row(0).norm();
     CHECK_FALSE(moves_beyond_misfit(still, 2, flipped));
     CHECK(moves_beyond_misfit(still, 2, swapped));
+    auto& readings = still.bound.recordings[2].outputs;  // one of it: where it ends
+    readings.row(0).setConstant(std::numeric_limits<double>::quiet_NaN());
+    readings(0, 299) = -2 * fit.typical[0];
+    CHECK(moves_beyond_misfit(still, 2, flipped));
+    readings(0, 299) = -0.5 * fit.typical[0];
+    CHECK_FALSE(moves_beyond_misfit(still, 2, flipped));
+  }
+
+  TEST_CASE("where sizes of residuals differ between recordings, a large one says less of a fault") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    const auto log = toys::servo_log();
+    LogFit fit = fit_log(inputs, log);
+    CHECK(spread_of_others(fit, 0).degrees == 12);  // all alike
+    const Repairs flip{{.kind = LogFaultKind::sign, .channel = {false, 1}}};
+    const ResidualRows good = fit.residuals[0];
+    fit.residuals[0] *= 10;
+    CHECK(spread_of_others(fit, 0).degrees == 12);  // its own size is not asked
+    CHECK(spread_of_others(fit, 1).degrees < 12);
+    const double alike = effect_of(fit, 0, flip, good, spread_of_others(fit, 0)).log_odds;
+    for (std::size_t r = 1; r < 6; ++r) fit.residuals[r] *= r % 2 == 0 ? 4 : 0.25;
+    const SpreadOfSizes spread = spread_of_others(fit, 0);
+    CHECK(spread.degrees < 3);
+    CHECK(effect_of(fit, 0, flip, good, spread).log_odds < alike);
   }
 
   TEST_CASE("a log that fits is not searched for faults of all recordings") {
@@ -86,6 +111,29 @@ TEST_SUITE("log_doctor") {
     REQUIRE(found);
     CHECK_FALSE(found->recording);
     CHECK(found->repairs[0].kind == LogFaultKind::degrees);
+  }
+
+  TEST_CASE(
+      "a model that fits may have bent to a fault: it is searched for at a bound, and asked for if it was named") {
+    const Parallel parallel = serially();
+    LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    auto log = toys::servo_log(toys::dry_friction());
+    for (auto& recording : log) recording.inputs *= 180 / 3.14159265;
+    LogFit fit = fit_log(inputs, log);
+    fit.hypothesis.parameters = Eigen::Vector2d(90, 8);
+    fit.typical *= 1e-3;  // as good as it gets
+    REQUIRE(worst_output_error(fit) < inputs.criteria.poor_fit);
+    CHECK_FALSE(find_fault_of_all(inputs, fit));
+    LogFit bent = fit;
+    bent.hypothesis.parameters[1] = 40;
+    CHECK(find_fault_of_all(inputs, bent));
+    inputs.named = {{.kind = "angle_unit", .channel = "goal"}};
+    const auto found = find_fault_of_all(inputs, fit);
+    REQUIRE(found);
+    CHECK(found->repairs[0].kind == LogFaultKind::degrees);
+    CHECK(found->repairs[0].channel.input);
+    inputs.named = {{.kind = "sign_flipped", .channel = "theta_rad"}};
+    CHECK_FALSE(find_fault_of_all(inputs, fit));
   }
 
   TEST_CASE("that a model cannot be simulated in steps of a row is no fault of the clock") {
@@ -111,8 +159,8 @@ TEST_SUITE("log_doctor") {
     const LogFit fit = fit_log(inputs, log);
     const Repairs flip{{.kind = LogFaultKind::sign, .amount = -1}};
     const auto version = repaired(fit.bound, log[0], flip);
-    const RepairEffect effect = effect_of(fit, 0, flip, resimulate(fit, 0, version).residuals);
-    CHECK(effect.log_odds < -100);
+    const RepairEffect effect = effect_of(fit, 0, flip, resimulate(fit, 0, version).residuals, {12, 1});
+    CHECK(effect.log_odds < -50);
     CHECK(effect.log_ratio < 0);
   }
 }

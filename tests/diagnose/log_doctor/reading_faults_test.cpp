@@ -49,6 +49,23 @@ TEST_SUITE("log_doctor") {
     CHECK(motion_that_shows(fit, 0, 0.1) == 0.2);
   }
 
+  TEST_CASE("a speed that reads nothing while the position rests is no stuck sensor, whatever comes next") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    LogFit fit = fit_log(inputs, toys::servo_log());
+    auto& readings = fit.bound.recordings[0].outputs;
+    constexpr Eigen::Index first = 112, last = 126;
+    const Eigen::MatrixXd moving = readings;
+    for (Eigen::Index row = first; row < last; ++row) readings(1, row) = 0.02;
+    const auto stuck = find_reading_faults(fit, inputs.criteria);
+    REQUIRE(stuck.size() == 1);
+    CHECK(stuck[0].repairs.front().kind == LogFaultKind::stuck);
+    for (Eigen::Index row = first; row < last; ++row) {
+      readings(0, row) = moving(0, first) + 0.002 * (row % 2 == 0 ? 1 : -1);
+    }
+    CHECK(find_reading_faults(fit, inputs.criteria).empty());
+  }
+
   TEST_CASE("where all sensors stand still in the same rows, samples were dropped") {
     const Parallel parallel = serially();
     const LogDoctorInputs inputs = toys::servo_doctor(parallel);
@@ -124,6 +141,10 @@ TEST_SUITE("log_doctor") {
     };
     const Eigen::Index rows = fit.bound.recordings[0].rows();
     REQUIRE((top > 6 && top + 12 < rows));
+    CHECK(found_between(top - 6, top + 6) == 1);      // without the noise of all other readings
+    for (Eigen::Index row = 100; row < 104; ++row) {  // a sensor that reads the same at rest
+      fit.runs[1].outputs(0, row) = fit.bound.recordings[1].outputs(0, row) = 0.2;
+    }
     CHECK(found_between(top - 6, top + 6) == 0);
     CHECK(found_between(rows - 12, rows) == 1);  // it never comes back
   }

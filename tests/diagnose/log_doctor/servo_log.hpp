@@ -68,12 +68,12 @@ inline std::vector<surefoot::Recording> servo_log(const std::vector<surefoot::Na
 
 inline std::vector<surefoot::NamedEffect> dry_friction() { return {{"coulomb_friction", "omega", {}, {}, {4.0}}}; }
 
-/// Outputs `late` [s] after the inputs.
+/// Outputs `late` [s] after the inputs, which begin at rest.
 inline void delay_outputs(surefoot::Recording& recording, double late) {
   const surefoot::Recording before = recording;
   const auto rows = static_cast<Eigen::Index>(std::lround(late * 100));
   for (Eigen::Index row = 0; row < recording.rows(); ++row) {
-    const Eigen::Index from = std::max<Eigen::Index>(row - rows, 0);
+    const Eigen::Index from = row < rows ? rows - row : row - rows;
     for (Eigen::Index k = 0; k < 2; ++k) recording.outputs(k, row) = before.outputs(k, from);
   }
 }

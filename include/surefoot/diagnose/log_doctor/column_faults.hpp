@@ -33,8 +33,18 @@ struct RepairEffect {
   double after = 0;      // mean square error
 };
 
+/// How residuals of recordings differ in size, in units of what is typically left: a multivariate t distribution.
+struct SpreadOfSizes {
+  double degrees = 0;  // of freedom: the fewer, the more often a recording is far off that has no fault
+  double scale = 1;
+};
+
+/// The most likely one of the recordings other than r.
+SpreadOfSizes spread_of_others(const LogFit& fit, std::size_t r);
+
 /// Compares residuals as logged with those after repairs.
-RepairEffect effect_of(const LogFit& fit, std::size_t r, const Repairs& repairs, const ResidualRows& after);
+RepairEffect effect_of(const LogFit& fit, std::size_t r, const Repairs& repairs, const ResidualRows& after,
+                       const SpreadOfSizes& spread);
 
 /// Whether the outputs whose sign is changed move by more than the model is typically off: else what they do is no sign
 /// of a fault.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -17,19 +18,10 @@
 
 namespace surefoot::diagnosis {
 
-/// Highest log-likelihood of n independent residuals with this sum of squares, in units of what is typically left,
-/// where recordings differ in the size of theirs: its logarithm is normal with this standard deviation.
-SUREFOOT_ONCE double log_likelihood(double n, double squares, double scatter) {
-  if (!std::isfinite(squares)) return -std::numeric_limits<double>::infinity();
-  const double precision = 1 / (scatter * scatter);
-  constexpr double widest = 50;  // of the logarithm of the size, on both sides: beyond what numbers hold
-  constexpr int halvings = 60;   // of that range, in which the derivative falls, to the last digit
-  double low = -widest, high = widest;
-  for (int round = 0; round < halvings; ++round) {
-    const double middle = 0.5 * (low + high);
-    (squares * std::exp(-2 * middle) - n - precision * middle > 0 ? low : high) = middle;
-  }
-  return -n * low - 0.5 * squares * std::exp(-2 * low) - 0.5 * precision * low * low;
+/// Log-likelihood of n independent residuals with this sum of squares: multivariate t, up to what n alone decides.
+SUREFOOT_ONCE double log_likelihood(double n, double squares, const SpreadOfSizes& spread) {
+  const double unit = spread.degrees * spread.scale * spread.scale;
+  return -n / 2 * std::log(unit) - (spread.degrees + n) / 2 * std::log1p(squares / unit);
 }
 
 SUREFOOT_ONCE double measured_cells(const ResidualRows& residuals) {
@@ -38,29 +30,32 @@ SUREFOOT_ONCE double measured_cells(const ResidualRows& residuals) {
   return count;
 }
 
-/// Variance, by chance alone, of the logarithm of the root mean square of n independent residuals: a quarter of the
-/// trigamma function of n / 2, by the first terms of its series.
-SUREFOOT_ONCE double variance_of_log_size(double n) {
-  constexpr double second = 0.5, third = 1.0 / 6;  // coefficients of the series
-  const double x = std::max(n, 1.0) / 2, trigamma = (1 + (second + third / x) / x) / x;
-  return trigamma / (2 * 2);
-}
-
-/// By how much recordings differ in the size of their residuals beyond chance: standard deviation of its logarithm.
-SUREFOOT_ONCE double scatter_of_sizes(const LogFit& fit) {
-  constexpr double normal = 1.4826;  // standard deviation over median absolute deviation of a normal distribution
-  constexpr double least = 0.2;      // few recordings alone cannot tell less
-  std::vector<double> logarithms, by_chance;
-  for (const ResidualRows& residuals : fit.residuals) {
-    const double square = mean_square(residuals, fit.typical);
-    if (!(square > 0 && std::isfinite(square))) continue;
-    logarithms.push_back(0.5 * std::log(square));
-    by_chance.push_back(variance_of_log_size(independent_share(residuals, fit.typical) * measured_cells(residuals)));
+SUREFOOT_ONCE SpreadOfSizes spread_of_others(const LogFit& fit, std::size_t r) {
+  constexpr double most = 12;   // degrees: sizes that differ by a fifth; few recordings alone cannot tell less
+  constexpr double least = 1;   // a Cauchy distribution: one far off says nothing of the others
+  constexpr double widest = 4;  // scale, and its inverse: the median is not further from the middle of any distribution
+  std::vector<double> counts, squares;
+  for (std::size_t o = 0; o < fit.residuals.size(); ++o) {
+    const double square = mean_square(fit.residuals[o], fit.typical);
+    const double n = independent_share(fit.residuals[o], fit.typical) * measured_cells(fit.residuals[o]);
+    if (o == r || !(n > 0 && std::isfinite(square))) continue;
+    counts.push_back(n);
+    squares.push_back(n * square);
   }
-  const double middle = median_of(logarithms);
-  for (double& value : logarithms) value = std::abs(value - middle);
-  const double observed = normal * median_of(logarithms);
-  return std::sqrt(std::max(observed * observed - median_of(by_chance), least * least));
+  SpreadOfSizes best{most, 1};
+  double highest = -std::numeric_limits<double>::infinity();
+  for (double degrees = most; degrees >= least; degrees /= std::numbers::sqrt2) {
+    for (double scale = 1 / widest; scale <= widest; scale *= std::sqrt(std::numbers::sqrt2)) {
+      double sum = 0;
+      for (std::size_t o = 0; o < counts.size(); ++o) {
+        sum += std::lgamma((degrees + counts[o]) / 2) - std::lgamma(degrees / 2) +
+               log_likelihood(counts[o], squares[o], {degrees, scale});
+      }
+      if (sum > highest) best = {degrees, scale};
+      highest = std::max(highest, sum);
+    }
+  }
+  return best;
 }
 
 /// Residuals of the outputs that repairs touch; of all where they touch inputs or the time.
@@ -91,7 +86,7 @@ SUREFOOT_ONCE double log_density(const ResidualRows& after, const Repairs& repai
 }
 
 SUREFOOT_ONCE RepairEffect effect_of(const LogFit& fit, std::size_t r, const Repairs& repairs,
-                                     const ResidualRows& after) {
+                                     const ResidualRows& after, const SpreadOfSizes& spread) {
   constexpr double least = 1e-12;  // of an output's variance: as good as no error
   const ResidualRows& before = fit.residuals[r];
   RepairEffect effect;
@@ -100,9 +95,8 @@ SUREFOOT_ONCE RepairEffect effect_of(const LogFit& fit, std::size_t r, const Rep
   const double touched_before = mean_square(touched(before, repairs), fit.size);
   effect.log_ratio = std::log(std::max(touched_before, least) / touched_after);
   const double share = independent_share(after, fit.typical), n = share * measured_cells(after);
-  const double scatter = scatter_of_sizes(fit);
-  const double with = log_likelihood(n, n * mean_square(after, fit.typical), scatter);
-  const double without = log_likelihood(n, n * mean_square(before, fit.typical), scatter);
+  const double with = log_likelihood(n, n * mean_square(after, fit.typical), spread);
+  const double without = log_likelihood(n, n * mean_square(before, fit.typical), spread);
   effect.log_odds = std::isfinite(with) ? with + share * log_density(after, repairs) - without : 0;
   if (std::isnan(effect.log_ratio)) effect.log_ratio = 0;  // both ran away
   return effect;
@@ -178,7 +172,9 @@ SUREFOOT_ONCE bool moves_beyond_misfit(const LogFit& fit, std::size_t r, const R
   return holds_for_all(repairs, [&](const LogRepair& repair) {
     if (repair.kind != LogFaultKind::sign || repair.channel.input) return true;
     const Eigen::Index k = repair.channel.index;
-    return standard_deviation(surefoot::detail::row_of(fit.bound.recordings[r].outputs, k)) > fit.typical[k];
+    const Eigen::VectorXd readings = surefoot::detail::row_of(fit.bound.recordings[r].outputs, k);
+    const bool single = readings.array().isFinite().count() == 1;  // where it ends is how it moved
+    return (single ? root_mean_square(readings) : standard_deviation(readings)) > fit.typical[k];
   });
 }
 
@@ -216,9 +212,10 @@ SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs&
     effects[r].resize(tried[r].size());
   }
   inputs.parallel(count, [&](std::size_t r) {
+    const SpreadOfSizes spread = spread_of_others(fit, r);
     for (std::size_t t = 0; t < tried[r].size(); ++t) {
       const Recording version = repaired(fit.bound, fit.bound.recordings[r], tried[r][t]);
-      effects[r][t] = effect_of(fit, r, tried[r][t], resimulate(fit, r, version).residuals);
+      effects[r][t] = effect_of(fit, r, tried[r][t], resimulate(fit, r, version).residuals, spread);
     }
   });
   const double tests = static_cast<double>(count * columns.size());
@@ -278,13 +275,44 @@ SUREFOOT_ONCE double worst_output_error(const LogFit& fit) {
   return worst;
 }
 
-SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_all(const LogDoctorInputs& inputs, const LogFit& fit) {
-  const LogDoctorCriteria& criteria = inputs.criteria;
-  if (worst_output_error(fit) < criteria.poor_fit) return std::nullopt;
+/// Whether calibration went as far as it may, beyond what the model file believes: not for values of nothing at all.
+SUREFOOT_ONCE bool ends_at_a_bound(const LogFit& fit) {
+  constexpr double near = 0.01;  // of a range
+  for (std::size_t i = 0; i < fit.bound.info.parameters.size(); ++i) {
+    const ParameterInfo& one = fit.bound.info.parameters[i];
+    const double value = fit.hypothesis.parameters[static_cast<Eigen::Index>(i)], reach = near * (one.high - one.low);
+    if (one.fixed || !(reach > 0)) continue;
+    if (value > one.high - reach || (value < one.low + reach && one.low != 0)) return true;
+  }
+  return false;
+}
+
+/// Whether these were faults of all recordings to an examination before.
+SUREFOOT_ONCE bool were_named(const LogDoctorInputs& inputs, const SimulatorInfo& info, const Repairs& repairs) {
+  return holds_for_all(repairs, [&](const LogRepair& repair) {
+    return holds_for_any(inputs.named, [&](const LogFault& fault) {
+      const bool of_time = repair.kind == LogFaultKind::time_unit;
+      return fault.recording.empty() && fault.kind == name_of(repair.kind) &&
+             (of_time || fault.channel == name_of(info, repair.channel));
+    });
+  });
+}
+
+/// Repairs of all recordings that are worth a calibration each: every one where the model makes little of the log, else
+/// those of faults that were named before.
+SUREFOOT_ONCE std::vector<Repairs> common_repairs(const LogDoctorInputs& inputs, const LogFit& fit) {
   std::vector<Repairs> tried = repairs_to_try(fit.bound.info);
   if (fit.bound.info.kind == SimulatorKind::ode) {
     for (const double unit : time_units) tried.push_back({{.kind = LogFaultKind::time_unit, .amount = unit}});
   }
+  const bool in_doubt = worst_output_error(fit) > inputs.criteria.poor_fit || ends_at_a_bound(fit);
+  if (!in_doubt) drop_items(tried, [&](const Repairs& one) { return !were_named(inputs, fit.bound.info, one); });
+  return tried;
+}
+
+SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_all(const LogDoctorInputs& inputs, const LogFit& fit) {
+  const LogDoctorCriteria& criteria = inputs.criteria;
+  const std::vector<Repairs> tried = common_repairs(inputs, fit);
   std::vector<double> gains;
   for (const Repairs& repairs : tried) {
     std::vector<Recording> recordings;
@@ -294,7 +322,7 @@ SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_all(const LogDoctorInputs&
     gains.push_back(common_gain(fit, fit_log(inputs, std::move(recordings)), repairs, criteria));
   }
   const auto best = std::max_element(gains.begin(), gains.end());
-  if (!(*best > 0)) return std::nullopt;
+  if (best == gains.end() || !(*best > 0)) return std::nullopt;
   FoundFault found{tried[static_cast<std::size_t>(best - gains.begin())]};
   for (std::size_t t = 0; t < tried.size(); ++t) {
     if (gains.begin() + static_cast<std::ptrdiff_t>(t) == best) continue;

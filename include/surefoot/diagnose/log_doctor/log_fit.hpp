@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "surefoot/diagnose/diagnosis.hpp"
 #include "surefoot/diagnose/estimation/hypothesis.hpp"
 #include "surefoot/diagnose/estimation/noise_regime.hpp"
 #include "surefoot/diagnose/log_doctor/criteria.hpp"
@@ -19,6 +20,7 @@ struct LogDoctorInputs {
   const Parallel& parallel;
   LogDoctorCriteria criteria = {};
   std::function<bool()> stopped = [] { return false; };  // the time is over: what was found until then counts
+  std::vector<LogFault> named = {};                      // before: asked for again, however well the model fits
 };
 
 /// Simulated minus measured, output x row; NaN: not measured, infinite: the simulation ran away.

@@ -14,6 +14,7 @@
 #include "surefoot/diagnose/estimation/sensor_noise.hpp"
 #include "surefoot/diagnose/log_doctor/column_faults.hpp"
 #include "surefoot/diagnose/log_doctor/reading_faults.hpp"
+#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -133,6 +134,47 @@ SUREFOOT_ONCE bool leaves_a_limit(const Recording& recording, const ConstantStre
   return stretch.extreme && stretch.rows.second < recording.rows();
 }
 
+/// Whether no reading of any output changes within these rows.
+SUREFOOT_ONCE bool all_stand_still(const Recording& recording, const std::vector<RowRange>& rows) {
+  for (const RowRange& one : rows) {
+    for (Eigen::Index row = one.first + 1; row < one.second; ++row) {
+      for (Eigen::Index k = 0; k < recording.outputs.rows(); ++k) {
+        if (recording.outputs(k, row) != recording.outputs(k, row - 1)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// How much of the model's motion over these rows a sensor shows, by least squares; nothing where its noise hides that.
+SUREFOOT_ONCE std::optional<double> share_of_motion_shown(const LogFit& fit, std::size_t r, Eigen::Index output,
+                                                          const RowRange& rows) {
+  constexpr double certain = 4;  // standard errors that the whole motion is worth
+  const Recording& recording = fit.bound.recordings[r];
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (Eigen::Index row = rows.first; row < rows.second; ++row) {
+    const double simulated = fit.runs[r].outputs(output, row), measured = recording.outputs(output, row);
+    if (!std::isfinite(simulated) || !std::isfinite(measured)) continue;
+    n += 1, x += simulated, y += measured, xx += simulated * simulated, xy += simulated * measured;
+  }
+  const double motion = n > 0 ? xx - x * x / n : 0;
+  const double noise = noise_of(fit.bound, all_recordings(fit.bound), output);
+  if (!(std::sqrt(std::max(motion, 0.0)) > certain * noise)) return std::nullopt;
+  return (xy - x * y / n) / motion;
+}
+
+/// Whether other sensors say that the machine rests in these rows, where the model moves on.
+SUREFOOT_ONCE bool machine_rests(const LogFit& fit, std::size_t r, Eigen::Index output, const RowRange& rows) {
+  constexpr double half = 0.5;  // of the motion: nearer to rest than to the model
+  bool rests = false;
+  for (Eigen::Index k = 0; k < fit.bound.recordings[r].outputs.rows(); ++k) {
+    const auto shown = k == output ? std::nullopt : share_of_motion_shown(fit, r, k, rows);
+    if (shown && *shown > half) return false;
+    rests = rests || shown;
+  }
+  return rests && !all_stand_still(fit.bound.recordings[r], {rows});
+}
+
 /// How far the model is off elsewhere in this recording: root mean square.
 SUREFOOT_ONCE double error_elsewhere(const LogFit& fit, std::size_t r, Eigen::Index output,
                                      const std::vector<ConstantStretch>& stretches) {
@@ -148,21 +190,36 @@ SUREFOOT_ONCE double error_elsewhere(const LogFit& fit, std::size_t r, Eigen::In
   return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
+SUREFOOT_ONCE Eigen::Index longest_repeat(const Recording& recording, Eigen::Index output) {
+  double before = std::numeric_limits<double>::quiet_NaN();
+  Eigen::Index now = 0, longest = 0;
+  for (Eigen::Index row = 0; row < recording.rows(); ++row) {
+    const double value = recording.outputs(output, row);
+    if (!std::isfinite(value)) continue;
+    now = value == before ? now + 1 : 1;
+    longest = std::max(longest, now);
+    before = value;
+  }
+  return longest;
+}
+
 /// The stretches of one output and recording that no sensor and no machine explains: clipped or stuck. A model that is
-/// off moves on where the machine turns.
+/// off moves on where the machine turns, or where it rests; but of more than `natural` equal readings the noise of the
+/// sensor would show in some.
 SUREFOOT_ONCE std::optional<FoundFault> constant_fault(const LogFit& fit, std::size_t r, Eigen::Index output,
-                                                       const std::vector<ConstantStretch>& stretches) {
+                                                       const std::vector<ConstantStretch>& stretches, double natural) {
   LogRepair clipped{.kind = LogFaultKind::clipped, .channel = {false, output}};
   LogRepair stuck{.kind = LogFaultKind::stuck, .channel = {false, output}};
   double clipped_rows = 0, stuck_rows = 0;
   const bool steps = fit.bound.integration.restart > 0;  // then the model is never far beyond
   const double off = std::max(fit.typical[output], error_elsewhere(fit, r, output, stretches));
   for (const ConstantStretch& one : stretches) {
-    const bool jump = ends_in_jump(fit, r, output, one.rows);
-    if ((one.beyond || (one.extreme && steps)) && !jump) {
+    if (machine_rests(fit, r, output, one.rows)) continue;
+    const bool jump = ends_in_jump(fit, r, output, one.rows), noiseless = static_cast<double>(one.readings) > natural;
+    if (one.extreme && (noiseless || ((one.beyond || steps) && !jump))) {
       clipped.rows.push_back(one.rows);
       clipped_rows += static_cast<double>(one.readings);
-    } else if (jump || (one.missed > off && !leaves_a_limit(fit.bound.recordings[r], one))) {
+    } else if (noiseless || jump || (one.missed > off && !leaves_a_limit(fit.bound.recordings[r], one))) {
       stuck.rows.push_back(one.rows);
       stuck_rows += static_cast<double>(one.readings);
     }
@@ -247,18 +304,6 @@ SUREFOOT_ONCE std::vector<FoundFault> repeated_row_faults(const LogFit& fit, Eig
   return found;
 }
 
-/// Whether no reading of any output changes within these rows.
-SUREFOOT_ONCE bool all_stand_still(const Recording& recording, const std::vector<RowRange>& rows) {
-  for (const RowRange& one : rows) {
-    for (Eigen::Index row = one.first + 1; row < one.second; ++row) {
-      for (Eigen::Index k = 0; k < recording.outputs.rows(); ++k) {
-        if (recording.outputs(k, row) != recording.outputs(k, row - 1)) return false;
-      }
-    }
-  }
-  return true;
-}
-
 /// Sensors do not stick all at once, in the same rows: where one of several does and all others stand still, samples
 /// were dropped, of all of them.
 SUREFOOT_ONCE void take_for_repeated_where_all_stick(const BoundSimulator& bound, std::vector<FoundFault>& found) {
@@ -296,19 +341,21 @@ SUREFOOT_ONCE std::vector<FoundFault> find_reading_faults(const LogFit& fit, con
       }
     }
     std::vector<std::vector<ConstantStretch>> stretches(count);
-    std::vector<double> missed(count);
+    std::vector<double> missed(count), longest(count);
     for (std::size_t r = 0; r < count; ++r) {
       stretches[r] = constant_stretches(fit, r, output, resolution, criteria);
       missed[r] = total_missed(stretches[r]);
+      longest[r] = static_cast<double>(longest_repeat(fit.bound.recordings[r], output));
     }
     for (std::size_t r = 0; r < count; ++r) {
-      double others = 0;
-      for (std::size_t o = 0; o < count; ++o) others = std::max(others, o == r ? 0 : missed[o]);
-      if (!(missed[r] > criteria.decisive * criteria.decisive * others)) continue;
+      const bool alone = count == 1;
+      const double natural = alone ? longest[r] : criteria.decisive * worst_of_others(longest, r);
+      const bool lasts = longest[r] > natural;
+      if (!lasts && !(missed[r] > criteria.decisive * criteria.decisive * worst_of_others(missed, r))) continue;
       Eigen::Index readings = 0;
       for (const ConstantStretch& one : stretches[r]) readings += one.readings;
       if (static_cast<std::size_t>(readings) < repeats[r]) continue;  // some of these in a row
-      if (const auto fault = constant_fault(fit, r, output, stretches[r])) found.push_back(*fault);
+      if (const auto fault = constant_fault(fit, r, output, stretches[r], natural)) found.push_back(*fault);
     }
   }
   take_for_repeated_where_all_stick(fit.bound, found);

@@ -27,9 +27,11 @@ struct FoundModel {
 };
 
 /// The same by a model with the effects that were found: physics that was missing hides a clock that is some percent
-/// off, or one recording's sensor that sticks. It goes on when the time of the search has ended.
+/// off, or one recording's sensor that sticks. It goes on when the time of the search has ended. Faults named before
+/// are asked for again, since these effects may bend to what they repair.
 LogExamination examine_with_effects(const BindSimulator& bind, const std::vector<Recording>& recordings,
-                                    const FoundModel& found, const RunContext& run);
+                                    const FoundModel& found, const RunContext& run,
+                                    const std::vector<LogFault>& named = {});
 
 /// Whether a fault is named once more in recordings that were repaired: the model without the effects was wrong about
 /// it.

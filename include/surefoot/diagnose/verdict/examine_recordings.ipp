@@ -37,8 +37,9 @@ SUREFOOT_ONCE Hypothesis nominal_with_known(const BoundSimulator& bound, const D
 /// The examination by a model that is calibrated from these parameters on, until it is stopped.
 SUREFOOT_ONCE LogExamination examine(const BindSimulator& bind, const std::vector<Recording>& recordings,
                                      const std::function<Hypothesis(const BoundSimulator&)>& model,
-                                     const RunContext& run, std::function<bool()> stopped) {
-  LogExamination examined = examine_log({bind, model, run.parallel, {}, std::move(stopped)}, recordings);
+                                     const RunContext& run, std::function<bool()> stopped,
+                                     const std::vector<LogFault>& named = {}) {
+  LogExamination examined = examine_log({bind, model, run.parallel, {}, std::move(stopped), named}, recordings);
   if (run.options.repair) return examined;
   for (LogFault& fault : examined.faults) fault.repaired = false;
   return examined;
@@ -52,7 +53,8 @@ SUREFOOT_ONCE LogExamination examine_recordings(const BindSimulator& bind, const
 }
 
 SUREFOOT_ONCE LogExamination examine_with_effects(const BindSimulator& bind, const std::vector<Recording>& recordings,
-                                                  const FoundModel& found, const RunContext& run) {
+                                                  const FoundModel& found, const RunContext& run,
+                                                  const std::vector<LogFault>& named) {
   const auto bind_as_found = [&](std::vector<Recording> logged) {
     BoundSimulator bound = bind(std::move(logged));
     bound.sizes = found.sizes;
@@ -72,7 +74,8 @@ SUREFOOT_ONCE LogExamination examine_with_effects(const BindSimulator& bind, con
     }
     return hypothesis;
   };
-  return examine(bind_as_found, recordings, model, run, [run] { return run.has_ended(); });
+  return examine(
+      bind_as_found, recordings, model, run, [run] { return run.has_ended(); }, named);
 }
 
 SUREFOOT_ONCE bool is_named_again(const std::vector<LogFault>& repaired, const std::vector<LogFault>& named) {

@@ -392,7 +392,7 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
     const FoundModel found = diagnose_recordings(bind, run.options.repair ? log.repaired : logged, run, diagnosis);
     const bool found_any = found.hypothesis.effects.size() > run.options.known.size();
     LogExamination more;
-    if (found_any && !begins_anew && !run.search_has_ended()) {
+    if (found_any && !begins_anew && !run.has_ended()) {
       more = examine_with_effects(bind, log.repaired, found, run);
     }
     const bool found_late = run.options.repair && !more.faults.empty();
@@ -400,7 +400,7 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
     if (found_late && !begins_anew) diagnosis.remarks.push_back({"", no_time_to_begin_anew_sentence()});
     const bool named_again = is_named_again(log.faults, more.faults);
     if (named_again) {
-      log = examine_with_effects(bind, logged, found, run);
+      log = examine_with_effects(bind, logged, found, run, log.faults);
     } else if (!more.faults.empty()) {
       append_items(log.faults, more.faults);
       log.repaired = std::move(more.repaired);
@@ -411,7 +411,7 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
     if (in_doubt) {
       confirmed = true;
       LogExamination again;
-      if (!run.has_ended()) again = examine_with_effects(bind, logged, found, run);
+      if (!run.has_ended()) again = examine_with_effects(bind, logged, found, run, log.faults);
       if (run.has_ended()) {  // what was cut short says nothing
         withdraw_odd_recording(log);
       } else if (withdraw_faults(log, again, run.has_time_for_as_much_again(started))) {
