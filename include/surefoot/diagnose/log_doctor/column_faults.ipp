@@ -173,8 +173,10 @@ SUREFOOT_ONCE bool moves_beyond_misfit(const LogFit& fit, std::size_t r, const R
     if (repair.kind != LogFaultKind::sign || repair.channel.input) return true;
     const Eigen::Index k = repair.channel.index;
     const Eigen::VectorXd readings = surefoot::detail::row_of(fit.bound.recordings[r].outputs, k);
-    const bool single = readings.array().isFinite().count() == 1;  // where it ends is how it moved
-    return (single ? root_mean_square(readings) : standard_deviation(readings)) > fit.typical[k];
+    int count = 0;
+    for (const double reading : readings) count += std::isfinite(reading) ? 1 : 0;
+    const bool at_the_end = count == 1;  // which is all that is known of how it moved
+    return (at_the_end ? root_mean_square(readings) : standard_deviation(readings)) > fit.typical[k];
   });
 }
 

@@ -14,7 +14,6 @@
 #include "surefoot/diagnose/estimation/sensor_noise.hpp"
 #include "surefoot/diagnose/log_doctor/column_faults.hpp"
 #include "surefoot/diagnose/log_doctor/reading_faults.hpp"
-#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
