@@ -189,6 +189,7 @@ SUREFOOT_ONCE double error_elsewhere(const LogFit& fit, std::size_t r, Eigen::In
   return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
+/// Readings of the longest stretch in which they are equal, whatever the model does meanwhile.
 SUREFOOT_ONCE Eigen::Index longest_repeat(const Recording& recording, Eigen::Index output) {
   double before = std::numeric_limits<double>::quiet_NaN();
   Eigen::Index now = 0, longest = 0;
@@ -347,7 +348,7 @@ SUREFOOT_ONCE std::vector<FoundFault> find_reading_faults(const LogFit& fit, con
       longest[r] = static_cast<double>(longest_repeat(fit.bound.recordings[r], output));
     }
     for (std::size_t r = 0; r < count; ++r) {
-      const bool alone = count == 1;
+      const bool alone = count == 1;  // then nothing says what is natural
       const double natural = alone ? longest[r] : criteria.decisive * worst_of_others(longest, r);
       const bool lasts = longest[r] > natural;
       if (!lasts && !(missed[r] > criteria.decisive * criteria.decisive * worst_of_others(missed, r))) continue;
