@@ -164,6 +164,7 @@ inline std::vector<Form> forms() {
       // on a state
       {"leak", "", "x' = ... - leak x", {0.03}, "the more there is, the more is missing; it decays too quickly"},
       {"leak", "hole", "x' = ... - rate_at_one sqrt(max(x, 0))"},
+      {"leak", "power", "x' = ... - rate_at_one max(x, 0)^exponent"},
       {"constant_rate", "", "x' = ... + rate", {0.008}, "an offset that does not care how much there is"},
       {"overflow", "", "x is at most level", {0.35}, "the top is cut off, and what was lost is missing afterwards"},
       {"overflow", "spill", "x is at most level; share of what exceeds it is added to another state"},
@@ -195,6 +196,8 @@ inline std::vector<Form> forms() {
       {"input_delay", "from rest", "the same, 0 until the first command arrives"},
       {"first_order_lag", "", "time u' = command - u", {0.08}, "late after sharp steps, and their corners rounded"},
       {"first_order_lag", "from rest", "the same, from 0 at the first row on, and not from its first command"},
+      {"first_order_lag", "second order", "second time^2 u'' + time u' = command - u"},
+      {"first_order_lag", "second order, from rest", "the same, from 0 at the first row on"},
       {"supply_sag",
        "",
        "u = u (1 - sag |u|), no more than 1 / (4 sag)",
@@ -209,6 +212,7 @@ inline std::vector<Form> forms() {
       {"sensor_delay", "in motion", "the same, on a straight line before the first row instead of at its value there"},
       {"sensor_drift", "", "y = y + rate t", {0.01}, "a ramp, whatever the machine does"},
       {"sensor_drift", "settling", "y = y + change (1 - exp(-t / time))"},
+      {"sensor_drift", "bent", "y = y + rate t + bend t^2"},
       {"quantization",
        "",
        "y = step round(y / step), soft edges",
@@ -225,6 +229,7 @@ inline std::vector<Form> forms() {
        {0.05},
        "an error that grows during each recording, in proportion to the motion"},
       {"parameter_drift", "settling", "p = p (1 + change (1 - exp(-t / time))), not below p / 20"},
+      {"parameter_drift", "bent", "p = p (1 + rate t + bend t^2), not below p / 20"},
   };
 }
 

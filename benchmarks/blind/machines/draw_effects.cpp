@@ -65,6 +65,10 @@ class Drawing {
       case Law::hole:
         one.a = graded(random_, 0.05, 0.5) * rate / std::sqrt(size.rms);
         break;
+      case Law::raised_hole:
+        one.b = size.low + random_.uniform(0.1, 0.4) * (peak - size.low);
+        one.a = graded(random_, 0.05, 0.5) * rate / std::sqrt(size.rms);
+        break;
       case Law::power_leak:
         one.a = graded(random_, 0.05, 0.5) * rate / std::pow(size.rms, 0.75);
         break;
@@ -116,6 +120,7 @@ class Drawing {
         break;
       case Law::lag:
       case Law::second_lag:
+      case Law::third_lag:
         one.a = shortest + random_.log_uniform(0.01, 0.2) * time;
         break;
       case Law::sag:

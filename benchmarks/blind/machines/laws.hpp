@@ -50,6 +50,8 @@ bool has_bristles(Law law);
 bool has_second_mass(Law law);
 /// Signals that depend on what was asked before.
 bool has_memory(Law law);
+/// Equal lags in a row, which share its time; 0: it is no lag.
+int lags_of(Law law);
 
 double force_of(const Hidden& one, const Motion& motion, std::span<const double> memory, double held,
                 std::span<double> change);

@@ -105,6 +105,7 @@ enum class Law {
   leak,
   hole,
   power_leak,
+  raised_hole,
   rate,
   overflow,
   weir,
@@ -120,6 +121,7 @@ enum class Law {
   delay,
   lag,
   second_lag,
+  third_lag,
   sag,
   slow_sag,
   // in sensors
@@ -135,6 +137,7 @@ enum class Law {
   linear_drift,
   warm_up,
   late_drift,
+  midway_drift,
   // outside the library, on speeds
   detent,
   sticky_patch,

@@ -28,14 +28,14 @@ void delay_input(double delay, const Column& times, Column& values) {
   values.back() = asked[from];
 }
 
-// Lags, rate limits and what wears: one pass from the first step to the last. A step gets the mean of what its ends
+// Rate limits and what wears: one pass from the first step to the last. A step gets the mean of what its ends
 // have, so that nothing is later than the law says.
 void remember(const Hidden& one, const Column& times, Column& values) {
   const Column asked = values;
-  double first = asked[0], second = asked[0], work = 0;
+  double first = asked[0], work = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double step = i + 1 < values.size() ? times[i + 1] - times[i] : 0;
-    const double first_before = first, second_before = second, work_before = work;
+    const double first_before = first, work_before = work;
     if (one.law == Law::rate_limit) {
       first += std::clamp(asked[i] - first, -one.a * step, one.a * step);
       values[i] = 0.5 * (first_before + first);
@@ -45,11 +45,19 @@ void remember(const Hidden& one, const Column& times, Column& values) {
     } else if (one.law == Law::slow_sag) {
       work += (std::abs(asked[i]) - work) * (1 - std::exp(-step / one.b));
       values[i] = asked[i] * (1 - 0.5 * one.a * (work_before + work));
-    } else {
-      const double share = 1 - std::exp(-step / (one.law == Law::second_lag ? one.a / 2 : one.a));
-      first += (asked[i] - first) * share;
-      second += (0.5 * (first_before + first) - second) * share;
-      values[i] = one.law == Law::second_lag ? 0.5 * (second_before + second) : 0.5 * (first_before + first);
+    }
+  }
+}
+
+// Lags in a row, each of which gets the means that the one before has left.
+void lag(const Hidden& one, const Column& times, Column& values) {
+  const int lags = lags_of(one.law);
+  for (int n = 0; n < lags; ++n) {
+    double now = values[0];
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double step = i + 1 < values.size() ? times[i + 1] - times[i] : 0, before = now;
+      now += (values[i] - now) * (1 - std::exp(-step * lags / one.a));
+      values[i] = 0.5 * (before + now);
     }
   }
 }
@@ -72,7 +80,11 @@ double Past::value_at(double time) const {
 }
 
 bool has_memory(Law law) {
-  return law == Law::lag || law == Law::second_lag || law == Law::rate_limit || law == Law::delay;
+  return lags_of(law) > 0 || law == Law::rate_limit || law == Law::delay;
+}
+
+int lags_of(Law law) {
+  return law == Law::lag ? 1 : law == Law::second_lag ? 2 : law == Law::third_lag ? 3 : 0;
 }
 
 double rate_of(const Hidden& one, const Surroundings& around) {
@@ -82,6 +94,8 @@ double rate_of(const Hidden& one, const Surroundings& around) {
       return -one.a * x;
     case Law::hole:
       return -one.a * std::sqrt(std::max(x, 0.0));
+    case Law::raised_hole:
+      return -one.a * std::sqrt(std::max(x - one.b, 0.0));
     case Law::power_leak:
       return -one.a * std::pow(std::max(x, 0.0), 0.75);
     case Law::rate:
@@ -132,6 +146,7 @@ double static_signal(const Hidden& one, double value, double time) {
 void change_input(const Hidden& one, const Column& times, Column& values) {
   if (values.empty()) return;
   if (one.law == Law::delay) return delay_input(one.a, times, values);
+  if (lags_of(one.law) > 0) return lag(one, times, values);
   if (has_memory(one.law) || one.law == Law::ageing || one.law == Law::slow_sag) return remember(one, times, values);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double end = i + 1 < values.size() ? times[i + 1] : times[i];
@@ -142,6 +157,7 @@ void change_input(const Hidden& one, const Column& times, Column& values) {
 double factor_of_parameter(const Hidden& one, double time) {
   if (one.law == Law::warm_up) return 1 + one.a * (1 - std::exp(-time / one.b));
   if (one.law == Law::late_drift) return 1 + one.a * std::pow(time / one.b, 2);
+  if (one.law == Law::midway_drift) return 1 + one.a / (1 + std::exp((one.b - time) / (0.2 * one.b)));
   return std::max(1 + one.a * time, 0.05);
 }
 

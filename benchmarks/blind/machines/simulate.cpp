@@ -183,12 +183,11 @@ class Run {
       const Hidden& one = hidden_[k];
       if (one.where != Where::signal || at(one.target) != signal) continue;
       const std::size_t own = states_ + hidden_size * k;
-      if (starting_) y_[own] = y_[own + 1] = held_[k] = value;
+      const int lags = lags_of(one.law);
+      if (starting_) y_[own] = y_[own + 1] = y_[own + 2] = held_[k] = value;
       asked_now_ = value;
-      if (one.law == Law::lag) {
-        value = starting_ ? value : y[own];
-      } else if (one.law == Law::second_lag) {
-        value = starting_ ? value : y[own + 1];
+      if (lags > 0) {
+        value = starting_ ? value : y[own + at(lags) - 1];
       } else if (one.law == Law::rate_limit) {
         const double reach = one.a * (time - held_at_[k]);
         value = starting_ ? value : within(value, held_[k], reach);
@@ -211,10 +210,13 @@ class Run {
       const std::size_t own = states_ + hidden_size * k;
       const std::span<const double> memory(&y[own], hidden_size);
       const std::span<double> change(&rates[own], hidden_size);
-      if (one.where == Where::signal && (one.law == Law::lag || one.law == Law::second_lag)) {
-        const double constant = one.law == Law::lag ? one.a : one.a / 2;
-        change[0] = (held_asked_[k % held_asked_.size()] - memory[0]) / constant;
-        change[1] = (memory[0] - memory[1]) / constant;
+      const int lags = lags_of(one.law);
+      if (one.where == Where::signal && lags > 0) {
+        double asked = held_asked_[k % held_asked_.size()];
+        for (std::size_t n = 0; n < at(lags); ++n) {
+          change[n] = (asked - memory[n]) * lags / one.a;
+          asked = memory[n];
+        }
       } else if (one.where == Where::speed) {
         const Motion motion = motion_of(one, time, y, rates);
         rates[at(one.target)] += force_of(one, motion, memory, held_[k], change) / motion.inertia;

@@ -169,7 +169,28 @@ TEST_CASE("a lag answers a step exactly, however short it is against the interva
   }
 }
 
+TEST_CASE("a lag of second order answers a step exactly, from a plain one to one that rings") {
+  const auto at = [](double lag, double second, Eigen::Index row) {
+    return simulated(Integrator{}, "u", effects::second_order_lag(), {lag, second}, step_recording(101, 0.01, 20))[row];
+  };
+  for (const double lag : {0.002, 0.05, 0.4}) {
+    for (const Eigen::Index row : {20, 21, 25, 60, 100}) {
+      const double t = 0.01 * static_cast<double>(row - 20), half = lag / 2;
+      CHECK(at(lag, 1e-9, row) == doctest::Approx(t - lag * (1 - std::exp(-t / lag))).epsilon(1e-6));
+      const double two_lags = t - lag + std::exp(-t / half) * (lag + t);
+      CHECK(at(lag, 0.25, row) == doctest::Approx(two_lags).epsilon(1e-6));
+      CHECK(at(lag, 0.25 + 1e-9, row) == doctest::Approx(two_lags).epsilon(1e-6));
+      // at 1 the poles are (-1 +- i sqrt(3)) / (2 lag); what the input moves more than this is lag, and dies out
+      const double turn = std::sqrt(3) / 2 / lag, gone = std::exp(-t / (2 * lag));
+      const double rings = t - lag + gone * (lag * std::cos(turn * t) - 0.5 / turn * std::sin(turn * t));
+      CHECK(at(lag, 1, row) == doctest::Approx(rings).epsilon(1e-6));
+    }
+  }
+}
+
 TEST_CASE("a lag starts from the first input") {
+  const auto z = simulated(Integrator{}, "u", effects::second_order_lag(), {0.3, 0.4}, step_recording(101, 0.01, 0));
+  CHECK(z[100] == doctest::Approx(1));
   const auto x = simulated(Integrator{}, "u", effects::first_order_lag(), {0.3}, step_recording(101, 0.01, 0));
   CHECK(x[100] == doctest::Approx(1));
   const auto y = simulated(Integrator{}, "u", effects::rate_limit(), {0.3}, step_recording(101, 0.01, 0));
@@ -183,6 +204,9 @@ TEST_CASE("on a machine that was not told anything before, memories of an input 
     CHECK(late[100] == doctest::Approx(1 - size).epsilon(1e-9));
     const auto lagging = simulated(Integrator{}, "u", effects::from_rest(effects::first_order_lag()), {size}, told);
     CHECK(lagging[100] == doctest::Approx(1 - size * (1 - std::exp(-1 / size))).epsilon(1e-7));
+    const auto twice =
+        simulated(Integrator{}, "u", effects::from_rest(effects::second_order_lag()), {size, 0.25}, told);
+    CHECK(twice[100] == doctest::Approx(1 - size + std::exp(-2 / size) * (size + 1)).epsilon(1e-7));
     const auto slow = simulated(Integrator{}, "u", effects::from_rest(effects::rate_limit()), {1 / size}, told);
     CHECK(slow[100] == doctest::Approx(1 - 0.5 * size).epsilon(1e-9));
   }

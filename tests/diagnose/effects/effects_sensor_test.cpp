@@ -41,6 +41,13 @@ TEST_CASE("a drift that settles has made 63 % of its way after its time constant
   CHECK(y[4] < 3);
 }
 
+TEST_CASE("a drift that is bent goes with the square of time as well") {
+  const auto y = read(effects::sensor_drift_bent(), {10, -5}, uneven, {1, 1, 1, 1, 1});
+  CHECK(y[0] == 1);
+  CHECK(y[3] == doctest::Approx(1 + 4 - 0.8));
+  CHECK(y[4] == doctest::Approx(1 + 10 - 5));
+}
+
 TEST_CASE("a late sensor reads a ramp late, between rows of any spacing") {
   for (const double delay : {0.0, 0.03, 0.05, 0.2, 0.7}) {
     std::vector<double> ramp;

@@ -56,6 +56,15 @@ TEST_CASE("a hole empties a tank in finite time") {
   CHECK(std::abs(end_of(effects::leak_hole(), "upper", {2}, 0)[0]) < 0.01);
 }
 
+TEST_CASE("a leak with a power is that of a hole at 1/2, and of friction alone at 1") {
+  const auto end = [](double rate, double exponent) {
+    return end_of(effects::leak_power(), "upper", {rate, exponent}, 0)[0];
+  };
+  CHECK(end(0.2, 0.5) == doctest::Approx(std::pow(2 - 0.1 * 10, 2)).epsilon(1e-6));
+  CHECK(end(0.3, 1) == doctest::Approx(4 * std::exp(-3.0)).epsilon(1e-6));
+  CHECK(end(0.1, 2) == doctest::Approx(1 / (0.25 + 0.1 * 10)).epsilon(1e-6));
+}
+
 TEST_CASE("a constant rate adds up") {
   CHECK(end_of(effects::constant_rate(), "lower", {-0.05}, 0)[1] == doctest::Approx(0.5));
 }
@@ -96,6 +105,14 @@ TEST_CASE("a parameter that drifts and settles has made 63 % of its change after
   CHECK(settling.factor(m, p) == doctest::Approx(1.5));
   const std::vector<double> away = {-0.99, 20};
   CHECK(settling.factor(m, away) == 0.05);
+}
+
+TEST_CASE("a parameter whose drift is bent changes with the square of time as well") {
+  EffectContext m;
+  m.time = 3;
+  const std::vector<double> p = {0.1, -0.02}, away = {0.1, -2};
+  CHECK(effects::parameter_drift_bent().factor(m, p) == doctest::Approx(1 + 0.3 - 0.18));
+  CHECK(effects::parameter_drift_bent().factor(m, away) == 0.05);
 }
 
 }  // namespace

@@ -98,19 +98,13 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
 }
 
 SUREFOOT_ONCE std::vector<Effect> input_effects() {
-  std::vector<Effect> all = {effects::input_gain(),
-                             effects::input_asymmetry(),
-                             effects::dead_zone(),
-                             effects::dead_zone_step(),
-                             effects::saturation(),
-                             effects::saturation_soft(),
-                             effects::saturation_gradual(),
-                             effects::rate_limit(),
-                             effects::input_delay(),
-                             effects::first_order_lag(),
-                             effects::supply_sag(),
-                             effects::backlash_coupling(),
-                             effects::cubic_stiffness_coupling()};
+  std::vector<Effect> all = {effects::input_gain(),         effects::input_asymmetry(),
+                             effects::dead_zone(),          effects::dead_zone_step(),
+                             effects::saturation(),         effects::saturation_soft(),
+                             effects::saturation_gradual(), effects::rate_limit(),
+                             effects::input_delay(),        effects::first_order_lag(),
+                             effects::second_order_lag(),   effects::supply_sag(),
+                             effects::backlash_coupling(),  effects::cubic_stiffness_coupling()};
   for (std::size_t i = 0, count = all.size(); i < count; ++i) {
     if (all[i].start || all[i].delay) all.push_back(effects::from_rest(all[i]));
   }
@@ -146,7 +140,7 @@ SUREFOOT_ONCE std::vector<Effect> all_effects() {
 }
 
 SUREFOOT_ONCE std::vector<Effect> state_effects() {
-  return {effects::leak(),     effects::leak_hole(),      effects::constant_rate(),
+  return {effects::leak(),     effects::leak_hole(),      effects::leak_power(),   effects::constant_rate(),
           effects::overflow(), effects::overflow_spill(), effects::overflow_weir()};
 }
 
@@ -157,6 +151,7 @@ SUREFOOT_ONCE std::vector<Effect> sensor_effects() {
           effects::sensor_delay_in_motion(),
           effects::sensor_drift(),
           effects::sensor_drift_settling(),
+          effects::sensor_drift_bent(),
           effects::quantization(),
           effects::quantization_floor(),
           effects::sharpened(effects::quantization()),
@@ -165,7 +160,7 @@ SUREFOOT_ONCE std::vector<Effect> sensor_effects() {
 }
 
 SUREFOOT_ONCE std::vector<Effect> parameter_effects() {
-  return {effects::parameter_drift(), effects::parameter_drift_settling()};
+  return {effects::parameter_drift(), effects::parameter_drift_settling(), effects::parameter_drift_bent()};
 }
 
 }  // namespace surefoot

@@ -70,7 +70,7 @@ inline constexpr double presliding_width = 0.05;
 /// Travel after which a friction with presliding has about two thirds of its level.
 inline EffectParameter presliding_width_parameter(std::vector<double> starts) {
   return {
-      .name = "width", .measure = {.position = 1}, .low = 0.001, .high = presliding_width, .starts = std::move(starts)};
+      .name = "width", .measure = {.position = 1}, .low = 1e-4, .high = presliding_width, .starts = std::move(starts)};
 }
 
 /// With any exponent and beta + gamma = 1, by Runge-Kutta steps of at most a tenth of the width. `back` is beta -

@@ -1,6 +1,7 @@
 // A leak: the state falls the faster the more there is of it, rate = -leak * x.
 // Form "hole": through an opening at the bottom, rate = -rate_at_one * sqrt(x), x in units of the model (E. Torricelli,
-// "Opera geometrica", 1644); nothing leaks below 0.
+// "Opera geometrica", 1644); nothing leaks below 0. Form "power": rate = -rate_at_one * x^exponent, 1/2 for a hole, 1
+// where it is all friction, between them for cracks and slits, above them for notches (ASTM E779; J. M. Weisbach).
 // Confusable with a constant loss when x hardly changes, and with a weaker inflow when it settles.
 #pragma once
 
@@ -43,6 +44,17 @@ namespace surefoot::effects {
           .form = "hole",
           .needs_conserved_state = true,
           .force = +[](const EffectContext& m, Values p, Values) { return -p[0] * std::sqrt(std::max(m.value, 0.0)); }};
+}
+
+[[gnu::cold]] inline Effect leak_power() {
+  Effect effect = leak_hole();
+  effect.form = "power";
+  effect.extends = {"", "hole"};
+  effect.sentence += ", with the power {exponent} of it";
+  effect.parameters.push_back({.name = "exponent", .low = 0.3, .high = 3, .starts = {0.7}});
+  effect.force =
+      +[](const EffectContext& m, Values p, Values) { return -p[0] * std::pow(std::max(m.value, 0.0), p[1]); };
+  return effect;
 }
 
 }  // namespace surefoot::effects

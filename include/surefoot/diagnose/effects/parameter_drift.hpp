@@ -2,6 +2,7 @@
 // below a twentieth:
 //   steadily:  factor = 1 + rate * t
 //   settling:  factor = 1 + change * (1 - exp(-t / time)), as what heats up through one thermal resistance does
+//   bent:      factor = 1 + rate * t + bend * t^2, any course to second order (Taylor)
 // Confusable with a drifting sensor, and with that parameter being wrong as a whole when recordings are short.
 #pragma once
 
@@ -39,6 +40,19 @@ inline constexpr double least_drift_factor = 0.05;  // a parameter that drifts d
           .factor = +[](const EffectContext& m, Values p) {
             return std::max(least_drift_factor, 1 + p[0] * (1 - std::exp(-m.time / p[1])));
           }};
+}
+
+[[gnu::cold]] inline Effect parameter_drift_bent() {
+  Effect effect = parameter_drift();
+  effect.form = "bent";
+  effect.extends = {"", "settling"};
+  effect.sentence += " and {bend}";
+  effect.parameters.push_back(
+      {.name = "bend", .measure = {.time = -2}, .low = -20, .high = 20, .starts = {0.001}, .strength = true});
+  effect.factor = +[](const EffectContext& m, Values p) {
+    return std::max(least_drift_factor, 1 + (p[0] + p[1] * m.time) * m.time);
+  };
+  return effect;
 }
 
 }  // namespace surefoot::effects

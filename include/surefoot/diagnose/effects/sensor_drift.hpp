@@ -1,6 +1,7 @@
 // A sensor whose zero wanders, t from the first row:
 //   steadily:  y + rate * t
 //   settling:  y + change * (1 - exp(-t / time)), as while it warms up
+//   bent:      y + rate * t + bend * t^2, any course to second order (Taylor)
 // Confusable with a constant rate or a leak of what it reads, and with a drifting parameter.
 #pragma once
 
@@ -46,6 +47,26 @@ namespace surefoot::effects {
               series.readings[row] += p[0] * (1 - std::exp(-(series.time[row] - series.time[0]) / p[1]));
             }
           }};
+}
+
+[[gnu::cold]] inline Effect sensor_drift_bent() {
+  Effect effect = sensor_drift();
+  effect.form = "bent";
+  effect.extends = {"", "settling"};
+  effect.sentence += " and {bend}";
+  effect.parameters.push_back({.name = "bend",
+                               .measure = {.value = 1, .time = -2},
+                               .low = -20,
+                               .high = 20,
+                               .starts = {0.01},
+                               .strength = true});
+  effect.sensor = +[](const Series& series, Values p) {
+    for (std::size_t row = 0; row < series.readings.size(); ++row) {
+      const double time = series.time[row] - series.time[0];
+      series.readings[row] += (p[0] + p[1] * time) * time;
+    }
+  };
+  return effect;
 }
 
 }  // namespace surefoot::effects

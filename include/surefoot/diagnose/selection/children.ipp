@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,36 @@ namespace surefoot::diagnosis {
 SUREFOOT_ONCE EvaluatedHypothesis Search::without(const EvaluatedHypothesis& whole, std::size_t effect) const {
   const Fit rest = fit(bound, without_effect(whole.hypothesis, effect), problem.fit, parallel);
   return evaluate_fit(bound, rest, problem, parallel);
+}
+
+/// With the parameters of effects that are at bounds a tenth of their range inside, and all else fitted around them.
+SUREFOOT_ONCE std::optional<Hypothesis> drawn_inside(const Search& search, Hypothesis one) {
+  constexpr double inside = 0.1, middle = 0.5;  // of its range
+  const SearchProblem& problem = search.problem;
+  bool any = false;
+  for (const Variable& variable : variables_of(search.bound, one, {})) {
+    if (variable.kind != Variable::Kind::effect || variable.index < problem.known) continue;
+    if (!is_at_bound(one, variable, problem.criteria)) continue;
+    const double low = to_search(variable, variable.low), high = to_search(variable, variable.high);
+    double& value = value_of(one, variable);
+    const bool below = to_search(variable, value) < low + middle * (high - low);
+    value = from_search(variable, below ? low + inside * (high - low) : high - inside * (high - low));
+    any = true;
+  }
+  if (!any) return std::nullopt;
+  FitProblem around = problem.fit;
+  around.free = Free::all_but_effects;
+  return fit(search.bound, one, around, serially()).hypothesis;
+}
+
+SUREFOOT_ONCE EvaluatedHypothesis inside_bounds(const Search& search, const EvaluatedHypothesis& one, double odds) {
+  const SelectionCriteria& criteria = search.problem.criteria;
+  if (odds > 0 || odds + criteria.bound_cost < 0) return one;
+  const auto inside = drawn_inside(search, one.hypothesis);
+  if (!inside) return one;
+  const Fit fitted = fit(search.bound, *inside, search.problem.fit, serially());
+  const EvaluatedHypothesis again = evaluate_fit(search.bound, fitted, search.problem, serially());
+  return log_odds_of_forms(again, one, criteria) > 0 ? again : one;
 }
 
 /// A parent with some effects more, beginning at these parameters.

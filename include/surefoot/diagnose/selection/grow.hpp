@@ -8,8 +8,7 @@
 
 namespace surefoot::diagnosis {
 
-/// Fits children that a bound of an effect alone makes less probable than the best structure once more from inside:
-/// where a scale is free, as of a tank that no sensor sees, nothing but chance puts them there.
+/// Fits children that a bound of an effect alone makes less probable than the best structure once more from inside.
 void draw_inside(const Search& search, const EvaluatedHypothesis& best, std::vector<EvaluatedHypothesis>& children);
 
 /// Whether a structure has effects and is more probable than the model without any, these two alone compared: beside a

@@ -39,36 +39,11 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> smaller(const Search& search, con
   return rests;
 }
 
-/// With the parameters of effects that are at bounds a tenth of their range inside, and all else fitted around them.
-SUREFOOT_ONCE std::optional<Hypothesis> drawn_inside(const Search& search, Hypothesis one) {
-  constexpr double inside = 0.1, middle = 0.5;  // of its range
-  const SearchProblem& problem = search.problem;
-  bool any = false;
-  for (const Variable& variable : variables_of(search.bound, one, {})) {
-    if (variable.kind != Variable::Kind::effect || variable.index < problem.known) continue;
-    if (!is_at_bound(one, variable, problem.criteria)) continue;
-    const double low = to_search(variable, variable.low), high = to_search(variable, variable.high);
-    double& value = value_of(one, variable);
-    const bool below = to_search(variable, value) < low + middle * (high - low);
-    value = from_search(variable, below ? low + inside * (high - low) : high - inside * (high - low));
-    any = true;
-  }
-  if (!any) return std::nullopt;
-  FitProblem around = problem.fit;
-  around.free = Free::all_but_effects;
-  return fit(search.bound, one, around, serially()).hypothesis;
-}
-
 SUREFOOT_ONCE void draw_inside(const Search& search, const EvaluatedHypothesis& best,
                                std::vector<EvaluatedHypothesis>& children) {
-  const SelectionCriteria& criteria = search.problem.criteria;
   for (EvaluatedHypothesis& child : children) {
     if (search.problem.stopped()) return;
-    if (log_odds(child, best, criteria) + criteria.bound_cost < 0) continue;
-    const auto inside = drawn_inside(search, child.hypothesis);
-    if (!inside) continue;
-    const EvaluatedHypothesis again = refitted(search, *inside);
-    if (log_odds(again, child, criteria) > 0) child = again;
+    child = inside_bounds(search, child, log_odds(child, best, search.problem.criteria));
   }
 }
 

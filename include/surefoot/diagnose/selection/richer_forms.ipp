@@ -204,11 +204,13 @@ SUREFOOT_ONCE std::optional<EvaluatedHypothesis> in_richer_forms(const Search& s
       const double goal = adds ? std::min(reach, loss_at_noise(best, problem)) : reach;
       const Fit fitted = fit_richer(search, best, e, richer, goal);
       if (!fitted.ok) continue;
-      const EvaluatedHypothesis one = evaluate_fit(search.bound, fitted, problem, search.parallel);
-      const bool counted = errors_of_form == ErrorsOfForm::counted;
-      const double odds =
-          counted ? log_odds_of_forms(one, best, problem.criteria) : log_odds(one, best, problem.criteria);
-      if (!(odds > needed)) continue;
+      const auto odds_of = [&](const EvaluatedHypothesis& one) {
+        const bool counted = errors_of_form == ErrorsOfForm::counted;
+        return counted ? log_odds_of_forms(one, best, problem.criteria) : log_odds(one, best, problem.criteria);
+      };
+      const EvaluatedHypothesis ended = evaluate_fit(search.bound, fitted, problem, search.parallel);
+      const EvaluatedHypothesis one = inside_bounds(search, ended, odds_of(ended) - needed);
+      if (!(odds_of(one) > needed)) continue;
       if (adds && !explains(search, one)) continue;  // what moves by itself bends to what is not understood
       best = one;
       any = true;

@@ -211,8 +211,8 @@ SUREFOOT_ONCE void try_in_its_place(Search& search, const EvaluatedHypothesis& b
   }
 }
 
-/// Each effect of the best structure taken away, and another in its other forms: the one may only mend the form of the
-/// other.
+/// Each effect of the best structure taken away, and another in its other forms and in richer ones: the one may only
+/// mend the form of the other.
 SUREFOOT_ONCE void try_other_forms_without(const Search& search, const EvaluatedHypothesis& best,
                                            std::vector<EvaluatedHypothesis>& pool) {
   const SearchProblem& problem = search.problem;
@@ -224,6 +224,9 @@ SUREFOOT_ONCE void try_other_forms_without(const Search& search, const Evaluated
       enrich_rivals(search, best, others);
       for (const EvaluatedHypothesis& one : others) keep_best_form(pool, one, problem.criteria);
     }
+    if (problem.stopped() || search.effects(best) < 2 || !may_mend_form(best.hypothesis, rest.hypothesis)) continue;
+    const auto richer = in_richer_forms(search, search.without(best, e), ErrorsOfForm::counted, best.loss);
+    if (richer) keep_best_form(pool, *richer, problem.criteria);
   }
 }
 
