@@ -79,13 +79,9 @@ double Past::value_at(double time) const {
   return values_.front().second;
 }
 
-bool has_memory(Law law) {
-  return lags_of(law) > 0 || law == Law::rate_limit || law == Law::delay;
-}
+bool has_memory(Law law) { return lags_of(law) > 0 || law == Law::rate_limit || law == Law::delay; }
 
-int lags_of(Law law) {
-  return law == Law::lag ? 1 : law == Law::second_lag ? 2 : law == Law::third_lag ? 3 : 0;
-}
+int lags_of(Law law) { return law == Law::lag ? 1 : law == Law::second_lag ? 2 : law == Law::third_lag ? 3 : 0; }
 
 double rate_of(const Hidden& one, const Surroundings& around) {
   const double x = around.amount;

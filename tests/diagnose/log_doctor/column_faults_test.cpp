@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -99,6 +100,30 @@ TEST_SUITE("log_doctor") {
     const SpreadOfSizes spread = spread_of_others(fit, 0);
     CHECK(spread.degrees < 3);
     CHECK(effect_of(fit, 0, flip, good, spread).log_odds < alike);
+  }
+
+  TEST_CASE("a few readings that a repair brings only half way to the others may be of no such machine at all") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    const LogFit fit = fit_log(inputs, toys::servo_log());
+    const Repairs flip{{.kind = LogFaultKind::sign, .channel = {false, 1}}};
+    const auto over_unlike = [&](Eigen::Index rows, double share_of_size) {
+      ResidualRows after(2, rows);
+      for (Eigen::Index row = 0; row < rows; ++row) {
+        after.col(row) = (row % 2 == 0 ? share_of_size : -share_of_size) * fit.size;
+      }
+      return effect_of(fit, 0, flip, after, spread_of_others(fit, 0)).over_unlike;
+    };
+    const double of_repairs = std::log(static_cast<double>(repairs_to_try(fit.bound.info).size()));
+    CHECK(over_unlike(2, 0.3) < of_repairs);
+    CHECK(over_unlike(2, 0.02) > of_repairs);   // as near as the others
+    CHECK(over_unlike(200, 0.3) > of_repairs);  // as far off, but that often no chance
+    CHECK(over_unlike(200, 1.5) < 0);
+    ResidualRows one(2, 1);
+    one << 1, 1;
+    CHECK(log_likelihood_if_unlike(fit, one, 2) ==
+          doctest::Approx(-std::log(fit.size[0] / fit.typical[0] * fit.size[1] / fit.typical[1]) -
+                          std::log(2 * 3.14159265) - 1));
   }
 
   TEST_CASE("a log that fits is not searched for faults of all recordings") {

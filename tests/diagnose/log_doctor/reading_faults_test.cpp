@@ -165,6 +165,39 @@ TEST_SUITE("log_doctor") {
     CHECK_FALSE(any_beyond());
   }
 
+  TEST_CASE("a sensor that stood at its largest reading is stuck if it goes on from where the machine is by then") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    const LogFit fit = fit_log(inputs, toys::servo_log());
+    const auto kind_of = [&](const LogFit& some) {
+      const auto found = find_reading_faults(some, inputs.criteria);
+      REQUIRE(found.size() == 1);
+      return found[0].repairs.front().kind;
+    };
+    LogFit stuck = fit, clipped = fit;
+    Eigen::Index top = 0;
+    const auto readings = fit.bound.recordings[0].outputs.row(0);
+    const double largest = readings.maxCoeff(&top);
+    Eigen::Index next = top + 8;
+    while (readings[next] > largest - 0.15) ++next;
+    for (Eigen::Index row = top; row < next; ++row) stuck.bound.recordings[0].outputs(0, row) = largest;
+    CHECK(kind_of(stuck) == LogFaultKind::stuck);
+    for (double& reading : clipped.bound.recordings[0].outputs.row(0)) reading = std::min(reading, largest - 0.15);
+    CHECK(kind_of(clipped) == LogFaultKind::clipped);
+  }
+
+  TEST_CASE("as many equal readings as a coarse sensor has by chance are no stretch that says anything") {
+    const LogDoctorCriteria criteria;
+    std::vector<double> lengths(400, 1);
+    CHECK(expected_repeats(lengths, 5, criteria) == 0);
+    for (const double length : {2, 3, 4})
+      lengths.insert(lengths.end(), length == 2 ? 64 : length == 3 ? 12 : 4, length);
+    // 80 pairs and 20 further readings: of 100 chances to end there, 20 go on
+    CHECK(expected_repeats(lengths, 5, criteria) == doctest::Approx(80 * std::pow(20.0 / 100, 3)));
+    lengths.push_back(60);  // that in question
+    CHECK(expected_repeats(lengths, 5, criteria) == doctest::Approx(80 * std::pow(20.0 / 100, 3)));
+  }
+
   TEST_CASE("a gap is a gap only where other intervals are short") {
     auto log = toys::servo_log({}, 2);
     CHECK(find_gaps(bind_simulator(toys::Servo{}, log), {}).empty());

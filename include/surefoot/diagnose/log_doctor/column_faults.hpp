@@ -31,6 +31,7 @@ struct RepairEffect {
   double log_odds = 0;   // of the recording with the repair against without it
   double log_ratio = 0;  // logarithm of the mean square error before over after, each in the unit of the readings
   double after = 0;      // mean square error
+  double over_unlike = 0;  // log odds of the recording with the repair against one that the model tells nothing of
 };
 
 /// How residuals of recordings differ in size, in units of what is typically left: a multivariate t distribution.
@@ -41,6 +42,10 @@ struct SpreadOfSizes {
 
 /// The most likely one of the recordings other than r.
 SpreadOfSizes spread_of_others(const LogFit& fit, std::size_t r);
+
+/// Log-likelihood of n independent readings of a recording that has nothing in common with the model, in units of what
+/// is typically left: outputs as large as in the median recording, whatever was commanded.
+double log_likelihood_if_unlike(const LogFit& fit, const ResidualRows& residuals, double n);
 
 /// Compares residuals as logged with those after repairs.
 RepairEffect effect_of(const LogFit& fit, std::size_t r, const Repairs& repairs, const ResidualRows& after,

@@ -24,15 +24,22 @@ SUREFOOT_ONCE double log_likelihood(double n, double squares, const SpreadOfSize
   return -n / 2 * std::log(unit) - (spread.degrees + n) / 2 * std::log1p(squares / unit);
 }
 
+/// What log_likelihood leaves out, which n alone decides.
+SUREFOOT_ONCE double log_norm(double n, const SpreadOfSizes& spread) {
+  return std::lgamma((spread.degrees + n) / 2) - std::lgamma(spread.degrees / 2) - n / 2 * std::log(std::numbers::pi);
+}
+
 SUREFOOT_ONCE double measured_cells(const ResidualRows& residuals) {
   double count = 0;
   for (Eigen::Index i = 0; i < residuals.size(); ++i) count += std::isnan(residuals.data()[i]) ? 0 : 1;
   return count;
 }
 
+/// Of a spread: a Cauchy distribution, of which one far off says nothing of the others.
+inline constexpr double least_degrees = 1;
+
 SUREFOOT_ONCE SpreadOfSizes spread_of_others(const LogFit& fit, std::size_t r) {
   constexpr double most = 12;   // degrees: sizes that differ by a fifth; few recordings alone cannot tell less
-  constexpr double least = 1;   // a Cauchy distribution: one far off says nothing of the others
   constexpr double widest = 4;  // scale, and its inverse: the median is not further from the middle of any distribution
   std::vector<double> counts, squares;
   for (std::size_t o = 0; o < fit.residuals.size(); ++o) {
@@ -44,12 +51,11 @@ SUREFOOT_ONCE SpreadOfSizes spread_of_others(const LogFit& fit, std::size_t r) {
   }
   SpreadOfSizes best{most, 1};
   double highest = -std::numeric_limits<double>::infinity();
-  for (double degrees = most; degrees >= least; degrees /= std::numbers::sqrt2) {
+  for (double degrees = most; degrees >= least_degrees; degrees /= std::numbers::sqrt2) {
     for (double scale = 1 / widest; scale <= widest; scale *= std::sqrt(std::numbers::sqrt2)) {
       double sum = 0;
       for (std::size_t o = 0; o < counts.size(); ++o) {
-        sum += std::lgamma((degrees + counts[o]) / 2) - std::lgamma(degrees / 2) +
-               log_likelihood(counts[o], squares[o], {degrees, scale});
+        sum += log_norm(counts[o], {degrees, scale}) + log_likelihood(counts[o], squares[o], {degrees, scale});
       }
       if (sum > highest) best = {degrees, scale};
       highest = std::max(highest, sum);
@@ -85,6 +91,17 @@ SUREFOOT_ONCE double log_density(const ResidualRows& after, const Repairs& repai
   return sum;
 }
 
+SUREFOOT_ONCE double log_likelihood_if_unlike(const LogFit& fit, const ResidualRows& residuals, double n) {
+  double sum = 0;
+  for (Eigen::Index k = 0; k < residuals.rows(); ++k) {
+    double cells = 0;
+    for (Eigen::Index row = 0; row < residuals.cols(); ++row) cells += std::isnan(residuals(k, row)) ? 0 : 1;
+    sum -= cells * std::log(fit.size[k] / fit.typical[k]);
+  }
+  const double whole = measured_cells(residuals);
+  return whole > 0 ? n * (sum / whole - 0.5 * (std::log(2 * std::numbers::pi) + 1)) : 0;
+}
+
 SUREFOOT_ONCE RepairEffect effect_of(const LogFit& fit, std::size_t r, const Repairs& repairs,
                                      const ResidualRows& after, const SpreadOfSizes& spread) {
   constexpr double least = 1e-12;  // of an output's variance: as good as no error
@@ -97,6 +114,9 @@ SUREFOOT_ONCE RepairEffect effect_of(const LogFit& fit, std::size_t r, const Rep
   const double share = independent_share(after, fit.typical), n = share * measured_cells(after);
   const double with = log_likelihood(n, n * mean_square(after, fit.typical), spread);
   const double without = log_likelihood(n, n * mean_square(before, fit.typical), spread);
+  const SpreadOfSizes any{least_degrees, 1};  // it may have physics of its own as well
+  const double with_any = log_likelihood(n, n * mean_square(after, fit.typical), any) + log_norm(n, any);
+  effect.over_unlike = std::max(with + log_norm(n, spread), with_any) - log_likelihood_if_unlike(fit, after, n);
   effect.log_odds = std::isfinite(with) ? with + share * log_density(after, repairs) - without : 0;
   if (std::isnan(effect.log_ratio)) effect.log_ratio = 0;  // both ran away
   return effect;
@@ -221,7 +241,8 @@ SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs&
     }
   });
   const double tests = static_cast<double>(count * columns.size());
-  const double least_odds = std::log(tests / criteria.significance);
+  const double least_odds = std::log(tests * criteria.fault_odds);
+  const double likeliest_of = std::log(static_cast<double>(columns.size()));
   std::optional<FoundFault> found, unlike;  // the others, as they are calibrated now
   RepairEffect best, best_unlike;
   for (std::size_t r = 0; r < count; ++r) {
@@ -229,6 +250,7 @@ SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs&
     for (std::size_t t = 0; t < tried[r].size(); ++t) {
       const RepairEffect& effect = effects[r][t];
       if (!(effect.log_odds > least_odds && effect.log_ratio > std::log(criteria.decisive))) continue;
+      if (!(effect.over_unlike > likeliest_of)) continue;  // it is no recording of this machine, and bends to that
       if (!is_odd(fit, r, tried[r][t]) || !moves_beyond_misfit(fit, r, tried[r][t])) continue;
       std::vector<double> of_others;
       for (std::size_t o = 0; o < count; ++o) {

@@ -9,6 +9,8 @@ struct LogDoctorCriteria {
   // Named is what chance and the scatter between recordings explain with less than this probability, shared out among
   // all tests of a log; and what halves the error, for missing physics makes small but significant differences too.
   double significance = 1e-3;
+  double fault_odds = 100;      // that a column is at fault, times all columns asked for: one log in ten has such a
+                                // fault, and named is what is ten times as probable as none
   double decisive = 4;          // least mean square error as logged over that after the repair
   double poor_fit = 0.25;       // of an output's variance unexplained in the median recording: the log is in doubt
   double most_of = 0.8;         // share of the recordings that a fault of the whole log must be seen in

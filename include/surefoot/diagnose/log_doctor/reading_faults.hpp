@@ -24,6 +24,10 @@ struct ConstantStretch {
 std::vector<ConstantStretch> constant_stretches(const LogFit& fit, std::size_t r, Eigen::Index output,
                                                 double resolution, const LogDoctorCriteria& criteria);
 
+/// How many stretches of so many equal readings the short ones lead to expect in a recording: each reading more has the
+/// chance that it has in those, as of a coarse sensor in slow motion. `lengths`: of all stretches, from 1 on.
+double expected_repeats(const std::vector<double>& lengths, double readings, const LogDoctorCriteria& criteria);
+
 /// The smallest difference between readings that follow each other, over all recordings.
 double resolution_of(const std::vector<Recording>& recordings, Eigen::Index output);
 

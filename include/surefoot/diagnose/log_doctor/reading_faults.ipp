@@ -127,6 +127,34 @@ SUREFOOT_ONCE bool ends_in_jump(const LogFit& fit, std::size_t r, Eigen::Index o
   return std::abs(step) > jump * high_value(steps);
 }
 
+/// How far the model moves into a row from the one before; from the reading there, where it begins each step at one.
+SUREFOOT_ONCE double step_of_model(const LogFit& fit, std::size_t r, Eigen::Index output, Eigen::Index row) {
+  const bool steps = fit.bound.integration.restart > 0;
+  const Eigen::MatrixXd& simulated = fit.runs[r].outputs;
+  return simulated(output, row) - (steps ? fit.bound.recordings[r].outputs : simulated)(output, row - 1);
+}
+
+/// Whether the reading after a stretch is where the model has gone meanwhile, and neither at the stretch nor one step
+/// on from it, if that is further than the model is off: the machine moved on, and its sensor did not say so. What is
+/// at a limit, of the machine or its sensor, goes on from there.
+SUREFOOT_ONCE bool moved_on_meanwhile(const LogFit& fit, std::size_t r, Eigen::Index output, const RowRange& rows,
+                                      double off) {
+  const Recording& recording = fit.bound.recordings[r];
+  const Eigen::Index next = rows.second;
+  if (next >= recording.rows()) return false;
+  const double step = recording.outputs(output, next) - recording.outputs(output, next - 1);
+  const double last = step_of_model(fit, r, output, next);
+  double whole = last, squares = off * off;
+  for (Eigen::Index row = rows.first + 1; row < next; ++row) {
+    whole += step_of_model(fit, r, output, row);
+    if (fit.bound.integration.restart > 0) squares += off * off;  // of each step
+  }
+  constexpr double certain = 4;  // standard deviations
+  const double beyond = std::min(std::abs(whole), std::abs(whole - last));
+  return beyond > certain * std::sqrt(squares) &&
+         std::abs(step - whole) < std::min(std::abs(step), std::abs(step - last));
+}
+
 /// Whether a stretch at the end of the range, of the machine or its sensor, is left again: what sticks does so
 /// anywhere.
 SUREFOOT_ONCE bool leaves_a_limit(const Recording& recording, const ConstantStretch& stretch) {
@@ -177,11 +205,12 @@ SUREFOOT_ONCE bool machine_rests(const LogFit& fit, std::size_t r, Eigen::Index 
 /// How far the model is off elsewhere in this recording: root mean square.
 SUREFOOT_ONCE double error_elsewhere(const LogFit& fit, std::size_t r, Eigen::Index output,
                                      const std::vector<ConstantStretch>& stretches) {
+  const Eigen::Index later = fit.bound.integration.restart > 0 ? 1 : 0;  // the row after begins at a reading within
   double sum = 0, count = 0;
   for (Eigen::Index row = 0; row < fit.residuals[r].cols(); ++row) {
     const double off = fit.residuals[r](output, row);
     const bool within = holds_for_any(
-        stretches, [&](const ConstantStretch& one) { return row >= one.rows.first && row < one.rows.second; });
+        stretches, [&](const ConstantStretch& one) { return row >= one.rows.first && row < one.rows.second + later; });
     if (within || !std::isfinite(off)) continue;
     sum += off * off;
     ++count;
@@ -189,18 +218,30 @@ SUREFOOT_ONCE double error_elsewhere(const LogFit& fit, std::size_t r, Eigen::In
   return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
-/// Readings of the longest stretch in which they are equal, whatever the model does meanwhile.
-SUREFOOT_ONCE Eigen::Index longest_repeat(const Recording& recording, Eigen::Index output) {
+/// Lengths of the stretches in which readings are equal, whatever the model does meanwhile.
+SUREFOOT_ONCE std::vector<double> lengths_of_repeats(const Recording& recording, Eigen::Index output) {
   double before = std::numeric_limits<double>::quiet_NaN();
-  Eigen::Index now = 0, longest = 0;
+  std::vector<double> lengths;
   for (Eigen::Index row = 0; row < recording.rows(); ++row) {
     const double value = recording.outputs(output, row);
     if (!std::isfinite(value)) continue;
-    now = value == before ? now + 1 : 1;
-    longest = std::max(longest, now);
+    if (value != before) lengths.push_back(0);
+    ++lengths.back();
     before = value;
   }
-  return longest;
+  return lengths;
+}
+
+SUREFOOT_ONCE double expected_repeats(const std::vector<double>& lengths, double readings,
+                                      const LogDoctorCriteria& criteria) {
+  double pairs = 0, more = 0, asked = 0;
+  for (const double length : lengths) {
+    if (length < 2 || length >= static_cast<double>(criteria.constant_rows)) continue;
+    ++pairs;
+    more += length - 2;
+    asked += length - 1;
+  }
+  return pairs > 0 ? pairs * std::pow(more / asked, readings - 2) : 0;
 }
 
 /// The stretches of one output and recording that no sensor and no machine explains: clipped or stuck. A model that is
@@ -215,8 +256,9 @@ SUREFOOT_ONCE std::optional<FoundFault> constant_fault(const LogFit& fit, std::s
   const double off = std::max(fit.typical[output], error_elsewhere(fit, r, output, stretches));
   for (const ConstantStretch& one : stretches) {
     if (machine_rests(fit, r, output, one.rows)) continue;
-    const bool jump = ends_in_jump(fit, r, output, one.rows), noiseless = static_cast<double>(one.readings) > natural;
-    if (one.extreme && (noiseless || ((one.beyond || steps) && !jump))) {
+    const bool noiseless = static_cast<double>(one.readings) > natural;
+    const bool jump = ends_in_jump(fit, r, output, one.rows) || moved_on_meanwhile(fit, r, output, one.rows, off);
+    if (one.extreme && !jump && (noiseless || one.beyond || steps)) {
       clipped.rows.push_back(one.rows);
       clipped_rows += static_cast<double>(one.readings);
     } else if (noiseless || jump || (one.missed > off && !leaves_a_limit(fit.bound.recordings[r], one))) {
@@ -343,9 +385,14 @@ SUREFOOT_ONCE std::vector<FoundFault> find_reading_faults(const LogFit& fit, con
     std::vector<std::vector<ConstantStretch>> stretches(count);
     std::vector<double> missed(count), longest(count);
     for (std::size_t r = 0; r < count; ++r) {
+      const std::vector<double> lengths = lengths_of_repeats(fit.bound.recordings[r], output);
       stretches[r] = constant_stretches(fit, r, output, resolution, criteria);
+      drop_items(stretches[r], [&](const ConstantStretch& one) {
+        const double by_chance = expected_repeats(lengths, static_cast<double>(one.readings), criteria);
+        return by_chance * static_cast<double>(count) > criteria.significance;
+      });
       missed[r] = total_missed(stretches[r]);
-      longest[r] = static_cast<double>(longest_repeat(fit.bound.recordings[r], output));
+      longest[r] = lengths.empty() ? 0 : *std::max_element(lengths.begin(), lengths.end());
     }
     for (std::size_t r = 0; r < count; ++r) {
       const bool alone = count == 1;  // then nothing says what is natural

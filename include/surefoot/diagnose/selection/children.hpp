@@ -28,9 +28,9 @@ struct Search {
   EvaluatedHypothesis without(const EvaluatedHypothesis& whole, std::size_t effect) const;
 };
 
-/// A structure fitted once more from inside where a bound of an effect alone makes it improbable, at log odds of `odds`,
-/// if that makes it more probable: where a scale is free, as of a tank that no sensor sees, or where the way to what it
-/// is in truth is far, nothing but chance puts it there. Cost: two fits where so.
+/// A structure fitted once more from inside where a bound of an effect alone makes it improbable, at log odds of
+/// `odds`, if that makes it more probable: where a scale is free, as of a tank that no sensor sees, or where the way to
+/// what it is in truth is far, nothing but chance puts it there. Cost: two fits where so.
 EvaluatedHypothesis inside_bounds(const Search& search, const EvaluatedHypothesis& one, double odds);
 
 /// Finishes the `keep` best of some fits that have begun, and evaluates them.
