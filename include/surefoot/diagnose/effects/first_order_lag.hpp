@@ -95,9 +95,9 @@ inline SecondOrderStep second_order_step(double value, double rate, double step,
 [[gnu::cold]] inline Effect second_order_lag() {
   Effect effect = first_order_lag();
   effect.form = "second order";
-  effect.extends = {""};
+  effect.extends = names_of({""});
   effect.sentence += ", of second order ({second} of that squared)";
-  effect.parameters.push_back({.name = "second", .low = 0.001, .high = 1, .starts = {0.25}});
+  effect.parameters.push_back(parameters_of({{.name = "second", .low = 0.001, .high = 1, .starts = {0.25}}}).front());
   effect.hidden_states = 3;
   effect.start_measure = {};
   effect.start = +[](const EffectContext& m, Values, HiddenStates hidden) {

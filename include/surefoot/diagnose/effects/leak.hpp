@@ -49,9 +49,9 @@ namespace surefoot::effects {
 [[gnu::cold]] inline Effect leak_power() {
   Effect effect = leak_hole();
   effect.form = "power";
-  effect.extends = {"", "hole"};
+  effect.extends = names_of({"", "hole"});
   effect.sentence += ", with the power {exponent} of it";
-  effect.parameters.push_back({.name = "exponent", .low = 0.3, .high = 3, .starts = {0.7}});
+  effect.parameters.push_back(parameters_of({{.name = "exponent", .low = 0.3, .high = 3, .starts = {0.7}}}).front());
   effect.force =
       +[](const EffectContext& m, Values p, Values) { return -p[0] * std::pow(std::max(m.value, 0.0), p[1]); };
   return effect;

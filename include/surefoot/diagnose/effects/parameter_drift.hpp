@@ -45,10 +45,12 @@ inline constexpr double least_drift_factor = 0.05;  // a parameter that drifts d
 [[gnu::cold]] inline Effect parameter_drift_bent() {
   Effect effect = parameter_drift();
   effect.form = "bent";
-  effect.extends = {"", "settling"};
+  effect.extends = names_of({"", "settling"});
   effect.sentence += " and {bend}";
   effect.parameters.push_back(
-      {.name = "bend", .measure = {.time = -2}, .low = -20, .high = 20, .starts = {0.001}, .strength = true});
+      parameters_of(
+          {{.name = "bend", .measure = {.time = -2}, .low = -20, .high = 20, .starts = {0.001}, .strength = true}})
+          .front());
   effect.factor = +[](const EffectContext& m, Values p) {
     return std::max(least_drift_factor, 1 + (p[0] + p[1] * m.time) * m.time);
   };

@@ -52,14 +52,15 @@ namespace surefoot::effects {
 [[gnu::cold]] inline Effect sensor_drift_bent() {
   Effect effect = sensor_drift();
   effect.form = "bent";
-  effect.extends = {"", "settling"};
+  effect.extends = names_of({"", "settling"});
   effect.sentence += " and {bend}";
-  effect.parameters.push_back({.name = "bend",
-                               .measure = {.value = 1, .time = -2},
-                               .low = -20,
-                               .high = 20,
-                               .starts = {0.01},
-                               .strength = true});
+  effect.parameters.push_back(parameters_of({{.name = "bend",
+                                              .measure = {.value = 1, .time = -2},
+                                              .low = -20,
+                                              .high = 20,
+                                              .starts = {0.01},
+                                              .strength = true}})
+                                  .front());
   effect.sensor = +[](const Series& series, Values p) {
     for (std::size_t row = 0; row < series.readings.size(); ++row) {
       const double time = series.time[row] - series.time[0];

@@ -10,24 +10,6 @@
 
 namespace surefoot::diagnosis {
 
-/// A stretch of equal readings of an output.
-struct ConstantStretch {
-  RowRange rows;             // [first, second)
-  Eigen::Index readings = 0;  // measured
-  double value = 0;
-  double missed = 0;   // how much the model moves meanwhile: standard deviation
-  bool extreme = false;  // the value is the recording's largest or smallest
-  bool beyond = false;   // it is, and the model goes beyond it
-};
-
-/// Stretches of at least `constant_rows` equal readings, while the model moves by more than a sensor can tell.
-std::vector<ConstantStretch> constant_stretches(const LogFit& fit, std::size_t r, Eigen::Index output,
-                                                double resolution, const LogDoctorCriteria& criteria);
-
-/// How many stretches of so many equal readings the short ones lead to expect in a recording: each reading more has the
-/// chance that it has in those, as of a coarse sensor in slow motion. `lengths`: of all stretches, from 1 on.
-double expected_repeats(const std::vector<double>& lengths, double readings, const LogDoctorCriteria& criteria);
-
 /// The smallest difference between readings that follow each other, over all recordings.
 double resolution_of(const std::vector<Recording>& recordings, Eigen::Index output);
 

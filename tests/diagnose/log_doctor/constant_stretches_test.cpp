@@ -1,0 +1,84 @@
+#include "surefoot/diagnose/log_doctor/constant_stretches.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "surefoot/diagnose/log_doctor/reading_faults.hpp"
+#include "tests/diagnose/log_doctor/servo_log.hpp"
+
+namespace {
+
+using namespace surefoot::diagnosis;
+
+TEST_SUITE("log_doctor") {
+  TEST_CASE("equal readings are a stretch if the model moves on by more than the resolution") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    auto log = toys::servo_log();
+    for (Eigen::Index row = 100; row < 130; ++row) log[0].outputs(0, row) = log[0].outputs(0, 99);
+    const LogFit fit = fit_log(inputs, log);
+    const auto stretches = constant_stretches(fit, 0, 0, 1e-4, inputs.criteria);
+    REQUIRE(stretches.size() == 1);
+    CHECK(stretches[0].rows.first == 99);
+    CHECK(stretches[0].rows.second == 130);
+    CHECK(constant_stretches(fit, 0, 0, 10, inputs.criteria).empty());
+    CHECK(constant_stretches(fit, 1, 0, 1e-4, inputs.criteria).empty());
+  }
+
+  TEST_CASE(
+      "a coarse sensor that stands still where the machine turns is not stuck, though a model that is off moves on") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    auto log = toys::servo_log();
+    const LogFit fit = fit_log(inputs, log);
+    LogFit off = fit;  // in the first recording the model runs ahead by 20 rows
+    const Eigen::MatrixXd ahead = fit.runs[0].outputs;
+    for (Eigen::Index row = 0; row + 20 < ahead.cols(); ++row) off.runs[0].outputs.col(row) = ahead.col(row + 20);
+    off.residuals[0] = off.runs[0].outputs - log[0].outputs;
+    const auto with_stretch = [](LogFit some) {
+      for (Eigen::Index row = 100; row < 112; ++row) some.bound.recordings[0].outputs(0, row) = 0.1;
+      return some;
+    };
+    const auto found = [&](const LogFit& some) {
+      return find_reading_faults(with_stretch(some), inputs.criteria).size();
+    };
+    const auto stretches = constant_stretches(with_stretch(fit), 0, 0, 1e-4, inputs.criteria);
+    REQUIRE(stretches.size() == 1);
+    REQUIRE(stretches[0].missed > 2 * fit.typical[0]);
+    CHECK(found(fit) == 1);
+    CHECK(found(off) == 0);
+  }
+
+  TEST_CASE("readings are clipped only where the model goes beyond them by more than it is off") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    auto log = toys::servo_log();
+    const double largest = log[0].outputs.row(0).maxCoeff(), end = 0.7 * largest;
+    for (double& reading : log[0].outputs.row(0)) reading = std::min(reading, end);
+    LogFit fit = fit_log(inputs, log);
+    const auto any_beyond = [&] {
+      const auto stretches = constant_stretches(fit, 0, 0, 1e-4, inputs.criteria);
+      return std::any_of(stretches.begin(), stretches.end(), [](const ConstantStretch& one) { return one.beyond; });
+    };
+    CHECK(any_beyond());
+    fit.typical[0] = largest;  // such a model may as well be wrong there
+    CHECK_FALSE(any_beyond());
+  }
+
+  TEST_CASE("as many equal readings as a coarse sensor has by chance are no stretch that says anything") {
+    const LogDoctorCriteria criteria;
+    std::vector<double> lengths(400, 1);
+    CHECK(expected_repeats(lengths, 5, criteria) == 0);
+    for (const double length : {2, 3, 4})
+      lengths.insert(lengths.end(), length == 2 ? 64 : length == 3 ? 12 : 4, length);
+    // 80 pairs and 20 further readings: of 100 chances to end there, 20 go on
+    CHECK(expected_repeats(lengths, 5, criteria) == doctest::Approx(80 * std::pow(20.0 / 100, 3)));
+    lengths.push_back(60);  // that in question
+    CHECK(expected_repeats(lengths, 5, criteria) == doctest::Approx(80 * std::pow(20.0 / 100, 3)));
+  }
+}
+
+}  // namespace
