@@ -14,6 +14,7 @@
 #include "surefoot/diagnose/diagnose.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
+#include "surefoot/diagnose/selection/extend.hpp"
 #include "surefoot/diagnose/selection/rivals.hpp"
 #include "tests/diagnose/small_simulators.hpp"
 
@@ -306,6 +307,40 @@ TEST_CASE("a hysteresis between two forms is found in the one that holds both, a
   const Diagnosis plain = diagnosed({"hysteresis", "v", "n = 2", {}, {4, 0.2}}, 0);
   REQUIRE(plain.effects.size() == 1);
   CHECK(plain.effects[0].form == "n = 2");
+}
+
+TEST_CASE("a lag of second order is no lag and a delay, and a drift that is bent no drifts of several parameters") {
+  for (const NamedEffect& effect : {NamedEffect{"first_order_lag", "push", "second order", {}, {0.3, 0.25}},
+                                    NamedEffect{"parameter_drift", "mass", "bent", {}, {0.01, 0.03}}}) {
+    const Diagnosis found = diagnosed(effect, 0);
+    INFO(found.sentence);
+    CHECK(found.verdict == Verdict::missing_physics);
+    REQUIRE(found.effects.size() == 1);
+    CHECK(found.effects[0].name == effect.name);
+    CHECK(found.effects[0].form == effect.form);
+    CHECK(found.effects[0].parameters[1].value == doctest::Approx(effect.values[1]).epsilon(0.1));
+    CHECK(found.noise_ratio < 1.1);
+  }
+}
+
+TEST_CASE("what only mends the form of another effect gives way to a richer form of that one") {
+  using namespace diagnosis;
+  const FormSearch forms =
+      search_of({"first_order_lag", "push", "second order", {}, {0.3, 0.25}}, {"first_order_lag", "input_delay"});
+  Hypothesis two = nominal_hypothesis(forms.bound);
+  for (const std::string name : {"first_order_lag", "input_delay"}) {
+    two.effects.push_back(
+        *std::ranges::find_if(forms.candidates, [&](const AttachedEffect& one) { return one.effect->name == name; }));
+    two.values.push_back(Eigen::VectorXd::Constant(1, 0.15));
+  }
+  const EvaluatedHypothesis both = refitted(forms.search(), two);
+  std::vector<EvaluatedHypothesis> pool{both};
+  Search search = forms.search();
+  try_confusable(search, pool);
+  const EvaluatedHypothesis& best = pool[best_of(pool, forms.problem.criteria)];
+  REQUIRE(best.hypothesis.effects.size() == 1);
+  CHECK(best.hypothesis.effects[0].effect->form == "second order");
+  CHECK(log_odds(best, both, forms.problem.criteria) > 10);
 }
 
 }  // namespace
