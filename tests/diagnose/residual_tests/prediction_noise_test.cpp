@@ -73,6 +73,16 @@ TEST_CASE("what noise leaves of predictions is told before: its size and how it 
   }
 }
 
+TEST_CASE("a trial that says noise leaves far more than recordings show is refuted") {
+  const BoundSimulator bound = read_with_noise(0, 0.5, noise);
+  const auto runs = simulate_all(bound, nominal_hypothesis(bound), all, bound.integration, serially());
+  PredictionNoise told = prediction_noise(bound, nominal_hypothesis(bound), all, serially());
+  CHECK_FALSE(is_refuted(told, bound, all, runs));
+  told.amplification[0] *= 2;  // as of a motion that goes apart by noise, and theirs does not
+  CHECK(is_refuted(told, bound, all, runs));
+  CHECK_FALSE(is_refuted({}, bound, all, runs));
+}
+
 TEST_CASE("simulations that follow nothing leave the noise as it is") {
   const BoundSimulator bound = read_with_noise(0, 0, noise);
   CHECK(prediction_noise(bound, nominal_hypothesis(bound), all, serially()).amplification.size() == 0);

@@ -28,6 +28,11 @@ inline double amplification_of(const PredictionNoise& noise, std::size_t output)
 PredictionNoise prediction_noise(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                  const std::vector<std::size_t>& recordings, const Parallel& parallel);
 
+/// Whether recordings are far nearer to simulations of them than the trial says that noise alone leaves: then it was of
+/// a motion that is no such machine's, and says nothing.
+bool is_refuted(const PredictionNoise& noise, const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                const std::vector<SimulatedRun>& runs);
+
 }  // namespace surefoot::diagnosis
 
 #ifndef SUREFOOT_COMPILED

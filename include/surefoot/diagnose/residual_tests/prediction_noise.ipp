@@ -66,4 +66,17 @@ SUREFOOT_ONCE PredictionNoise prediction_noise(const BoundSimulator& bound, cons
   return result;
 }
 
+SUREFOOT_ONCE bool is_refuted(const PredictionNoise& noise, const BoundSimulator& bound,
+                              const std::vector<std::size_t>& recordings, const std::vector<SimulatedRun>& runs) {
+  constexpr double largest_ratio = 1.5;  // of root mean squares: that of a verdict, the other way round
+  const Eigen::Index memory = memory_of(NoiseKind::measurement);
+  for (std::size_t k = 0; k < noise.amplification.size(); ++k) {
+    const auto output = static_cast<Eigen::Index>(k);
+    const double left = test_whiteness(bound, recordings, runs, output, memory, 10 * memory).rms;
+    const double by_noise = noise.amplification[k] * noise_of(bound, recordings, output);
+    if (noise.amplification[k] > 1 && largest_ratio * left < by_noise) return true;
+  }
+  return false;
+}
+
 }  // namespace surefoot::diagnosis

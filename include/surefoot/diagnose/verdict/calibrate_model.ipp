@@ -141,6 +141,10 @@ SUREFOOT_ONCE Calibration calibrate_model(EstimationSetup& setup, const RunConte
     bound.sizes = measure_sizes(bound, calibrated.hypothesis, split.training, runs);
     changed = revise_what_was_said(setup, calibrated, parallel);
   }
+  if (is_refuted(noise_of_predictions, bound, split.training, runs)) {  // by the nominal parameters, far off
+    noise_of_predictions = prediction_noise(bound, calibrated.hypothesis, split.training, parallel);
+    if (is_refuted(noise_of_predictions, bound, split.training, runs)) noise_of_predictions = {};
+  }
   return {with_estimated_initial_states(bound, nominal, split.training, problem, parallel), calibrated, runs,
           free_what_is_left(setup, calibrated, run)};
 }
