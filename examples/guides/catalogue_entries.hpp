@@ -213,6 +213,8 @@ inline std::vector<Form> forms() {
       {"sensor_drift", "", "y = y + rate t", {0.01}, "a ramp, whatever the machine does"},
       {"sensor_drift", "settling", "y = y + change (1 - exp(-t / time))"},
       {"sensor_drift", "bent", "y = y + rate t + bend t^2"},
+      {"sensor_drift", "midway",
+       "y = y + change (S(t) - S(0)) / (1 - S(0)), S(t) = 1 / (1 + exp((middle - t) / width))"},
       {"quantization",
        "",
        "y = step round(y / step), soft edges",
@@ -230,6 +232,8 @@ inline std::vector<Form> forms() {
        "an error that grows during each recording, in proportion to the motion"},
       {"parameter_drift", "settling", "p = p (1 + change (1 - exp(-t / time))), not below p / 20"},
       {"parameter_drift", "bent", "p = p (1 + rate t + bend t^2), not below p / 20"},
+      {"parameter_drift", "midway",
+       "p = p (1 + change (S(t) - S(0)) / (1 - S(0))), S(t) = 1 / (1 + exp((middle - t) / width))"},
   };
 }
 

@@ -126,8 +126,8 @@ TEST_CASE("every effect can be drawn at every place, and development draws nothi
       CHECK(one.a != 0);
       CHECK(!one.attached_to.empty());
       for (const Law own :
-           {Law::arctan_dry, Law::stribeck_lorentz, Law::tangent_spring, Law::two_wave_cogging, Law::raised_hole,
-            Law::tanh_clip, Law::third_lag, Law::midway_drift, Law::heat_fade, Law::radiation, Law::ageing})
+           {Law::rational_dry, Law::stribeck_lorentz, Law::tangent_spring, Law::two_wave_cogging, Law::raised_hole,
+            Law::tanh_clip, Law::third_lag, Law::passing_drift, Law::heat_fade, Law::radiation, Law::ageing})
         CHECK(one.law != own);
     }
   }

@@ -173,7 +173,8 @@ class Drawing {
  private:
   void dry(Hidden& one, double force, double speed) {
     one.a = graded(random_, 0.08, 0.5) * force;
-    one.b = one.law == Law::smooth_dry || one.law == Law::arctan_dry ? 0.03 * speed : random_.uniform(0.4, 1.2);
+    const bool smooth = one.law == Law::smooth_dry || one.law == Law::arctan_dry || one.law == Law::rational_dry;
+    one.b = smooth ? 0.03 * speed : random_.uniform(0.4, 1.2);
     one.c = random_.uniform(0.1, 0.4) * speed;
   }
 

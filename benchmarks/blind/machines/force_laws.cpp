@@ -76,6 +76,8 @@ double friction(const Hidden& one, const Motion& motion, double held) {
       return -one.a * std::tanh(v / one.b);
     case Law::arctan_dry:
       return -one.a * 2 / std::numbers::pi * std::atan(2 * v / one.b);
+    case Law::rational_dry:
+      return -one.a * v / (std::abs(v) + 0.5 * one.b);
     case Law::square_drag:
       return -one.a * v * std::abs(v);
     case Law::power_drag:
@@ -178,6 +180,7 @@ double force_of(const Hidden& one, const Motion& motion, std::span<const double>
     case Law::viscous:
     case Law::smooth_dry:
     case Law::arctan_dry:
+    case Law::rational_dry:
     case Law::square_drag:
     case Law::power_drag:
     case Law::asymmetric_damping:

@@ -14,7 +14,8 @@ struct Laws {
 const std::map<std::string, Laws>& laws() {
   static const std::map<std::string, Laws> table{
       {"viscous_friction", {{Law::viscous}, {}, {}}},
-      {"coulomb_friction", {{Law::bristles}, {Law::soft_bristles, Law::smooth_dry}, {Law::arctan_dry}}},
+      {"coulomb_friction",
+       {{Law::bristles}, {Law::soft_bristles, Law::smooth_dry, Law::arctan_dry}, {Law::rational_dry}}},
       {"stribeck_friction", {{Law::stribeck_gauss}, {Law::stribeck_exponential}, {Law::stribeck_lorentz}}},
       {"load_dependent_friction", {{}, {Law::load_bristles}, {}}},
       {"quadratic_drag", {{Law::square_drag}, {Law::power_drag}, {}}},
@@ -42,7 +43,8 @@ const std::map<std::string, Laws>& laws() {
       {"sensor_delay", {{Law::sensor_delay}, {}, {}}},
       {"sensor_drift", {{Law::drift}, {Law::warm_drift}, {}}},
       {"quantization", {{Law::round_off}, {Law::floor_off}, {}}},
-      {"parameter_drift", {{Law::linear_drift}, {Law::warm_up, Law::late_drift}, {Law::midway_drift}}},
+      {"parameter_drift",
+       {{Law::linear_drift}, {Law::warm_up, Law::late_drift, Law::midway_drift}, {Law::passing_drift}}},
       {"gusts", {{}, {Law::gusts}, {}}},
       {"asymmetric_damping", {{}, {Law::asymmetric_damping}, {}}},
       {"heat_fade", {{}, {}, {Law::heat_fade}}},

@@ -80,6 +80,7 @@ enum class Law {
   soft_bristles,
   smooth_dry,
   arctan_dry,
+  rational_dry,
   stribeck_gauss,
   stribeck_exponential,
   stribeck_lorentz,
@@ -138,6 +139,7 @@ enum class Law {
   warm_up,
   late_drift,
   midway_drift,
+  passing_drift,
   // outside the library, on speeds
   detent,
   sticky_patch,

@@ -154,6 +154,7 @@ double factor_of_parameter(const Hidden& one, double time) {
   if (one.law == Law::warm_up) return 1 + one.a * (1 - std::exp(-time / one.b));
   if (one.law == Law::late_drift) return 1 + one.a * std::pow(time / one.b, 2);
   if (one.law == Law::midway_drift) return 1 + one.a / (1 + std::exp((one.b - time) / (0.2 * one.b)));
+  if (one.law == Law::passing_drift) return 1 + one.a * std::exp(-std::pow((time - one.b) / (0.4 * one.b), 2));
   return std::max(1 + one.a * time, 0.05);
 }
 

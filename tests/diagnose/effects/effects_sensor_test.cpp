@@ -48,6 +48,13 @@ TEST_CASE("a drift that is bent goes with the square of time as well") {
   CHECK(y[4] == doctest::Approx(1 + 10 - 5));
 }
 
+TEST_CASE("a drift that sets in midway has made half of its way then, and none in the first row") {
+  const auto y = read(effects::sensor_drift_midway(), {2, 0.4, 0.01}, uneven, {1, 1, 1, 1, 1});
+  CHECK(y[0] == 1);
+  CHECK(y[3] == doctest::Approx(2));
+  CHECK(y[4] == doctest::Approx(3));
+}
+
 TEST_CASE("a late sensor reads a ramp late, between rows of any spacing") {
   for (const double delay : {0.0, 0.03, 0.05, 0.2, 0.7}) {
     std::vector<double> ramp;

@@ -115,5 +115,20 @@ TEST_CASE("a parameter whose drift is bent changes with the square of time as we
   CHECK(effects::parameter_drift_bent().factor(m, away) == 0.05);
 }
 
+TEST_CASE("a parameter whose drift sets in midway has made half of its change then, and none in the first row") {
+  const Effect drift = effects::parameter_drift_midway();
+  const auto factor_at = [&](double time, const std::vector<double>& p) {
+    EffectContext m;
+    m.time = time;
+    return drift.factor(m, p);
+  };
+  CHECK(factor_at(0, {0.4, 3, 0.5}) == 1);
+  CHECK(factor_at(3, {0.4, 3, 0.5}) == doctest::Approx(1.2).epsilon(1e-3));
+  CHECK(factor_at(30, {0.4, 3, 0.5}) == doctest::Approx(1.4));
+  CHECK(factor_at(1, {0.4, 3, 0.5}) < 1.01);
+  CHECK(factor_at(2, {0.4, 1e-6, 0.5}) == doctest::Approx(1 + 0.4 * std::tanh(2)));  // settles at once
+  CHECK(factor_at(9, {-0.99, 3, 0.5}) == 0.05);
+}
+
 }  // namespace
 }  // namespace surefoot

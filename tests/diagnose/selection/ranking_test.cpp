@@ -71,6 +71,16 @@ TEST_CASE("all that was evaluated is ranked, whatever way led to it") {
   CHECK(selection.candidates == 3);
 }
 
+TEST_CASE("what was not named may come clearly nearest all the same") {
+  const TankBench bench({});
+  Selection selection;
+  selection.chosen = made_up(bench, {}, 1);
+  selection.alternatives = {made_up(bench, {"sensor_bias"}, 0.7), made_up(bench, {"sensor_drift"}, 0.8)};
+  CHECK(&clearly_nearest(selection) == &selection.chosen);
+  selection.alternatives.push_back(made_up(bench, {"constant_rate"}, 0.5));
+  CHECK(names_in(clearly_nearest(selection)) == "constant_rate");
+}
+
 TEST_CASE("a gain is the share of the error that goes, and its standard error that over recordings") {
   ErrorSquares before{Eigen::MatrixXd::Constant(4, 1, 4), Eigen::MatrixXd::Constant(4, 1, 100),
                       Eigen::VectorXd::Ones(1)};

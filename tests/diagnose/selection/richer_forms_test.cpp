@@ -311,7 +311,8 @@ TEST_CASE("a hysteresis between two forms is found in the one that holds both, a
 
 TEST_CASE("a lag of second order is no lag and a delay, and a drift that is bent no drifts of several parameters") {
   for (const NamedEffect& effect : {NamedEffect{"first_order_lag", "push", "second order", {}, {0.3, 0.25}},
-                                    NamedEffect{"parameter_drift", "mass", "bent", {}, {0.01, 0.03}}}) {
+                                    NamedEffect{"parameter_drift", "mass", "bent", {}, {0.01, 0.03}},
+                                    NamedEffect{"parameter_drift", "mass", "midway", {}, {0.6, 2, 0.3}}}) {
     const Diagnosis found = diagnosed(effect, 0);
     INFO(found.sentence);
     CHECK(found.verdict == Verdict::missing_physics);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <initializer_list>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -47,38 +48,46 @@
 
 namespace surefoot {
 
+/// The effects that these functions make. (A list of effects would cost the compiler code that clears up each of them.)
+SUREFOOT_ONCE std::vector<Effect> made_by(std::initializer_list<Effect (*)()> functions) {
+  std::vector<Effect> effects;
+  effects.reserve(functions.size());
+  for (const auto make : functions) effects.push_back(make());
+  return effects;
+}
+
 SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
-  std::vector<Effect> all = {effects::viscous_friction(),
-                             effects::coulomb_friction(),
-                             effects::coulomb_friction_presliding(),
-                             effects::coulomb_friction_damped(),
-                             effects::stribeck_friction(),
-                             effects::stribeck_friction_tailed(),
-                             effects::load_dependent_friction(),
-                             effects::load_dependent_friction_under_load(),
-                             effects::load_dependent_friction_in_gears(),
-                             effects::load_dependent_friction_on_both_sides(),
-                             effects::quadratic_drag(),
-                             effects::constant_force(),
-                             effects::cubic_stiffness(),
-                             effects::cubic_stiffness_off_center(),
-                             effects::hysteresis(),
-                             effects::hysteresis_squared(),
-                             effects::hysteresis_asymmetric(),
-                             effects::hysteresis_general(),
-                             effects::backlash(),
-                             effects::backlash_gap(),
-                             effects::backlash_motor(),
-                             effects::joint_elasticity(),
-                             effects::joint_elasticity_two_modes(),
-                             effects::cogging(),
-                             effects::cogging_harmonics(),
-                             effects::cogging_per_turn(),
-                             effects::gravity_offset(),
-                             effects::end_stop_upper(),
-                             effects::end_stop_lower(),
-                             effects::elastic_end_stop(true),
-                             effects::elastic_end_stop(false)};
+  std::vector<Effect> all = made_by({effects::viscous_friction,
+                                     effects::coulomb_friction,
+                                     effects::coulomb_friction_presliding,
+                                     effects::coulomb_friction_damped,
+                                     effects::stribeck_friction,
+                                     effects::stribeck_friction_tailed,
+                                     effects::load_dependent_friction,
+                                     effects::load_dependent_friction_under_load,
+                                     effects::load_dependent_friction_in_gears,
+                                     effects::load_dependent_friction_on_both_sides,
+                                     effects::quadratic_drag,
+                                     effects::constant_force,
+                                     effects::cubic_stiffness,
+                                     effects::cubic_stiffness_off_center,
+                                     effects::hysteresis,
+                                     effects::hysteresis_squared,
+                                     effects::hysteresis_asymmetric,
+                                     effects::hysteresis_general,
+                                     effects::backlash,
+                                     effects::backlash_gap,
+                                     effects::backlash_motor,
+                                     effects::joint_elasticity,
+                                     effects::joint_elasticity_two_modes,
+                                     effects::cogging,
+                                     effects::cogging_harmonics,
+                                     effects::cogging_per_turn,
+                                     effects::gravity_offset,
+                                     effects::end_stop_upper,
+                                     effects::end_stop_lower,
+                                     [] { return effects::elastic_end_stop(true); },
+                                     [] { return effects::elastic_end_stop(false); }});
   for (std::size_t i = 0, count = all.size(); i < count; ++i) {
     if (!all[i].dry) continue;
     const bool of_load = all[i].needs_drive || all[i].needs_load;  // has many forms, each of which would be fitted
@@ -98,13 +107,11 @@ SUREFOOT_ONCE std::vector<Effect> velocity_effects() {
 }
 
 SUREFOOT_ONCE std::vector<Effect> input_effects() {
-  std::vector<Effect> all = {effects::input_gain(),         effects::input_asymmetry(),
-                             effects::dead_zone(),          effects::dead_zone_step(),
-                             effects::saturation(),         effects::saturation_soft(),
-                             effects::saturation_gradual(), effects::rate_limit(),
-                             effects::input_delay(),        effects::first_order_lag(),
-                             effects::second_order_lag(),   effects::supply_sag(),
-                             effects::backlash_coupling(),  effects::cubic_stiffness_coupling()};
+  std::vector<Effect> all =
+      made_by({effects::input_gain, effects::input_asymmetry, effects::dead_zone, effects::dead_zone_step,
+               effects::saturation, effects::saturation_soft, effects::saturation_gradual, effects::rate_limit,
+               effects::input_delay, effects::first_order_lag, effects::second_order_lag, effects::supply_sag,
+               effects::backlash_coupling, effects::cubic_stiffness_coupling});
   for (std::size_t i = 0, count = all.size(); i < count; ++i) {
     if (all[i].start || all[i].delay) all.push_back(effects::from_rest(all[i]));
   }
@@ -112,25 +119,18 @@ SUREFOOT_ONCE std::vector<Effect> input_effects() {
 }
 
 SUREFOOT_ONCE std::vector<Effect> planar_effects() {
-  return {effects::slip_saturation_forward(),
-          effects::slip_saturation_lateral(),
-          effects::slip_saturation_turn(),
-          effects::body_drift(),
-          effects::ground_slope(),
-          effects::ground_slope_distance(),
-          effects::cross_coupling_forward_to_turn(),
-          effects::cross_coupling_forward_to_lateral(),
-          effects::cross_coupling_lateral_to_turn(),
-          effects::cross_coupling_lateral_to_forward(),
-          effects::cross_coupling_turn_to_forward(),
-          effects::cross_coupling_turn_to_lateral()};
+  return made_by({effects::slip_saturation_forward, effects::slip_saturation_lateral, effects::slip_saturation_turn,
+                  effects::body_drift, effects::ground_slope, effects::ground_slope_distance,
+                  effects::cross_coupling_forward_to_turn, effects::cross_coupling_forward_to_lateral,
+                  effects::cross_coupling_lateral_to_turn, effects::cross_coupling_lateral_to_forward,
+                  effects::cross_coupling_turn_to_forward, effects::cross_coupling_turn_to_lateral});
 }
 
 SUREFOOT_ONCE std::vector<Effect> all_effects() {
   std::vector<Effect> all;
-  for (const auto& place : {planar_effects(), velocity_effects(), state_effects(), input_effects(), sensor_effects(),
-                            parameter_effects()}) {
-    for (const Effect& effect : place) all.push_back(effect);
+  for (const auto group :
+       {planar_effects, velocity_effects, state_effects, input_effects, sensor_effects, parameter_effects}) {
+    for (const Effect& effect : group()) all.push_back(effect);
   }
   all.push_back(effects::supply_sag_current());  // a form of an effect on inputs
   for (std::size_t i = 0, count = all.size(); i < count; ++i) {
@@ -140,27 +140,21 @@ SUREFOOT_ONCE std::vector<Effect> all_effects() {
 }
 
 SUREFOOT_ONCE std::vector<Effect> state_effects() {
-  return {effects::leak(),     effects::leak_hole(),      effects::leak_power(),   effects::constant_rate(),
-          effects::overflow(), effects::overflow_spill(), effects::overflow_weir()};
+  return made_by({effects::leak, effects::leak_hole, effects::leak_power, effects::constant_rate, effects::overflow,
+                  effects::overflow_spill, effects::overflow_weir});
 }
 
 SUREFOOT_ONCE std::vector<Effect> sensor_effects() {
-  return {effects::sensor_bias(),
-          effects::sensor_scale(),
-          effects::sensor_delay(),
-          effects::sensor_delay_in_motion(),
-          effects::sensor_drift(),
-          effects::sensor_drift_settling(),
-          effects::sensor_drift_bent(),
-          effects::quantization(),
-          effects::quantization_floor(),
-          effects::sharpened(effects::quantization()),
-          effects::sharpened(effects::quantization_floor()),
-          effects::backlash_sensor()};
+  return made_by({effects::sensor_bias, effects::sensor_scale, effects::sensor_delay, effects::sensor_delay_in_motion,
+                  effects::sensor_drift, effects::sensor_drift_settling, effects::sensor_drift_bent,
+                  effects::sensor_drift_midway, effects::quantization, effects::quantization_floor,
+                  [] { return effects::sharpened(effects::quantization()); },
+                  [] { return effects::sharpened(effects::quantization_floor()); }, effects::backlash_sensor});
 }
 
 SUREFOOT_ONCE std::vector<Effect> parameter_effects() {
-  return {effects::parameter_drift(), effects::parameter_drift_settling(), effects::parameter_drift_bent()};
+  return made_by({effects::parameter_drift, effects::parameter_drift_settling, effects::parameter_drift_bent,
+                  effects::parameter_drift_midway});
 }
 
 }  // namespace surefoot

@@ -75,9 +75,10 @@ SUREFOOT_ONCE void check_functions(const Effect& effect) {
 
 SUREFOOT_ONCE void check_parameter(const Effect& effect, const EffectParameter& parameter) {
   if (parameter.name.empty()) refuse(effect, "a parameter has no name");
-  const auto same = [&](const EffectParameter& other) { return other.name == parameter.name; };
+  int same = 0;
+  for (const EffectParameter& other : effect.parameters) same += other.name == parameter.name ? 1 : 0;
   const std::string name = "parameter '" + parameter.name + "'";
-  if (std::count_if(effect.parameters.begin(), effect.parameters.end(), same) > 1) {
+  if (same > 1) {
     refuse(effect, name + " stands there twice");
   }
   if (!std::isfinite(parameter.low) || !std::isfinite(parameter.high) || !(parameter.low < parameter.high)) {

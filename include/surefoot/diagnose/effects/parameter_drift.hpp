@@ -3,6 +3,7 @@
 //   steadily:  factor = 1 + rate * t
 //   settling:  factor = 1 + change * (1 - exp(-t / time)), as what heats up through one thermal resistance does
 //   bent:      factor = 1 + rate * t + bend * t^2, any course to second order (Taylor)
+//   midway:    factor = 1 + change * (what has come of it: a logistic curve, detail/midway.hpp)
 // Confusable with a drifting sensor, and with that parameter being wrong as a whole when recordings are short.
 #pragma once
 
@@ -10,6 +11,7 @@
 #include <cmath>
 
 #include "surefoot/diagnose/effects/detail/constants.hpp"
+#include "surefoot/diagnose/effects/detail/midway.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -53,6 +55,19 @@ inline constexpr double least_drift_factor = 0.05;  // a parameter that drifts d
           .front());
   effect.factor = +[](const EffectContext& m, Values p) {
     return std::max(least_drift_factor, 1 + (p[0] + p[1] * m.time) * m.time);
+  };
+  return effect;
+}
+
+[[gnu::cold]] inline Effect parameter_drift_midway() {
+  Effect effect = parameter_drift();
+  effect.form = "midway";
+  effect.extends = names_of({"", "settling", "bent"});
+  effect.sentence =
+      "parameter {at} changes by a share of {change}, half of it by {middle}, most within {width} of that";
+  effect.parameters = midway_parameters({}, -0.95, 20, 0.2);
+  effect.factor = +[](const EffectContext& m, Values p) {
+    return std::max(least_drift_factor, 1 + p[0] * midway(m.time, p[1], p[2]));
   };
   return effect;
 }

@@ -2,6 +2,7 @@
 //   steadily:  y + rate * t
 //   settling:  y + change * (1 - exp(-t / time)), as while it warms up
 //   bent:      y + rate * t + bend * t^2, any course to second order (Taylor)
+//   midway:    y + change * (what has come of it: a logistic curve, detail/midway.hpp)
 // Confusable with a constant rate or a leak of what it reads, and with a drifting parameter.
 #pragma once
 
@@ -9,6 +10,7 @@
 #include <cstddef>
 
 #include "surefoot/diagnose/effects/detail/constants.hpp"
+#include "surefoot/diagnose/effects/detail/midway.hpp"
 #include "surefoot/diagnose/effects/effect.hpp"
 
 namespace surefoot::effects {
@@ -65,6 +67,20 @@ namespace surefoot::effects {
     for (std::size_t row = 0; row < series.readings.size(); ++row) {
       const double time = series.time[row] - series.time[0];
       series.readings[row] += (p[0] + p[1] * time) * time;
+    }
+  };
+  return effect;
+}
+
+[[gnu::cold]] inline Effect sensor_drift_midway() {
+  Effect effect = sensor_drift();
+  effect.form = "midway";
+  effect.extends = names_of({"", "settling", "bent"});
+  effect.sentence = "the sensor {at} drifts by {change}, half of it by {middle}, most within {width} of that";
+  effect.parameters = midway_parameters({.value = 1}, -2, 2, 0.1);
+  effect.sensor = +[](const Series& series, Values p) {
+    for (std::size_t row = 0; row < series.readings.size(); ++row) {
+      series.readings[row] += p[0] * midway(series.time[row] - series.time[0], p[1], p[2]);
     }
   };
   return effect;

@@ -93,8 +93,10 @@ SUREFOOT_ONCE Fit calibrate(const BoundSimulator& bound, const Hypothesis& nomin
   FitProblem first = problem;
   first.max_iterations = search_iterations;
   Fit best = fit(bound, nominal, first, parallel);
-  best = grown_fit(bound, best, nominal, first, parallel);
-  best = guided_fit(bound, best, nominal, first, parallel);
+  FitProblem on_the_way = first;
+  on_the_way.prior = nominal.parameters;
+  best = grown_fit(bound, best, nominal, on_the_way, parallel);
+  best = guided_fit(bound, best, nominal, on_the_way, parallel);
   best = scattered_fit(bound, best, nominal, first, points, seed, parallel);
   if (!best.ok) {
     throw DiagnoseError(

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "surefoot/diagnose/estimation/items.hpp"
+#include "surefoot/diagnose/estimation/prior.hpp"
 #include "surefoot/diagnose/estimation/residuals.hpp"
 #include "surefoot/optimize/least_squares.hpp"
 
@@ -28,9 +29,13 @@ struct FitProblem {
   int max_iterations = 18;
   int secant_steps = 3;                                  // as in LeastSquaresOptions: a Jacobian costs many simulations
   double tolerance = 1e-4;                               // relative decrease of the loss at which it ends
+  Eigen::VectorXd prior = {};                            // parameters of the model to stay near to (prior.hpp), if any
   double reach = 0;                                      // loss that it must come near, to go on (comes_nearer)
   std::function<bool()> stopped = [] { return false; };  // asked before each iteration
 };
+
+/// The same, anywhere within the bounds.
+FitProblem without_prior(FitProblem problem);
 
 /// Of the loss of another fit: less of a difference is one of where iterations ended.
 inline constexpr double clearly_less = 0.98;
@@ -60,7 +65,8 @@ class FitFunctions {
   Eigen::VectorXd start() const;
   Box<Eigen::Dynamic> box() const;
   Hypothesis at(const Eigen::VectorXd& z) const;
-  Eigen::VectorXd residuals(const Eigen::VectorXd& z) const { return residuals_at(at(z)); }
+  /// Of all recordings and, behind them, of the problem's prior.
+  Eigen::VectorXd residuals(const Eigen::VectorXd& z) const;
 
   /// Forward differences from z, where the residuals are `here`. A free initial state moves the residuals of its own
   /// recording only. Where a sensor rounds, those of what it reads before: what is inside of a step would tell no fit
@@ -88,6 +94,7 @@ class FitFunctions {
   std::size_t shared_ = 0;  // variables that all recordings depend on: the first ones
   std::vector<std::vector<Cell>> cells_;
   std::vector<Eigen::Index> begin_;
+  PriorRows prior_;
 };
 
 /// Whether any of these recordings has an initial state to be estimated.

@@ -26,6 +26,11 @@ SUREFOOT_ONCE Parallel serially() {
   };
 }
 
+SUREFOOT_ONCE FitProblem without_prior(FitProblem problem) {
+  problem.prior.resize(0);
+  return problem;
+}
+
 SUREFOOT_ONCE FitFunctions::FitFunctions(const BoundSimulator& bound, const Hypothesis& start,
                                          const FitProblem& problem, const Parallel& parallel)
     : bound_(bound), base_(start), problem_(problem), parallel_(parallel) {
@@ -37,6 +42,7 @@ SUREFOOT_ONCE FitFunctions::FitFunctions(const BoundSimulator& bound, const Hypo
     cells_.push_back(cells_of(bound.recordings[r]));
     begin_.push_back(begin_.back() + static_cast<Eigen::Index>(cells_.back().size()));
   }
+  prior_ = prior_rows(variables_, problem.prior);
 }
 
 SUREFOOT_ONCE Eigen::VectorXd FitFunctions::start() const {
@@ -66,8 +72,16 @@ SUREFOOT_INLINE Hypothesis FitFunctions::at(const Eigen::VectorXd& z) const {
   return hypothesis;
 }
 
+SUREFOOT_INLINE Eigen::VectorXd FitFunctions::residuals(const Eigen::VectorXd& z) const {
+  Eigen::VectorXd all = residuals_at(at(z));
+  for (Eigen::Index k = 0; k < prior_.mean.size(); ++k) {
+    all[begin_.back() + k] = prior_.slope[k] * (z[k] - prior_.mean[k]);
+  }
+  return all;
+}
+
 SUREFOOT_INLINE Eigen::VectorXd FitFunctions::residuals_at(const Hypothesis& hypothesis) const {
-  Eigen::VectorXd all(begin_.back());
+  Eigen::VectorXd all(begin_.back() + prior_.mean.size());
   parallel_(cells_.size(), [&](std::size_t i) {
     const Eigen::VectorXd one = residuals_of(hypothesis, i);
     std::copy_n(one.data(), one.size(), all.data() + begin_[i]);
@@ -84,7 +98,7 @@ SUREFOOT_INLINE Eigen::MatrixXd FitFunctions::differences(const Eigen::VectorXd&
                                                           bool central) const {
   constexpr double difference = 1e-4;  // in units of the search, about 1e-4 of a variable: between noise and curvature
   const auto columns = static_cast<Eigen::Index>(variables_.size());
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(begin_.back(), columns);
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(here.size(), columns);
   std::vector<std::pair<std::size_t, std::size_t>> jobs;  // variable, place of a recording
   for (std::size_t v = 0; v < variables_.size(); ++v) {
     for (std::size_t i = 0; i < cells_.size(); ++i) {
@@ -114,6 +128,7 @@ SUREFOOT_INLINE Eigen::MatrixXd FitFunctions::differences(const Eigen::VectorXd&
       jacobian(begin_[i] + n, k) = (there[n] - behind) / (both_sides ? 2 * step : step);
     }
   });
+  for (Eigen::Index k = 0; k < prior_.slope.size(); ++k) jacobian(begin_.back() + k, k) = prior_.slope[k];
   for (Eigen::Index i = 0; i < jacobian.size(); ++i) {
     if (!std::isfinite(jacobian.data()[i])) jacobian.data()[i] = 0;
   }

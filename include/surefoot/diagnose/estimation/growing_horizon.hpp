@@ -13,7 +13,8 @@ namespace surefoot::diagnosis {
 /// The same simulator over the first `share` (0 to 1) of the rows of each recording, two at least.
 BoundSimulator beginnings(const BoundSimulator& bound, double share);
 
-/// `best`, or a clearly better fit that is reached from `start` on with a growing horizon. Costs less than two fits.
+/// `best`, or a clearly better fit that is reached from `start` on with a growing horizon. The problem's prior, if it
+/// has one, holds on the way alone: first rows tell little of most parameters. Costs less than two fits.
 Fit grown_fit(const BoundSimulator& bound, Fit best, const Hypothesis& start, const FitProblem& problem,
               const Parallel& parallel);
 

@@ -29,7 +29,7 @@ SUREFOOT_ONCE Fit grown_fit(const BoundSimulator& bound, Fit best, const Hypothe
     const Fit longer = fit(beginnings(bound, share), grown.hypothesis, problem, parallel);
     if (longer.ok) grown = longer;
   }
-  grown = fit(bound, grown.hypothesis, problem, parallel);
+  grown = fit(bound, grown.hypothesis, without_prior(problem), parallel);
   return grown.ok && grown.loss < clearly_less * best.loss ? grown : best;
 }
 

@@ -31,7 +31,7 @@ Hypothesis guided(const BoundSimulator& bound, const Hypothesis& start, const Fi
                   std::span<const double> horizons, const Parallel& parallel);
 
 /// `best`, or a clearly better fit that is reached from `start` on under guidance; `best` at once where no state is
-/// measured. Costs about four fits.
+/// measured. The problem's prior, if it has one, holds on the way alone. Costs about four fits.
 Fit guided_fit(const BoundSimulator& bound, Fit best, const Hypothesis& start, const FitProblem& problem,
                const Parallel& parallel);
 

@@ -54,7 +54,7 @@ SUREFOOT_ONCE Fit guided_fit(const BoundSimulator& bound, Fit best, const Hypoth
   if (!can_be_guided(bound, problem)) return best;
   const Hypothesis reached = guided(bound, start, problem, guided_horizons, parallel);
   if (problem.stopped()) return best;
-  const Fit one = fit(bound, reached, problem, parallel);
+  const Fit one = fit(bound, reached, without_prior(problem), parallel);
   return one.ok && one.loss < clearly_less * best.loss ? one : best;
 }
 

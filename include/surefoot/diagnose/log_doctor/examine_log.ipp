@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -111,12 +110,15 @@ SUREFOOT_ONCE void examine_readings(LogUnderExamination& log) {
   if (!log.faults.empty()) log.calibrate_again(std::move(recordings));
 }
 
+SUREFOOT_ONCE double sum_of_amounts(const ClockFault& fault) {
+  double sum = 0;
+  for (const double amount : fault.amounts) sum += amount;
+  return sum;
+}
+
 /// Whether one clock runs fast and the other slow.
 SUREFOOT_ONCE bool are_opposite(const ClockFault& one, const ClockFault& other) {
-  const auto rate = [](const ClockFault& fault) {
-    return std::accumulate(fault.amounts.begin(), fault.amounts.end(), 0.0);
-  };
-  return one.kind == other.kind && one.kind != LogFaultKind::offset && rate(one) * rate(other) < 0;
+  return one.kind == other.kind && one.kind != LogFaultKind::offset && sum_of_amounts(one) * sum_of_amounts(other) < 0;
 }
 
 SUREFOOT_ONCE void examine_clocks(LogUnderExamination& log) {
@@ -145,14 +147,23 @@ SUREFOOT_ONCE void examine_clocks(LogUnderExamination& log) {
     }
     log.add(std::move(named), true);
     log.calibrate_again(std::move(recordings));
-    const auto off =
-        std::count_if(fault->amounts.begin(), fault->amounts.end(), [](double amount) { return amount != 0; });
+    std::size_t off = 0;
+    for (const double amount : fault->amounts) off += amount != 0 ? 1 : 0;
     if (off > 1) break;  // all were estimated together
   }
 }
 
+/// Whether a clock was named before: columns of its recording would bend to it.
+SUREFOOT_ONCE bool clock_was_named(const std::vector<LogFault>& named) {
+  for (const LogFault& one : named) {
+    if (one.kind == name_of(LogFaultKind::offset) || one.kind == name_of(LogFaultKind::time_skew)) return true;
+  }
+  return false;
+}
+
 SUREFOOT_ONCE LogExamination examine_log(const LogDoctorInputs& inputs, const std::vector<Recording>& recordings) {
   LogUnderExamination log{inputs, first_fit(inputs, recordings), {}};
+  if (clock_was_named(inputs.named)) examine_clocks(log);
   examine_columns(log);
   examine_readings(log);
   examine_clocks(log);

@@ -258,7 +258,8 @@ SUREFOOT_ONCE std::size_t best_of(const std::vector<EvaluatedHypothesis>& evalua
   double most = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
     const std::vector<double> densities = log_densities_beside(evaluated[i], reference, criteria);
-    const double score = std::accumulate(densities.begin(), densities.end(), evaluated[i].log_prior);
+    double score = evaluated[i].log_prior;
+    for (const double density : densities) score += density;
     if (!(score > most)) continue;
     most = score;
     best = i;

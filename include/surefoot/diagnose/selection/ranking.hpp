@@ -21,6 +21,10 @@ struct Selection {
   bool yields = false;                            // to a rival explanation: first effects do worse
 };
 
+/// Of the structures that were not chosen, the one that leaves least, if that is clearly less than the choice leaves;
+/// else the choice.
+const EvaluatedHypothesis& clearly_nearest(const Selection& selection);
+
 /// What the errors gain, each output's in units of what it was before, with its standard error over recordings; the
 /// p-value is that of the odds.
 Comparison gain_of(const ErrorSquares& before, const ErrorSquares& after, double log_odds);

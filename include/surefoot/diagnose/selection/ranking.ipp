@@ -16,6 +16,18 @@
 
 namespace surefoot::diagnosis {
 
+SUREFOOT_ONCE const EvaluatedHypothesis& clearly_nearest(const Selection& selection) {
+  constexpr double clearly = 0.8;  // of the error
+  const EvaluatedHypothesis* nearest = &selection.chosen;
+  double least = clearly * selection.chosen.errors.rms();
+  for (const EvaluatedHypothesis& one : selection.alternatives) {
+    if (!(one.errors.rms() < least)) continue;
+    least = one.errors.rms();
+    nearest = &one;
+  }
+  return *nearest;
+}
+
 SUREFOOT_ONCE Comparison gain_of(const ErrorSquares& before, const ErrorSquares& after, double log_odds) {
   constexpr double least_ratio = 1e-6;  // of errors: below, the second one is exact
   constexpr double largest_odds = 700;  // [nat]: exp would overflow

@@ -24,6 +24,7 @@ struct FoundModel {
   Sizes sizes;                   // typical ones, of which the bounds of effects are multiples
   std::vector<InputHold> holds;  // of inputs, as in Integration
   std::vector<bool> freed;       // states that begin otherwise than the model says
+  bool named = true;             // otherwise the effects only come nearest: too few recordings show them
 };
 
 /// The same by a model with the effects that were found: physics that was missing hides a clock that is some percent

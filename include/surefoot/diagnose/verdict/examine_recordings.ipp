@@ -79,24 +79,31 @@ SUREFOOT_ONCE LogExamination examine_with_effects(const BindSimulator& bind, con
 }
 
 SUREFOOT_ONCE bool is_named_again(const std::vector<LogFault>& repaired, const std::vector<LogFault>& named) {
-  return holds_for_any(repaired, [&](const LogFault& one) {
-    return holds_for_any(named, [&](const LogFault& other) {
-      return one.kind == other.kind && one.recording == other.recording && one.channel == other.channel;
-    });
-  });
+  for (const LogFault& one : repaired) {
+    for (const LogFault& other : named) {
+      if (one.kind == other.kind && one.recording == other.recording && one.channel == other.channel) return true;
+    }
+  }
+  return false;
 }
 
 SUREFOOT_ONCE void withdraw_odd_recording(LogExamination& log) {
-  drop_items(log.faults, [](const LogFault& fault) { return fault.kind == name_of(LogFaultKind::odd); });
+  std::vector<LogFault> kept;
+  for (LogFault& fault : log.faults) {
+    if (fault.kind != name_of(LogFaultKind::odd)) kept.push_back(std::move(fault));
+  }
+  log.faults.swap(kept);
 }
 
 SUREFOOT_ONCE bool withdraw_faults(LogExamination& log, const LogExamination& again, bool can_begin_anew) {
   bool repaired = false;
-  drop_items(log.faults, [&](const LogFault& fault) {
+  std::vector<LogFault> kept;
+  for (LogFault& fault : log.faults) {
     const bool withdrawn = !is_named_again({fault}, again.faults) && (can_begin_anew || !fault.repaired);
     repaired = repaired || (withdrawn && fault.repaired);
-    return withdrawn;
-  });
+    if (!withdrawn) kept.push_back(std::move(fault));
+  }
+  log.faults.swap(kept);
   if (repaired) log.repaired = again.repaired;
   return repaired;
 }

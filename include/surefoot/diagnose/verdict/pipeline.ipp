@@ -345,7 +345,10 @@ SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vec
 
   run.progress("evaluating", progress_evaluation);
   evaluate_selection(setup, calibration, problem, selection, candidates, run, diagnosis);
-  return {selection.chosen.hypothesis, setup.bound.sizes, setup.bound.integration.inputs, setup.freed};
+  const bool open = diagnosis.verdict == Verdict::unexplained || diagnosis.verdict == Verdict::unfinished;
+  const bool named = found_any || !open;
+  const Hypothesis& best = named ? selection.chosen.hypothesis : clearly_nearest(selection).hypothesis;
+  return {best, setup.bound.sizes, setup.bound.integration.inputs, setup.freed, named};
 }
 
 /// Suspected faults are true if the model with what is found without them names them beyond doubt in the recordings as
@@ -407,7 +410,7 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
     }
     if (begins_anew) continue;
     const bool freed = std::find(found.freed.begin(), found.freed.end(), true) != found.freed.end();
-    const bool in_doubt = (found_any || freed) && !named_again && !confirmed && !log.faults.empty();
+    const bool in_doubt = ((found_any && found.named) || freed) && !named_again && !confirmed && !log.faults.empty();
     if (in_doubt) {
       confirmed = true;
       LogExamination again;

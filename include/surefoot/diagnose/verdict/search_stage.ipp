@@ -22,21 +22,24 @@
 
 namespace surefoot::diagnosis {
 
+/// Effects that were asked for, but for those that these recordings cannot show.
+SUREFOOT_ONCE std::vector<Effect> effects_to_seek(const EstimationSetup& setup, const RunContext& run) {
+  const auto& names = run.options.effects;
+  const bool reads = setup.noise != NoiseKind::process;  // else rows start from readings: no sensor's fault can be told
+  const bool begins = !few_readings(setup.bound, setup.split.training);
+  std::vector<Effect> sought;
+  for (const Effect& effect : nameable_effects(run.options)) {
+    const bool asked = names.empty() || std::find(names.begin(), names.end(), effect.name) != names.end();
+    const bool shown = (reads || effect.place != Place::output) && (begins || !effect.starts_anywhere);
+    if (asked && shown) sought.push_back(effect);
+  }
+  return sought;
+}
+
 SUREFOOT_ONCE std::vector<AttachedEffect> candidate_effects(const EstimationSetup& setup,
                                                             const Calibration& calibration, const RunContext& run) {
-  const auto& names = run.options.effects;
-  std::vector<Effect> effects = nameable_effects(run.options);
-  drop_items(effects, [&](const Effect& effect) {
-    return !names.empty() && std::find(names.begin(), names.end(), effect.name) == names.end();
-  });
-  if (setup.noise == NoiseKind::process) {  // each row starts from readings, so that a sensor's faults cannot be told
-    drop_items(effects, [](const Effect& effect) { return effect.place == Place::output; });
-  }
-  if (few_readings(setup.bound, setup.split.training)) {
-    drop_items(effects, [](const Effect& effect) { return effect.starts_anywhere; });
-  }
   std::vector<AttachedEffect> candidates = attachments(
-      setup.bound, effects,
+      setup.bound, effects_to_seek(setup, run),
       distinct_inputs(setup.bound, calibration.calibrated.hypothesis, setup.split.training, calibration.training_runs));
   const bool map = setup.bound.info.kind == SimulatorKind::map;  // whose first row is the first command
   const std::vector<bool> zero = zero_at_first(setup.bound, setup.split.training);

@@ -19,7 +19,8 @@ struct ParameterConstants {
   bool strength = false, of_peak = false, beyond_least = false;
 };
 
-inline std::vector<EffectParameter> parameters_of(std::initializer_list<ParameterConstants> constants) {
+[[gnu::cold, gnu::noinline]] inline std::vector<EffectParameter> parameters_of(
+    std::initializer_list<ParameterConstants> constants) {
   std::vector<EffectParameter> parameters;
   for (const ParameterConstants& one : constants) {
     parameters.push_back(
@@ -28,7 +29,7 @@ inline std::vector<EffectParameter> parameters_of(std::initializer_list<Paramete
   return parameters;
 }
 
-inline std::vector<std::string> names_of(std::initializer_list<const char*> constants) {
+[[gnu::cold, gnu::noinline]] inline std::vector<std::string> names_of(std::initializer_list<const char*> constants) {
   return {constants.begin(), constants.end()};
 }
 
