@@ -233,7 +233,7 @@ inline std::vector<Form> forms() {
       {"parameter_drift", "settling", "p = p (1 + change (1 - exp(-t / time))), not below p / 20"},
       {"parameter_drift", "bent", "p = p (1 + rate t + bend t^2), not below p / 20"},
       {"parameter_drift", "midway",
-       "p = p (1 + change (S(t) - S(0)) / (1 - S(0))), S(t) = 1 / (1 + exp((middle - t) / width))"},
+       "p = p (1 + change (S(t) - S(0)) / (1 - S(0))), S(t) = 1 / (1 + exp((middle - t) / width)), not below p / 20"},
   };
 }
 

@@ -21,6 +21,9 @@ struct Selection {
   bool yields = false;                            // to a rival explanation: first effects do worse
 };
 
+/// Of an error: what leaves less comes clearly nearer.
+inline constexpr double clearly_nearer = 0.8;
+
 /// Of the structures that were not chosen, the one that leaves least, if that is clearly less than the choice leaves;
 /// else the choice.
 const EvaluatedHypothesis& clearly_nearest(const Selection& selection);

@@ -17,9 +17,8 @@
 namespace surefoot::diagnosis {
 
 SUREFOOT_ONCE const EvaluatedHypothesis& clearly_nearest(const Selection& selection) {
-  constexpr double clearly = 0.8;  // of the error
   const EvaluatedHypothesis* nearest = &selection.chosen;
-  double least = clearly * selection.chosen.errors.rms();
+  double least = clearly_nearer * selection.chosen.errors.rms();
   for (const EvaluatedHypothesis& one : selection.alternatives) {
     if (!(one.errors.rms() < least)) continue;
     least = one.errors.rms();

@@ -12,6 +12,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
 #include "surefoot/diagnose/estimation/items.hpp"
+#include "surefoot/diagnose/selection/ranking.hpp"
 #include "surefoot/diagnose/text.hpp"
 #include "surefoot/diagnose/verdict/describe.hpp"
 #include "surefoot/diagnose/verdict/verdict.hpp"
@@ -264,9 +265,8 @@ SUREFOOT_ONCE std::string tie_sentence(const std::vector<std::string>& ties) {
 
 /// Of structures that were not chosen, the one whose predictions come clearly nearest; empty if there is none.
 SUREFOOT_ONCE std::string nearest_sentence(const Diagnosis& diagnosis) {
-  constexpr double clearly = 0.8;  // of the error without effects
   const Alternative* nearest = nullptr;
-  double least = clearly * diagnosis.held_out_before;
+  double least = clearly_nearer * diagnosis.held_out_before;
   for (const Alternative& one : diagnosis.alternatives) {
     if (!(one.held_out_rmse < least)) continue;
     least = one.held_out_rmse;

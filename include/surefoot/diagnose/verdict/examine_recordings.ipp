@@ -1,7 +1,6 @@
 // Definitions of surefoot/diagnose/verdict/examine_recordings.hpp.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <utility>
@@ -88,22 +87,16 @@ SUREFOOT_ONCE bool is_named_again(const std::vector<LogFault>& repaired, const s
 }
 
 SUREFOOT_ONCE void withdraw_odd_recording(LogExamination& log) {
-  std::vector<LogFault> kept;
-  for (LogFault& fault : log.faults) {
-    if (fault.kind != name_of(LogFaultKind::odd)) kept.push_back(std::move(fault));
-  }
-  log.faults.swap(kept);
+  drop_items(log.faults, [](const LogFault& fault) { return fault.kind == name_of(LogFaultKind::odd); });
 }
 
 SUREFOOT_ONCE bool withdraw_faults(LogExamination& log, const LogExamination& again, bool can_begin_anew) {
   bool repaired = false;
-  std::vector<LogFault> kept;
-  for (LogFault& fault : log.faults) {
+  drop_items(log.faults, [&](const LogFault& fault) {
     const bool withdrawn = !is_named_again({fault}, again.faults) && (can_begin_anew || !fault.repaired);
     repaired = repaired || (withdrawn && fault.repaired);
-    if (!withdrawn) kept.push_back(std::move(fault));
-  }
-  log.faults.swap(kept);
+    return withdrawn;
+  });
   if (repaired) log.repaired = again.repaired;
   return repaired;
 }
