@@ -32,6 +32,23 @@ TEST_CASE("the noise of a sensor is seen through motion that is smooth") {
   CHECK(fast_noise(bind_simulator(toys::LeakyTank{}, {toys::tank_recording(0, 20)}), {}, 0) == 0);
 }
 
+TEST_CASE("noise and steps are seen in readings with rows between them that were not read") {
+  Recording recording = toys::blank_recording(toys::LeakyTank{}.info(), 12000, 0.004);
+  Rng rng(3);
+  const auto keep = [](Eigen::Index row) { return row % 5 == 0 && row % 35 != 0; };  // every fifth, and few are lost
+  for (Eigen::Index i = 0; i < recording.rows(); ++i) {
+    const double reading = 0.01 * rng.normal() + 0.5 * std::sin(std::numbers::pi * recording.time[i]);
+    recording.outputs(0, i) = keep(i) ? reading : std::nan("");
+  }
+  CHECK(fast_noise(bind_simulator(toys::LeakyTank{}, {recording}), {0}, 0) == doctest::Approx(0.01).epsilon(0.1));
+
+  constexpr double step = 0.2;
+  for (double& level : recording.outputs.reshaped()) level = step * std::round(level / step);
+  const BoundSimulator coarse = bind_simulator(toys::LeakyTank{}, {recording});
+  CHECK(resolution(coarse, {0}, 0) == doctest::Approx(step));
+  CHECK(rounding_error(coarse, {0}, 0) == doctest::Approx(step / std::sqrt(12.0)));
+}
+
 TEST_CASE("the resolution of a sensor is the least step between readings") {
   Recording recording = toys::blank_recording(toys::LeakyTank{}.info(), 100, 0.02);
   for (Eigen::Index i = 0; i < recording.rows(); ++i) {

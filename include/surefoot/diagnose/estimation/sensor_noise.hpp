@@ -9,8 +9,9 @@
 
 namespace surefoot::diagnosis {
 
-/// Standard deviation of noise that differs from row to row, from third differences of what was measured (they remove
-/// motion that is smooth over four rows); noise that is correlated from row to row is underestimated.
+/// Standard deviation of noise that differs from reading to reading, from third divided differences of readings (they
+/// remove motion that is smooth over four of them, whatever rows were not read in between); noise that is correlated
+/// from reading to reading is underestimated. 0 of less than a few readings.
 double fast_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings, Eigen::Index output);
 
 /// Least step between readings of one output that differ, in the recordings; 0 if none do.

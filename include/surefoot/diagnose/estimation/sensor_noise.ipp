@@ -15,20 +15,46 @@
 
 namespace surefoot::diagnosis {
 
+/// Readings of one output, without rows that were not read.
+struct Readings {
+  std::vector<double> rows, values;
+};
+
+SUREFOOT_ONCE Readings readings_of(const Recording& recording, Eigen::Index output) {
+  Readings read;
+  for (Eigen::Index i = 0; i < recording.outputs.cols(); ++i) {
+    if (!std::isfinite(recording.outputs(output, i))) continue;
+    read.rows.push_back(static_cast<double>(i));
+    read.values.push_back(recording.outputs(output, i));
+  }
+  return read;
+}
+
+/// Third divided difference of four readings in turn, by the root of the sum of its squared weights.
+SUREFOOT_ONCE double third_difference(const Readings& read, std::size_t first) {
+  double sum = 0, squares = 0;
+  for (std::size_t i = first; i < first + 4; ++i) {
+    double weight = 1;
+    for (std::size_t j = first; j < first + 4; ++j) {
+      if (j != i) weight /= read.rows[i] - read.rows[j];
+    }
+    sum += weight * read.values[i];
+    squares += weight * weight;
+  }
+  return sum / std::sqrt(squares);
+}
+
 SUREFOOT_ONCE double fast_noise(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
                                 Eigen::Index output) {
   std::vector<double> third;
   for (const std::size_t r : recordings) {
-    const Eigen::VectorXd y = surefoot::detail::row_of(bound.recordings[r].outputs, output);
-    for (Eigen::Index i = 0; i + 3 < y.size(); ++i) {
-      const double d = y[i + 3] - 3 * y[i + 2] + 3 * y[i + 1] - y[i];
-      if (std::isfinite(d)) third.push_back(std::abs(d));
-    }
+    const Readings read = readings_of(bound.recordings[r], output);
+    for (std::size_t i = 0; i + 3 < read.rows.size(); ++i) third.push_back(std::abs(third_difference(read, i)));
   }
   if (third.size() < 20) return 0;
   const auto middle = third.begin() + static_cast<std::ptrdiff_t>(third.size() / 2);
   std::nth_element(third.begin(), middle, third.end());
-  return *middle / 0.6745 / std::sqrt(20.0);
+  return *middle / 0.6745;
 }
 
 SUREFOOT_ONCE double resolution(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
@@ -36,8 +62,8 @@ SUREFOOT_ONCE double resolution(const BoundSimulator& bound, const std::vector<s
   constexpr double rounding = 1e-9;  // of a reading: no step of a sensor
   double least = std::numeric_limits<double>::infinity();
   for (const std::size_t r : recordings) {
-    const Eigen::VectorXd y = surefoot::detail::row_of(bound.recordings[r].outputs, output);
-    for (Eigen::Index i = 1; i < y.size(); ++i) {
+    const std::vector<double> y = readings_of(bound.recordings[r], output).values;
+    for (std::size_t i = 1; i < y.size(); ++i) {
       const double step = std::abs(y[i] - y[i - 1]);
       if (step > rounding * std::abs(y[i])) least = std::min(least, step);
     }
@@ -47,14 +73,14 @@ SUREFOOT_ONCE double resolution(const BoundSimulator& bound, const std::vector<s
 
 SUREFOOT_ONCE double rounding_error(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
                                     Eigen::Index output) {
-  constexpr double often = 0.2;  // of the rows: where less repeats, rounding looks like fast noise
-  double repeated = 0, rows = 0;
+  constexpr double often = 0.2;  // of the readings: where less repeats, rounding looks like fast noise
+  double repeated = 0, count = 0;
   for (const std::size_t r : recordings) {
-    const Eigen::MatrixXd& outputs = bound.recordings[r].outputs;
-    for (Eigen::Index i = 1; i < outputs.cols(); ++i) repeated += outputs(output, i) == outputs(output, i - 1) ? 1 : 0;
-    rows += static_cast<double>(outputs.cols());
+    const std::vector<double> y = readings_of(bound.recordings[r], output).values;
+    for (std::size_t i = 1; i < y.size(); ++i) repeated += y[i] == y[i - 1] ? 1 : 0;
+    count += static_cast<double>(y.size());
   }
-  if (!(repeated > often * rows)) return 0;
+  if (!(repeated > often * count)) return 0;
   return resolution(bound, recordings, output) / std::sqrt(12.0);  // evenly spread over a step
 }
 

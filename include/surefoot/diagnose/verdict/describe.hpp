@@ -39,8 +39,8 @@ std::string overstated_noise_sentence(const std::vector<ChannelMismatch>& output
 /// For held-out recordings that nothing was fitted without.
 std::string not_held_out_sentence();
 
-/// For a state that begins, in recordings, between these values and not where the model says.
-std::string freed_state_sentence(const StateInfo& state, double low, double high);
+/// For a state that recordings do not begin with as the model says: between which values that is off.
+std::string freed_state_sentence(const StateInfo& state, double least_off, double most_off);
 
 /// For an input of which the recordings say that it goes another way between rows than is said, or held if nothing is.
 std::string hold_sentence(const std::string& input, InputHold hold, InputHold said);

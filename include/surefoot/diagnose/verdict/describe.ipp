@@ -124,9 +124,9 @@ SUREFOOT_ONCE std::string overstated_noise_sentence(const std::vector<ChannelMis
          ": state what the sensor really has, or nothing; what was named may be smaller than that noise";
 }
 
-SUREFOOT_ONCE std::string freed_state_sentence(const StateInfo& state, double low, double high) {
-  return "recordings do not begin with " + state.name + " as the model says, but between " +
-         with_unit(low, state.unit) + " and " + with_unit(high, state.unit) +
+SUREFOOT_ONCE std::string freed_state_sentence(const StateInfo& state, double least_off, double most_off) {
+  return "recordings do not begin with " + state.name + " as the model says, but off by between " +
+         with_unit(least_off, state.unit) + " and " + with_unit(most_off, state.unit) +
          ": it is free in what follows; say so in the model (a model file by initial = \"free\", C++ by "
          "Recording::initial_scale)";
 }

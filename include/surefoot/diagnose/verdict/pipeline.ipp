@@ -314,10 +314,11 @@ SUREFOOT_ONCE void remark_on_freed_states(const EstimationSetup& setup, const Hy
   for (std::size_t i = 0; i < setup.freed.size(); ++i) {
     if (!setup.freed[i]) continue;
     const auto state = static_cast<Eigen::Index>(i);
-    double low = chosen.initial[setup.split.training.front()][state], high = low;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const std::size_t r : setup.split.training) {
-      low = std::min(low, chosen.initial[r][state]);
-      high = std::max(high, chosen.initial[r][state]);
+      const double off = chosen.initial[r][state] - setup.bound.recordings[r].initial[state];
+      low = std::min(low, off);
+      high = std::max(high, off);
     }
     diagnosis.remarks.push_back({"", freed_state_sentence(setup.bound.info.states[i], low, high)});
   }
