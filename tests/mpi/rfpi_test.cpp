@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -112,10 +113,20 @@ TEST_CASE("a limit by the clock ends the training in all processes together") {
   RfpiOptions options = tiny();
   options.max_iterations = 0;
   options.budget.counted_seconds = 1e6;
-  options.max_seconds = 0.5 + static_cast<double>(executor.rank());
-  const auto result = learn(options);
-  CHECK(result.stop == RfpiStop::wall_clock);
-  const auto costs = map(executor, executor.processes(), [&](std::size_t) { return result.cost.mean; });
+  const auto limited = [&](double seconds) {
+    options.max_seconds = seconds + static_cast<double>(executor.rank());
+    return learn(options);
+  };
+  std::optional<RfpiResult<Pendulum>> result;
+  for (double seconds = 0.5; !result; seconds *= 2) {
+    REQUIRE(seconds < 100);
+    try {
+      result = limited(seconds);
+    } catch (const SolveError&) {  // a busy machine has no policy yet
+    }
+  }
+  CHECK(result->stop == RfpiStop::wall_clock);
+  const auto costs = map(executor, executor.processes(), [&](std::size_t) { return result->cost.mean; });
   for (const double cost : costs) CHECK(cost == costs[0]);
 }
 
