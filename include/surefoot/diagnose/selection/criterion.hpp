@@ -145,10 +145,10 @@ bool is_like(const Effect& a, const Effect& b);
 /// place as some effect of it, along a coupling, or is like it. A constant has no form to be mended.
 bool may_mend_form(const Hypothesis& larger, const Hypothesis& smaller);
 
-/// Differences to a hypothesis, from one with no fewer effects, that mean nothing. What leaves only noise is of the
-/// right form: beside that, errors of form are as small as a diagnosis tolerates them. Not so from one with fewer, for
-/// a further effect may mend the form of another.
-Eigen::VectorXd negligible_beside(const ErrorSquares& errors, const SearchProblem& problem);
+/// Differences to a hypothesis that mean nothing. What leaves only noise is of the right form: beside that, errors of form
+/// are no larger than `tolerated`, a share of the noise's mean square; none from one with as many effects. Not so from
+/// one with fewer where a further effect may mend the form of another.
+Eigen::VectorXd negligible_beside(const ErrorSquares& errors, const SearchProblem& problem, double tolerated);
 
 /// Whether a structure leaves no more of any output than the noise, as far as that is known, and what a diagnosis
 /// tolerates: its effects are of the right form.

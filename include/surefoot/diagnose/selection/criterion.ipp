@@ -57,13 +57,14 @@ SUREFOOT_ONCE FitProblem screening_fit(const SearchProblem& problem, int iterati
   return quick;
 }
 
-SUREFOOT_ONCE Eigen::VectorXd negligible_beside(const ErrorSquares& errors, const SearchProblem& problem) {
+SUREFOOT_ONCE Eigen::VectorXd negligible_beside(const ErrorSquares& errors, const SearchProblem& problem,
+                                                double tolerated) {
   Eigen::VectorXd least = problem.least;
   const Eigen::VectorXd left = pooled(errors);
-  const double tolerated = problem.criteria.tolerated_form;
   for (Eigen::Index k = 0; k < std::min(least.size(), problem.noise.size()); ++k) {
     const double noise = problem.noise[k];
-    if (noise > 0 && left[k] <= (1 + tolerated) * noise) least[k] = std::min(least[k], tolerated * noise);
+    const bool only_noise = noise > 0 && left[k] <= (1 + problem.criteria.tolerated_form) * noise;
+    if (only_noise) least[k] = std::min(least[k], tolerated * noise);
   }
   return least;
 }
@@ -95,7 +96,8 @@ SUREFOOT_ONCE EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, cons
       log_prior(bound, fitted.hypothesis, problem.known, problem.candidates, problem.criteria) +
           log_occam_factor(bound, fitted.hypothesis, problem.fit, least_variance(problem), parallel)};
   result.errors.least = problem.least;
-  result.errors.least_of_as_many = negligible_beside(result.errors, problem);
+  result.errors.least_elsewhere = negligible_beside(result.errors, problem, problem.criteria.tolerated_form);
+  result.errors.least_of_as_many = negligible_beside(result.errors, problem, 0);
   for (const AttachedEffect& one : fitted.hypothesis.effects) {
     if (one.effect->starts_anywhere) result.log_prior -= cost_of_own_numbers(result.errors);
   }
@@ -169,9 +171,7 @@ SUREFOOT_ONCE double log_density(double n, double mean_square, double degrees) {
 }
 
 SUREFOOT_ONCE std::vector<double> log_densities(const ErrorSquares& errors, const ErrorSquares& reference,
-                                                const SelectionCriteria& criteria, bool fewer) {
-  const Eigen::VectorXd& least =
-      fewer || reference.least_of_as_many.size() == 0 ? reference.least : reference.least_of_as_many;
+                                                const SelectionCriteria& criteria, const Eigen::VectorXd& least) {
   const Eigen::VectorXd scale = pooled(reference);
   std::vector<double> result(static_cast<std::size_t>(errors.counts.rows()), 0.0);
   for (Eigen::Index r = 0; r < errors.counts.rows(); ++r) {
@@ -238,9 +238,11 @@ SUREFOOT_ONCE bool may_mend_form(const Hypothesis& larger, const Hypothesis& sma
 SUREFOOT_ONCE std::vector<double> log_densities_beside(const EvaluatedHypothesis& one,
                                                        const EvaluatedHypothesis& reference,
                                                        const SelectionCriteria& criteria) {
+  const ErrorSquares& errors = reference.errors;
   const bool fewer = one.hypothesis.effects.size() < reference.hypothesis.effects.size();
-  const bool of_form = fewer && may_mend_form(reference.hypothesis, one.hypothesis);
-  return log_densities(one.errors, reference.errors, criteria, of_form);
+  const Eigen::VectorXd* least = fewer ? &errors.least_elsewhere : &errors.least_of_as_many;
+  if (least->size() == 0 || (fewer && may_mend_form(reference.hypothesis, one.hypothesis))) least = &errors.least;
+  return log_densities(one.errors, errors, criteria, *least);
 }
 
 /// The one that leaves least, beside which all others are weighed.
@@ -277,8 +279,7 @@ SUREFOOT_ONCE double log_odds(const EvaluatedHypothesis& a, const EvaluatedHypot
 
 SUREFOOT_ONCE double log_odds_of_forms(EvaluatedHypothesis a, EvaluatedHypothesis b,
                                        const SelectionCriteria& criteria) {
-  a.errors.least = b.errors.least = {};
-  a.errors.least_of_as_many = b.errors.least_of_as_many = {};
+  for (ErrorSquares* one : {&a.errors, &b.errors}) one->least = one->least_elsewhere = one->least_of_as_many = {};
   return log_odds(a, b, criteria);
 }
 
