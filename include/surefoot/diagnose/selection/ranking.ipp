@@ -16,12 +16,26 @@
 
 namespace surefoot::diagnosis {
 
+/// Geometric mean of the errors of recordings: one that is far off, whatever the structure, does not hide the others.
+SUREFOOT_ONCE double typical_error(const ErrorSquares& errors) {
+  constexpr double smallest = 1e-300;  // mean square: exact
+  double logs = 0, recordings = 0;
+  for (Eigen::Index r = 0; r < errors.counts.rows(); ++r) {
+    const double cells = errors.counts.row(r).sum();
+    if (!(cells > 0)) continue;
+    logs += std::log(std::max(errors.mean_squares.row(r).dot(errors.counts.row(r)) / cells, smallest));
+    ++recordings;
+  }
+  return recordings > 0 ? std::exp(logs / (2 * recordings)) : 0;
+}
+
 SUREFOOT_ONCE const EvaluatedHypothesis& clearly_nearest(const Selection& selection) {
   const EvaluatedHypothesis* nearest = &selection.chosen;
-  double least = clearly_nearer * selection.chosen.errors.rms();
+  double least = clearly_nearer * typical_error(selection.chosen.errors);
   for (const EvaluatedHypothesis& one : selection.alternatives) {
-    if (!(one.errors.rms() < least)) continue;
-    least = one.errors.rms();
+    const double error = typical_error(one.errors);
+    if (!(error < least)) continue;
+    least = error;
     nearest = &one;
   }
   return *nearest;
