@@ -25,7 +25,11 @@ struct FoundModel {
   std::vector<InputHold> holds;  // of inputs, as in Integration
   std::vector<bool> freed;       // states that begin otherwise than the model says
   bool named = true;             // otherwise the effects only come nearest: too few recordings show them
+  double follow = 0;             // Integration::follow that the machine needs with them
 };
+
+/// The effects that were found, with their parameters, beside initial states as recordings have them.
+Hypothesis with_found(const BoundSimulator& bound, const FoundModel& found);
 
 /// The same by a model with the effects that were found: physics that was missing hides a clock that is some percent
 /// off, or one recording's sensor that sticks. It goes on when the time of the search has ended. Faults named before

@@ -51,6 +51,17 @@ SUREFOOT_ONCE LogExamination examine_recordings(const BindSimulator& bind, const
       [run] { return run.search_has_ended(); });
 }
 
+SUREFOOT_ONCE Hypothesis with_found(const BoundSimulator& bound, const FoundModel& found) {
+  Hypothesis hypothesis = nominal_hypothesis(bound);
+  hypothesis.parameters = found.hypothesis.parameters;
+  hypothesis.effects = found.hypothesis.effects;
+  for (std::size_t e = 0; e < hypothesis.effects.size(); ++e) {
+    hypothesis.values.push_back(
+        values_before_starts(*hypothesis.effects[e].effect, found.hypothesis.values[e], bound.recordings.size()));
+  }
+  return hypothesis;
+}
+
 SUREFOOT_ONCE LogExamination examine_with_effects(const BindSimulator& bind, const std::vector<Recording>& recordings,
                                                   const FoundModel& found, const RunContext& run,
                                                   const std::vector<LogFault>& named) {
@@ -58,23 +69,15 @@ SUREFOOT_ONCE LogExamination examine_with_effects(const BindSimulator& bind, con
     BoundSimulator bound = bind(std::move(logged));
     bound.sizes = found.sizes;
     bound.integration.inputs = found.holds;
+    bound.integration.follow = std::max(bound.integration.follow, found.follow);
     for (std::size_t i = 0; i < found.freed.size(); ++i) {
       if (found.freed[i]) set_initial_scale(bound, i, found.sizes.state[i]);
     }
     return bound;
   };
-  const auto model = [&](const BoundSimulator& bound) {
-    Hypothesis hypothesis = nominal_hypothesis(bound);
-    hypothesis.parameters = found.hypothesis.parameters;
-    hypothesis.effects = found.hypothesis.effects;
-    for (std::size_t e = 0; e < hypothesis.effects.size(); ++e) {
-      hypothesis.values.push_back(
-          values_before_starts(*hypothesis.effects[e].effect, found.hypothesis.values[e], bound.recordings.size()));
-    }
-    return hypothesis;
-  };
   return examine(
-      bind_as_found, recordings, model, run, [run] { return run.has_ended(); }, named);
+      bind_as_found, recordings, [&](const BoundSimulator& bound) { return with_found(bound, found); }, run,
+      [run] { return run.has_ended(); }, named);
 }
 
 SUREFOOT_ONCE bool is_named_again(const std::vector<LogFault>& repaired, const std::vector<LogFault>& named) {

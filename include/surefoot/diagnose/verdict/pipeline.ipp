@@ -17,6 +17,7 @@
 #include "surefoot/diagnose/estimation/calibrate.hpp"
 #include "surefoot/diagnose/estimation/choose_integration.hpp"
 #include "surefoot/diagnose/estimation/growing_horizon.hpp"
+#include "surefoot/diagnose/estimation/guided_fit.hpp"
 #include "surefoot/diagnose/estimation/instability.hpp"
 #include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
@@ -35,6 +36,7 @@
 #include "surefoot/diagnose/verdict/none_of_these.hpp"
 #include "surefoot/diagnose/verdict/pipeline.hpp"
 #include "surefoot/diagnose/verdict/prepare.hpp"
+#include "surefoot/diagnose/verdict/search_along_readings.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -324,13 +326,16 @@ SUREFOOT_ONCE void remark_on_freed_states(const EstimationSetup& setup, const Hy
   }
 }
 
-SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
-                                             const RunContext& run, Diagnosis& diagnosis) {
+/// From `begun` on, if that is not null.
+SUREFOOT_ONCE FoundModel diagnose_from(const BindSimulator& bind, std::vector<Recording> recordings,
+                                       const FoundModel* begun, const RunContext& run, Diagnosis& diagnosis) {
   recordings = cut_sensitive_recordings(bind, std::move(recordings), run, diagnosis.remarks);
   recordings = cut_few_recordings(bind, std::move(recordings), run);
   EstimationSetup setup = hold_out_recordings(bind, std::move(recordings), run);
   name_recordings(setup, diagnosis);
-  Searched found = search_effects(setup, run, diagnosis);
+  std::vector<Hypothesis> begin_with;
+  if (begun != nullptr) begin_with.push_back(with_found(setup.bound, *begun));
+  Searched found = search_effects(setup, run, diagnosis, begin_with);
   take_over_inputs(setup, found, run);
   revise_initial_states(setup, found, run, diagnosis);
   auto& [calibration, problem, candidates, selection] = found;
@@ -349,7 +354,42 @@ SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vec
   const bool open = diagnosis.verdict == Verdict::unexplained || diagnosis.verdict == Verdict::unfinished;
   const bool named = found_any || !open;
   const Hypothesis& best = named ? selection.chosen.hypothesis : clearly_nearest(selection).hypothesis;
-  return {best, setup.bound.sizes, setup.bound.integration.inputs, setup.freed, named};
+  return {best, setup.bound.sizes, setup.bound.integration.inputs, setup.freed, named, setup.bound.integration.follow};
+}
+
+/// Whether simulations are lost: what is left of whole recordings tells little of what is missing.
+SUREFOOT_ONCE bool is_lost(const Diagnosis& diagnosis) {
+  constexpr double far_off = 10;  // times what noise leaves
+  return diagnosis.verdict == Verdict::unexplained && diagnosis.noise_ratio > far_off;
+}
+
+/// Where whole recordings show nothing that explains them, what predictions over short horizons show is tried on them;
+/// with simulations that follow the readings, if that makes the machine unstable.
+SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
+                                             const RunContext& run, Diagnosis& diagnosis) {
+  const double started = run.seconds();
+  const std::vector<Remark> remarks = diagnosis.remarks;
+  FoundModel found = diagnose_from(bind, recordings, nullptr, run, diagnosis);
+  if (!is_lost(diagnosis) || !run.has_time_for_as_much_again(started)) return found;
+  EstimationSetup setup = hold_out_recordings(bind, recordings, run);
+  if (setup.bound.integration.follow > 0 || !can_be_guided(setup.bound, setup.problem)) return found;
+  const auto along = search_along_readings(std::move(setup), run);
+  if (!along) return found;
+  BindSimulator bind_to_follow = bind;
+  Diagnosis other;
+  other.remarks = remarks;
+  if (along->follow > 0) {
+    other.remarks.push_back({"", following_sentence(1 / along->follow, true)});
+    bind_to_follow = [&](std::vector<Recording> some) {
+      BoundSimulator result = bind(std::move(some));
+      result.integration.follow = along->follow;
+      return result;
+    };
+  }
+  FoundModel again = diagnose_from(bind_to_follow, recordings, &*along, run, other);
+  if (other.verdict != Verdict::missing_physics) return found;
+  diagnosis = std::move(other);
+  return again;
 }
 
 /// Suspected faults are true if the model with what is found without them names them beyond doubt in the recordings as

@@ -1,0 +1,35 @@
+// Definitions of surefoot/diagnose/verdict/search_along_readings.hpp.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "surefoot/core/compiled.hpp"
+#include "surefoot/diagnose/estimation/guided_fit.hpp"
+#include "surefoot/diagnose/estimation/instability.hpp"
+#include "surefoot/diagnose/verdict/search_along_readings.hpp"
+#include "surefoot/diagnose/verdict/search_stage.hpp"
+
+namespace surefoot::diagnosis {
+
+SUREFOOT_ONCE std::optional<FoundModel> search_along_readings(EstimationSetup setup, const RunContext& run) {
+  constexpr int most_effects = 2;  // beside others, predictions over so few rows show little of one
+  constexpr double share = 0.5;    // of the time that was taken until now
+  DiagnoseOptions options = run.options;
+  options.max_effects = std::min(options.max_effects, most_effects);
+  options.max_seconds = std::min(options.max_seconds, (1 + share) * run.seconds());
+  const RunContext part{options, run.parallel, run.seed, run.stop, run.began};
+  setup.bound.integration.follow = guided_follow(setup.bound, setup.problem, guided_horizons.front());
+  Diagnosis aside;
+  const Searched found = search_effects(setup, part, aside);
+  const Hypothesis& chosen = found.selection.chosen.hypothesis;
+  if (part.search_has_ended() || chosen.effects.size() == found.problem.known) return std::nullopt;
+  if (found.problem.structured(chosen, found.selection.fit)) return std::nullopt;
+  FoundModel result{chosen, setup.bound.sizes, found.selection.fit.integration.inputs, setup.freed};
+  setup.bound.integration.follow = 0;
+  result.follow = needed_follow(setup.bound, chosen, run.parallel);
+  return result;
+}
+
+}  // namespace surefoot::diagnosis
