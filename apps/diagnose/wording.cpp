@@ -42,9 +42,9 @@ std::string effects_text(const std::vector<std::pair<std::string, std::string>>&
 }
 
 std::string fault_text(const surefoot::LogFault& fault) {
-  if (fault.repaired) return fault.sentence + " (repaired for this diagnosis)";
-  const bool can_be_repaired = fault.kind != "odd_recording";
-  return fault.sentence + "; " + fault.cure + (can_be_repaired ? ", or run again with --repair" : "");
+  const bool left_out = fault.kind == "odd_recording";
+  if (fault.repaired) return fault.sentence + (left_out ? " (left out of this diagnosis)" : " (repaired for this diagnosis)");
+  return fault.sentence + "; " + fault.cure + (left_out ? ", as --repair does" : ", or run again with --repair");
 }
 
 std::string headline(surefoot::Verdict verdict) {

@@ -2,7 +2,13 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/diagnose/log_doctor/servo_log.hpp"
 
@@ -24,6 +30,45 @@ LogFault only_fault(const Log& log, const std::string& kind, const std::string& 
   CHECK_FALSE(examined.faults[0].cure.empty());
   CHECK(toys::examined(examined.repaired).faults.empty());
   return examined.faults[0];
+}
+
+/// A tank that drains by the root of its level: over steps of minutes it only follows its inflow.
+struct DrainedTank {
+  using State = surefoot::Vec<1>;
+  using Input = surefoot::Vec<1>;
+  using Output = surefoot::Vec<1>;
+
+  surefoot::SimulatorInfo info() const {
+    return {.name = "tank",
+            .states = {{"level", "m"}},
+            .inputs = {{"pump", "V"}},
+            .outputs = {{"level_m", "m"}},
+            .parameters = {{"gain", "m/(s V)", 0.0016, 0.0002, 0.01}, {"drain", "m^0.5/s", 0.013, 0.001, 0.1}}};
+  }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& p) const {
+    return State(p[0] * u[0] - p[1] * std::sqrt(std::max(x[0], 0.0)));
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return x; }
+};
+
+/// Recording number r of 400 rows, one a second, with an inflow in steps.
+Recording drained(int r) {
+  Recording recording;
+  recording.name = "rec_0" + std::to_string(r + 1) + ".csv";
+  recording.time.setLinSpaced(400, 0, 399);
+  recording.inputs.setZero(1, 400);
+  recording.outputs.setZero(1, 400);
+  recording.initial = Eigen::VectorXd::Constant(1, 0.2 + 0.03 * r);
+  recording.initial_scale = Eigen::VectorXd::Zero(1);
+  surefoot::Rng rng(11, static_cast<std::uint64_t>(r));
+  for (Eigen::Index row = 0; row < 400; ++row) {
+    recording.inputs(0, row) = row % 60 == 0 ? 1 + 4 * rng.uniform() : recording.inputs(0, row - 1);
+  }
+  surefoot::Augmented machine;
+  machine.parameters = {0.0019, 0.0105};
+  recording.outputs = simulate_augmented(DrainedTank{}, machine, recording).outputs;
+  for (double& level : recording.outputs.reshaped()) level += 0.002 * rng.normal();
+  return recording;
 }
 
 constexpr double degrees = 180 / std::numbers::pi;
@@ -155,7 +200,7 @@ TEST_SUITE("log_doctor") {
     only_fault(log, "dropped_samples", "rec_05.csv");
   }
 
-  TEST_CASE("a recording of another experiment is named, and stays as it is") {
+  TEST_CASE("a recording of another experiment is named, and left out if that may be") {
     Log log = toys::servo_log(toys::dry_friction());
     const Log other = toys::servo_log({}, 7);
     log[3].outputs = -0.6 * other[6].outputs.rowwise().reverse();
@@ -164,7 +209,31 @@ TEST_SUITE("log_doctor") {
     REQUIRE(examined.faults.size() == 1);
     CHECK(examined.faults[0].kind == "odd_recording");
     CHECK(examined.faults[0].recording == "rec_04.csv");
-    CHECK_FALSE(examined.faults[0].repaired);
+    CHECK(examined.faults[0].repaired);
+    CHECK(examined.repaired.size() + 1 == log.size());
+    for (const Recording& recording : examined.repaired) CHECK(recording.name != "rec_04.csv");
+
+    const surefoot::diagnosis::Parallel parallel = surefoot::diagnosis::serially();
+    surefoot::diagnosis::LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    inputs.may_leave_out = false;
+    const auto kept = surefoot::diagnosis::examine_log(inputs, log);
+    REQUIRE(kept.faults.size() == 1);
+    CHECK_FALSE(kept.faults[0].repaired);
+    CHECK(kept.repaired.size() == log.size());
+  }
+
+  TEST_CASE("a unit of time that leads the calibration astray is named beside one without that recording") {
+    Log log;
+    for (int r = 0; r < 6; ++r) log.push_back(drained(r));
+    log[4].time *= 1000;
+    const auto bind = [](Log some) { return surefoot::diagnosis::bind_simulator(DrainedTank{}, std::move(some)); };
+    const surefoot::diagnosis::Parallel parallel = surefoot::diagnosis::serially();
+    const auto examined = surefoot::diagnosis::examine_log(
+        {bind, [](const auto& bound) { return surefoot::diagnosis::nominal_hypothesis(bound); }, parallel}, log);
+    REQUIRE(examined.faults.size() == 1);
+    CHECK(examined.faults[0].kind == "time_unit");
+    CHECK(examined.faults[0].recording == "rec_05.csv");
+    CHECK(examined.repaired[4].time[399] == doctest::Approx(399));
   }
 
   TEST_CASE("two rows, one recording and sparse outputs are no faults") {
@@ -196,11 +265,12 @@ TEST_SUITE("log_doctor") {
     for (const LogFault& fault : cut_short.faults) CHECK(fault.kind == "sign_flipped");
   }
 
-  TEST_CASE("a caution names the first fault that was not repaired") {
+  TEST_CASE("a caution names the first fault that was not repaired, or was if all were") {
     using surefoot::diagnosis::caution;
     CHECK(caution({}).empty());
     LogFault fault{.kind = "clipped", .sentence = "a: is clipped", .cure = "mend it", .repaired = true};
-    CHECK(caution({fault}).empty());
+    CHECK(caution({fault}) == "Without a fault of the log (a: is clipped): ");
+    CHECK(caution({fault, fault}) == "Without faults of the log (a: is clipped, and 1 more): ");
     fault.repaired = false;
     CHECK(caution({fault}) == "Caution, the log has a fault: a: is clipped; mend it. ");
   }

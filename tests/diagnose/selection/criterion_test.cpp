@@ -80,12 +80,16 @@ TEST_CASE("a difference that may come of the form of effects counts as one error
 TEST_CASE("beside what leaves only noise, errors of form are as small as a diagnosis tolerates them") {
   SearchProblem problem;
   problem.least = Eigen::VectorXd::Constant(1, 9.0);
-  const auto negligible = [&](double mean_square) { return negligible_beside(errors_of({mean_square}), problem)[0]; };
+  const double tolerated = selection_criteria.tolerated_form;
+  const auto negligible = [&](double mean_square) {
+    return negligible_beside(errors_of({mean_square}), problem, tolerated)[0];
+  };
   CHECK(negligible(1) == 9);  // the noise is not known
   problem.noise = Eigen::VectorXd::Constant(1, 1.0);
-  CHECK(negligible(1) == selection_criteria.tolerated_form);
-  CHECK(negligible(1.3) == selection_criteria.tolerated_form);
+  CHECK(negligible(1) == tolerated);
+  CHECK(negligible(1.3) == tolerated);
   CHECK(negligible(2) == 9);  // nothing is of quite the right form
+  CHECK(negligible_beside(errors_of({1}), problem, 0)[0] == 0);
   problem.least.setConstant(0.1);
   CHECK(negligible(1) == 0.1);
 }
@@ -97,7 +101,8 @@ AttachedEffect attached(const Effect& effect, int at = 0, const std::string& pla
 TEST_CASE("a further effect may mend the form of another, and is no better for that; an effect in its place is") {
   EvaluatedHypothesis one = evaluated({3}), two = evaluated({1});
   two.errors.least = Eigen::VectorXd::Constant(1, 9.0);
-  two.errors.least_of_as_many = Eigen::VectorXd::Constant(1, 0.4);
+  two.errors.least_elsewhere = Eigen::VectorXd::Constant(1, 0.4);
+  two.errors.least_of_as_many = Eigen::VectorXd::Zero(1);
   one.hypothesis.effects = {attached(effects::coulomb_friction())};
   two.hypothesis.effects = {attached(effects::coulomb_friction()), attached(effects::viscous_friction())};
   const double against_fewer = log_odds(two, one, selection_criteria);
@@ -110,10 +115,22 @@ TEST_CASE("a further effect may mend the form of another, and is no better for t
 TEST_CASE("a further effect elsewhere that leaves only noise counts in full, however large the first one is") {
   EvaluatedHypothesis one = evaluated({3}), two = evaluated({1});
   two.errors.least = Eigen::VectorXd::Constant(1, 9.0);
-  two.errors.least_of_as_many = Eigen::VectorXd::Constant(1, 0.4);
+  two.errors.least_elsewhere = Eigen::VectorXd::Constant(1, 0.4);
   one.hypothesis.effects = {attached(effects::coulomb_friction())};
   two.hypothesis.effects = {attached(effects::coulomb_friction()), attached(effects::sensor_delay(), 0, "elsewhere")};
   CHECK(log_odds(two, one, selection_criteria) > 20);
+}
+
+TEST_CASE("of two with as many effects the one that leaves only noise is better by all that the other leaves") {
+  EvaluatedHypothesis better = evaluated({1}), other = evaluated({1.06});
+  better.errors.least = Eigen::VectorXd::Constant(1, 9.0);
+  better.errors.least_elsewhere = Eigen::VectorXd::Constant(1, 0.4);
+  better.hypothesis.effects = {attached(effects::coulomb_friction())};
+  other.hypothesis.effects = {attached(effects::viscous_friction())};
+  better.errors.least_of_as_many = better.errors.least_elsewhere;
+  const double tolerated = log_odds(better, other, selection_criteria);
+  better.errors.least_of_as_many = Eigen::VectorXd::Zero(1);
+  CHECK(log_odds(better, other, selection_criteria) > tolerated + 1);
 }
 
 TEST_CASE("what acts on the same, along a coupling, or is like another effect may mend its form") {

@@ -79,6 +79,10 @@ TEST_CASE("what was not named may come clearly nearest all the same") {
   CHECK(&clearly_nearest(selection) == &selection.chosen);
   selection.alternatives.push_back(made_up(bench, {"constant_rate"}, 0.5));
   CHECK(names_in(clearly_nearest(selection)) == "constant_rate");
+  selection.chosen.errors.mean_squares(0, 0) = 1000;  // a recording that none of them explains hides nothing
+  for (EvaluatedHypothesis& one : selection.alternatives) one.errors.mean_squares(0, 0) = 1000;
+  selection.alternatives.back().errors.mean_squares.bottomRows(5).setConstant(0.1);
+  CHECK(names_in(clearly_nearest(selection)) == "constant_rate");
 }
 
 TEST_CASE("a gain is the share of the error that goes, and its standard error that over recordings") {

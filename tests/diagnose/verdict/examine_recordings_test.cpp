@@ -112,6 +112,9 @@ TEST_CASE("that a recording is unlike the others is withdrawn where nothing conf
   withdraw_odd_recording(log);
   REQUIRE(log.faults.size() == 1);
   CHECK(log.faults[0].recording == "b");
+  log.faults = {{.kind = name_of(LogFaultKind::odd), .recording = "a", .repaired = true}};
+  withdraw_odd_recording(log);
+  CHECK(log.faults.size() == 1);  // it was left out
 }
 
 TEST_CASE("a fault that the model with what was found does not name again is withdrawn") {

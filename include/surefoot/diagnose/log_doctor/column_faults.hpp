@@ -62,8 +62,9 @@ bool is_odd(const LogFit& fit, std::size_t r, const Repairs& repairs);
 /// All that may be undone in columns: each repair alone, and all angles at once.
 std::vector<Repairs> repairs_to_try(const SimulatorInfo& info);
 
-/// The most likely fault of a single recording, which others do not have.
-std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs& inputs, const LogFit& fit);
+/// The most likely fault of a single recording, which others do not have; of that one alone, if it is said.
+std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs& inputs, const LogFit& fit,
+                                            std::optional<std::size_t> only = {});
 
 /// Share of its variance that is left of the output that fits worst, in the median recording.
 double worst_output_error(const LogFit& fit);

@@ -221,7 +221,8 @@ SUREFOOT_ONCE bool becomes_like_others(const LogDoctorInputs& inputs, const LogF
   return again.error[r] * again.error[r] <= fit.error[r] * worst_of_others(again.error, r);
 }
 
-SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs& inputs, const LogFit& fit) {
+SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs& inputs, const LogFit& fit,
+                                                          std::optional<std::size_t> only) {
   const LogDoctorCriteria& criteria = inputs.criteria;
   const std::size_t count = fit.bound.recordings.size();
   if (count < 2) return std::nullopt;
@@ -245,7 +246,7 @@ SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs&
   const double likeliest_of = std::log(static_cast<double>(columns.size()));
   std::optional<FoundFault> found, unlike;  // the others, as they are calibrated now
   RepairEffect best, best_unlike;
-  for (std::size_t r = 0; r < count; ++r) {
+  for (std::size_t r = only.value_or(0); r < (only ? *only + 1 : count); ++r) {
     const double others_worst = worst_of_others(fit.error, r);
     for (std::size_t t = 0; t < tried[r].size(); ++t) {
       const RepairEffect& effect = effects[r][t];

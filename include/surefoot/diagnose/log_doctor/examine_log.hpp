@@ -14,14 +14,14 @@ namespace surefoot::diagnosis {
 
 struct LogExamination {
   std::vector<LogFault> faults;
-  std::vector<Recording> repaired;  // all recordings, without what could be repaired
+  std::vector<Recording> repaired;  // recordings without what could be repaired, and without one unlike all others
   std::vector<LogFault> suspected = {};           // faults that physics that is missing might pass for, or hide
   std::vector<Recording> without_suspected = {};  // `repaired` without these too; empty if there are none
 };
 
 LogExamination examine_log(const LogDoctorInputs& inputs, const std::vector<Recording>& recordings);
 
-/// Faults as a caution before anything else that is said; empty if there is none.
+/// Faults before anything else that is said: a caution, or what was repaired; empty if there is none.
 std::string caution(const std::vector<LogFault>& faults);
 
 }  // namespace surefoot::diagnosis

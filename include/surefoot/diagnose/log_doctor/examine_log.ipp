@@ -12,6 +12,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/log_doctor/describe_fault.hpp"
 #include "surefoot/diagnose/log_doctor/examine_log.hpp"
+#include "surefoot/diagnose/log_doctor/odd_recording.hpp"
 #include "surefoot/diagnose/log_doctor/reading_faults.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
 
@@ -152,6 +153,25 @@ SUREFOOT_ONCE void examine_clocks(LogUnderExamination& log) {
   }
 }
 
+/// A recording unlike the others. Columns or a unit of time that are at fault may have led the calibration astray, so
+/// that they show only beside one without that recording. With nothing to repair it is left out.
+SUREFOOT_ONCE void examine_odd_recording(LogUnderExamination& log) {
+  auto odd = find_odd_recording(log.inputs, log.fit);
+  if (!odd || log.inputs.stopped()) return;
+  const LogFit others = predicted_without(log.inputs, log.fit, odd->recording);
+  if (const auto found = find_fault_of_one(log.inputs, others, odd->recording)) {
+    log.add(describe_fault(log.fit.bound, *found), true);
+    std::vector<Recording> recordings = log.fit.bound.recordings;
+    recordings[odd->recording] = repaired(log.fit.bound, recordings[odd->recording], found->repairs);
+    log.calibrate_again(std::move(recordings));
+    odd = find_odd_recording(log.inputs, log.fit);
+  }
+  if (!odd || log.inputs.stopped()) return;
+  log.add({describe_fault(log.fit.bound, *odd)}, log.inputs.may_leave_out);
+  std::vector<Recording>& recordings = log.fit.bound.recordings;
+  if (log.inputs.may_leave_out) recordings.erase(recordings.begin() + static_cast<std::ptrdiff_t>(odd->recording));
+}
+
 /// Whether a clock was named before: columns of its recording would bend to it.
 SUREFOOT_ONCE bool clock_was_named(const std::vector<LogFault>& named) {
   for (const LogFault& one : named) {
@@ -166,13 +186,13 @@ SUREFOOT_ONCE LogExamination examine_log(const LogDoctorInputs& inputs, const st
   examine_columns(log);
   examine_readings(log);
   examine_clocks(log);
-  const auto odd = find_odd_recording(inputs, log.fit);
-  if (odd && !inputs.stopped()) log.add({describe_fault(log.fit.bound, *odd)}, false);
+  examine_odd_recording(log);
   return {std::move(log.faults), std::move(log.fit.bound.recordings), std::move(log.suspected),
           std::move(log.without_suspected)};
 }
 
 SUREFOOT_ONCE std::string caution(const std::vector<LogFault>& faults) {
+  if (faults.empty()) return "";
   std::size_t left = 0;
   const LogFault* first = nullptr;
   for (const LogFault& fault : faults) {
@@ -180,9 +200,15 @@ SUREFOOT_ONCE std::string caution(const std::vector<LogFault>& faults) {
     if (first == nullptr) first = &fault;
     ++left;
   }
-  if (left == 0) return "";
-  const std::string more = left > 1 ? " (and " + std::to_string(left - 1) + " more)" : "";
-  return "Caution, the log has a fault: " + first->sentence + "; " + first->cure + more + ". ";
+  const auto more = [](std::size_t count, const std::string& before) {
+    return count > 1 ? before + std::to_string(count - 1) + " more" : "";
+  };
+  if (left == 0) {
+    const std::string several = faults.size() > 1 ? "Without faults" : "Without a fault";
+    return several + " of the log (" + faults.front().sentence + more(faults.size(), ", and ") + "): ";
+  }
+  return "Caution, the log has a fault: " + first->sentence + "; " + first->cure +
+         (left > 1 ? " (and " + more(left, "") + ")" : "") + ". ";
 }
 
 }  // namespace surefoot::diagnosis

@@ -21,6 +21,7 @@ struct LogDoctorInputs {
   LogDoctorCriteria criteria = {};
   std::function<bool()> stopped = [] { return false; };  // the time is over: what was found until then counts
   std::vector<LogFault> named = {};                      // before: asked for again, however well the model fits
+  bool may_leave_out = true;             // a recording unlike all others
 };
 
 /// Simulated minus measured, output x row; NaN: not measured, infinite: the simulation ran away.
@@ -63,6 +64,9 @@ struct Resimulation {
   ResidualRows residuals;
 };
 Resimulation resimulate(const LogFit& fit, std::size_t r, const Recording& version);
+
+/// `typical` and `error` of these residuals.
+void summarize_residuals(LogFit& fit);
 
 /// Calibrates from some parameters on (empty: the nominal ones, with a search if `points` > 0).
 LogFit fit_log(const LogDoctorInputs& inputs, std::vector<Recording> recordings, const Eigen::VectorXd& parameters = {},

@@ -162,6 +162,26 @@ SUREFOOT_ONCE std::vector<double> inverse_weights(const BoundSimulator& bound, c
   return scales;
 }
 
+SUREFOOT_ONCE void summarize_residuals(LogFit& fit) {
+  constexpr double smallest = 1e-9;  // of an output's size: a perfect fit
+  for (Eigen::Index k = 0; k < fit.size.size(); ++k) {
+    std::vector<double> squares;
+    for (const ResidualRows& residuals : fit.residuals) {
+      double sum = 0, n = 0;
+      for (Eigen::Index row = 0; row < residuals.cols(); ++row) {
+        if (std::isnan(residuals(k, row))) continue;
+        sum += residuals(k, row) * residuals(k, row);
+        ++n;
+      }
+      if (n > 0) squares.push_back(sum / n);
+    }
+    const double middle = std::sqrt(median_of(squares));
+    fit.typical[k] = std::isfinite(middle) ? std::max(middle, smallest * fit.size[k]) : fit.size[k];
+  }
+  fit.error.clear();
+  for (const ResidualRows& residuals : fit.residuals) fit.error.push_back(mean_square(residuals, fit.size));
+}
+
 SUREFOOT_ONCE void measure_what_is_left(LogFit& fit, const FitProblem& problem, const Parallel& parallel) {
   const std::size_t count = fit.bound.recordings.size();
   fit.runs.resize(count);
@@ -179,22 +199,7 @@ SUREFOOT_ONCE void measure_what_is_left(LogFit& fit, const FitProblem& problem, 
       fit.residuals[r] = std::move(one.residuals);
     }
   });
-  constexpr double smallest = 1e-9;  // of an output's size: a perfect fit
-  for (Eigen::Index k = 0; k < fit.size.size(); ++k) {
-    std::vector<double> squares;
-    for (const ResidualRows& residuals : fit.residuals) {
-      double sum = 0, n = 0;
-      for (Eigen::Index row = 0; row < residuals.cols(); ++row) {
-        if (std::isnan(residuals(k, row))) continue;
-        sum += residuals(k, row) * residuals(k, row);
-        ++n;
-      }
-      if (n > 0) squares.push_back(sum / n);
-    }
-    const double middle = std::sqrt(median_of(squares));
-    fit.typical[k] = std::isfinite(middle) ? std::max(middle, smallest * fit.size[k]) : fit.size[k];
-  }
-  for (const ResidualRows& residuals : fit.residuals) fit.error.push_back(mean_square(residuals, fit.size));
+  summarize_residuals(fit);
 }
 
 SUREFOOT_ONCE LogFit fit_log(const LogDoctorInputs& inputs, std::vector<Recording> recordings,

@@ -22,6 +22,9 @@ double error_by_chance(const std::vector<double>& errors, std::size_t r);
 
 std::optional<OddRecording> find_odd_recording(const LogDoctorInputs& inputs, const LogFit& logged);
 
+/// What a calibration without recording r leaves of all.
+LogFit predicted_without(const LogDoctorInputs& inputs, const LogFit& fit, std::size_t r);
+
 }  // namespace surefoot::diagnosis
 
 #ifndef SUREFOOT_COMPILED

@@ -107,7 +107,7 @@ SUREFOOT_ONCE void simulate_again(const LogDoctorInputs& inputs, LogFit& fit) {
     fit.runs[r] = std::move(one.run);
     fit.residuals[r] = std::move(one.residuals);
   });
-  for (std::size_t r = 0; r < fit.error.size(); ++r) fit.error[r] = mean_square(fit.residuals[r], fit.size);
+  summarize_residuals(fit);
 }
 
 /// A fit to single steps as it simulates whole recordings: noise of the steps hides what recordings differ in.
@@ -132,7 +132,6 @@ SUREFOOT_ONCE bool is_unrelated(const LogDoctorInputs& inputs, const LogFit& fit
   return left > criteria.poor_fit && alikeness(recording, own.residuals.front()) < 1 - criteria.poor_fit;
 }
 
-/// What a calibration without recording r predicts of all.
 SUREFOOT_ONCE LogFit predicted_without(const LogDoctorInputs& inputs, const LogFit& fit, std::size_t r) {
   std::vector<Recording> others = fit.bound.recordings;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(r));

@@ -42,7 +42,8 @@ LogExamination examine_with_effects(const BindSimulator& bind, const std::vector
 /// it.
 bool is_named_again(const std::vector<LogFault>& repaired, const std::vector<LogFault>& named);
 
-/// Withdraws that a recording is unlike the others, where there was no time to ask whether it is with what was found.
+/// Withdraws that a recording is unlike the others, where there was no time to ask whether it is with what was found;
+/// unless it was left out.
 void withdraw_odd_recording(LogExamination& log);
 
 /// Withdraws faults that the model with what was found does not name again: some physics, or an initial state, passed

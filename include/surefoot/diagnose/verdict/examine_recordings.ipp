@@ -38,7 +38,9 @@ SUREFOOT_ONCE LogExamination examine(const BindSimulator& bind, const std::vecto
                                      const std::function<Hypothesis(const BoundSimulator&)>& model,
                                      const RunContext& run, std::function<bool()> stopped,
                                      const std::vector<LogFault>& named = {}) {
-  LogExamination examined = examine_log({bind, model, run.parallel, {}, std::move(stopped), named}, recordings);
+  const bool may_leave_out = run.options.held_out.empty();  // which names recordings
+  LogExamination examined =
+      examine_log({bind, model, run.parallel, {}, std::move(stopped), named, may_leave_out}, recordings);
   if (run.options.repair) return examined;
   for (LogFault& fault : examined.faults) fault.repaired = false;
   return examined;
@@ -90,7 +92,7 @@ SUREFOOT_ONCE bool is_named_again(const std::vector<LogFault>& repaired, const s
 }
 
 SUREFOOT_ONCE void withdraw_odd_recording(LogExamination& log) {
-  drop_items(log.faults, [](const LogFault& fault) { return fault.kind == name_of(LogFaultKind::odd); });
+  drop_items(log.faults, [](const LogFault& fault) { return fault.kind == name_of(LogFaultKind::odd) && !fault.repaired; });
 }
 
 SUREFOOT_ONCE bool withdraw_faults(LogExamination& log, const LogExamination& again, bool can_begin_anew) {
