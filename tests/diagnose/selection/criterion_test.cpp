@@ -50,8 +50,8 @@ EvaluatedHypothesis evaluated(const std::vector<double>& mean_squares, double lo
 double behind(double mean_square, double cells, double memory, double least) {
   ErrorSquares reference = errors_of({1}, cells, memory);
   reference.least = Eigen::VectorXd::Constant(1, least);
-  return log_densities(reference, reference, selection_criteria)[0] -
-         log_densities(errors_of({mean_square}, cells, memory), reference, selection_criteria)[0];
+  return log_densities(reference, reference, selection_criteria, reference.least)[0] -
+         log_densities(errors_of({mean_square}, cells, memory), reference, selection_criteria, reference.least)[0];
 }
 
 TEST_CASE("the larger the errors, the less probable they are, and the more so the more of them there are") {
@@ -159,7 +159,7 @@ TEST_CASE("what acts on the same, along a coupling, or is like another effect ma
 TEST_CASE("the scale of a recording is its own in part: errors that differ from one to the next are no worse for it") {
   const ErrorSquares even = errors_of({1, 1}), uneven = errors_of({0.5, 1.5});
   const auto total = [&](const ErrorSquares& errors) {
-    const auto of = log_densities(errors, even, selection_criteria);
+    const auto of = log_densities(errors, even, selection_criteria, even.least);
     return std::accumulate(of.begin(), of.end(), 0.0);
   };
   CHECK(total(uneven) > total(even));  // with one scale for all only the mean over all would count
@@ -168,8 +168,8 @@ TEST_CASE("the scale of a recording is its own in part: errors that differ from 
 TEST_CASE("each recording has its own density, and what was not measured has none") {
   ErrorSquares reference = errors_of({1, 1, 1}), errors = errors_of({1, 4, 9});
   reference.counts(2, 0) = errors.counts(2, 0) = 0;
-  const auto densities = log_densities(errors, reference, selection_criteria),
-             best = log_densities(reference, reference, selection_criteria);
+  const auto densities = log_densities(errors, reference, selection_criteria, reference.least),
+             best = log_densities(reference, reference, selection_criteria, reference.least);
   REQUIRE(densities.size() == 3);
   CHECK(densities[0] == best[0]);
   CHECK(densities[1] < best[1]);
@@ -179,8 +179,8 @@ TEST_CASE("each recording has its own density, and what was not measured has non
 TEST_CASE("errors far below those of the integration are as good as each other") {
   const double tiny = 1e-6 * selection_criteria.least_error * selection_criteria.least_error;
   const ErrorSquares reference = errors_of({tiny});
-  const double nine_times = log_densities(reference, reference, selection_criteria)[0] -
-                            log_densities(errors_of({9 * tiny}), reference, selection_criteria)[0];
+  const double nine_times = log_densities(reference, reference, selection_criteria, reference.least)[0] -
+                            log_densities(errors_of({9 * tiny}), reference, selection_criteria, reference.least)[0];
   CHECK(nine_times < 0.01);
 }
 

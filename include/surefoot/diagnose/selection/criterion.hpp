@@ -178,7 +178,7 @@ double log_prior(const BoundSimulator& bound, const Hypothesis& hypothesis, std:
 /// form, which last for all of a recording: they count as one error. `fewer`: the errors are of fewer effects than the
 /// reference.
 std::vector<double> log_densities(const ErrorSquares& errors, const ErrorSquares& reference,
-                                  const SelectionCriteria& criteria, bool fewer = true);
+                                  const SelectionCriteria& criteria, const Eigen::VectorXd& least);
 
 /// The one with the largest sum of log densities and log prior, in units that make all comparable: a good reference.
 std::size_t best_of(const std::vector<EvaluatedHypothesis>& evaluated, const SelectionCriteria& criteria);

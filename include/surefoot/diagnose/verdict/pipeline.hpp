@@ -25,9 +25,10 @@ std::vector<Recording> cut_few_recordings(const BindSimulator& bind, std::vector
                                           const RunContext& run);
 
 /// Recordings in which differences smaller than the noise decide what comes later are cut there, and remarked on,
-/// unless those to hold out are named.
+/// unless those to hold out are named. By the model with what was found, if that is not null.
 std::vector<Recording> cut_sensitive_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
-                                                const RunContext& run, std::vector<Remark>& remarks);
+                                                const RunContext& run, std::vector<Remark>& remarks,
+                                                const FoundModel* found = nullptr);
 
 /// Holds recordings out, or each in turn.
 EstimationSetup hold_out_recordings(const BindSimulator& bind, std::vector<Recording> recordings,

@@ -26,6 +26,7 @@
 #include "surefoot/diagnose/log_doctor/reading_faults.hpp"
 #include "surefoot/diagnose/residual_tests/noise.hpp"
 #include "surefoot/diagnose/screening.hpp"
+#include "surefoot/diagnose/selection/ranking.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
 #include "surefoot/diagnose/text.hpp"
 #include "surefoot/diagnose/verdict/describe.hpp"
@@ -118,10 +119,11 @@ SUREFOOT_ONCE std::vector<Recording> cut_where_sensitive(const BoundSimulator& w
 
 SUREFOOT_ONCE std::vector<Recording> cut_sensitive_recordings(const BindSimulator& bind,
                                                               std::vector<Recording> recordings, const RunContext& run,
-                                                              std::vector<Remark>& remarks) {
+                                                              std::vector<Remark>& remarks, const FoundModel* found) {
   const BoundSimulator whole = bind(std::move(recordings));
   const bool follows = whole.integration.follow > 0 || whole.info.kind == SimulatorKind::map;
   if (follows || !run.options.held_out.empty()) return whole.recordings;
+  if (found != nullptr) return cut_where_sensitive(whole, with_found(whole, *found), remarks);
   Hypothesis hypothesis = nominal_with_known(whole, run.options);
   std::vector<Remark> first;
   std::vector<Recording> cut = cut_where_sensitive(whole, hypothesis, first);
@@ -329,7 +331,7 @@ SUREFOOT_ONCE void remark_on_freed_states(const EstimationSetup& setup, const Hy
 /// From `begun` on, if that is not null.
 SUREFOOT_ONCE FoundModel diagnose_from(const BindSimulator& bind, std::vector<Recording> recordings,
                                        const FoundModel* begun, const RunContext& run, Diagnosis& diagnosis) {
-  recordings = cut_sensitive_recordings(bind, std::move(recordings), run, diagnosis.remarks);
+  recordings = cut_sensitive_recordings(bind, std::move(recordings), run, diagnosis.remarks, begun);
   recordings = cut_few_recordings(bind, std::move(recordings), run);
   EstimationSetup setup = hold_out_recordings(bind, std::move(recordings), run);
   name_recordings(setup, diagnosis);
@@ -387,7 +389,8 @@ SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vec
     };
   }
   FoundModel again = diagnose_from(bind_to_follow, recordings, &*along, run, other);
-  if (other.verdict != Verdict::missing_physics) return found;
+  const bool nearer = along->follow == 0 && other.noise_ratio < clearly_nearer * diagnosis.noise_ratio;
+  if (other.verdict != Verdict::missing_physics && !nearer) return found;
   diagnosis = std::move(other);
   return again;
 }
@@ -416,6 +419,17 @@ SUREFOOT_ONCE std::optional<Diagnosis> diagnose_without_suspected(const BindSimu
   return diagnosis;
 }
 
+/// Whether recordings are sensitive with what was found, so that a simulation may go another way, and parts of them show
+/// no fault.
+SUREFOOT_ONCE bool parts_have_no_fault(const BindSimulator& bind, const std::vector<Recording>& recordings,
+                                       const FoundModel& found, const RunContext& run) {
+  std::vector<Remark> cuts;
+  const std::vector<Recording> parts = cut_sensitive_recordings(bind, recordings, run, cuts, &found);
+  if (cuts.empty() || found.follow > 0) return false;
+  const LogExamination of_parts = examine_with_effects(bind, parts, found, run);
+  return of_parts.faults.empty() && !run.has_ended();
+}
+
 /// Stages after the log was examined. What was found shows more faults: with these repaired all begins anew, if there
 /// is time for as much again.
 SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, const std::vector<Recording>& logged,
@@ -438,6 +452,7 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
     LogExamination more;
     if (found_any && !begins_anew && !run.has_ended()) {
       more = examine_with_effects(bind, log.repaired, found, run);
+      if (!more.faults.empty() && parts_have_no_fault(bind, log.repaired, found, run)) more = {};
     }
     const bool found_late = run.options.repair && !more.faults.empty();
     begins_anew = found_late && run.has_time_for_as_much_again(started);

@@ -15,10 +15,9 @@ namespace surefoot::diagnosis {
 
 SUREFOOT_ONCE std::optional<FoundModel> search_along_readings(EstimationSetup setup, const RunContext& run) {
   constexpr int most_effects = 2;  // beside others, predictions over so few rows show little of one
-  constexpr double share = 0.5;    // of the time that was taken until now
   DiagnoseOptions options = run.options;
   options.max_effects = std::min(options.max_effects, most_effects);
-  options.max_seconds = std::min(options.max_seconds, (1 + share) * run.seconds());
+  options.max_seconds = std::min(options.max_seconds, 2 * run.seconds() / search_share);
   const RunContext part{options, run.parallel, run.seed, run.stop, run.began};
   setup.bound.integration.follow = guided_follow(setup.bound, setup.problem, guided_horizons.front());
   Diagnosis aside;
