@@ -346,7 +346,13 @@ SUREFOOT_ONCE FoundModel diagnose_from(const BindSimulator& bind, std::vector<Re
   setup.problem.stopped = [run] { return run.has_ended(); };
   setup.bound.integration = setup.problem.integration;
   const bool found_any = selection.chosen.hypothesis.effects.size() > problem.known;
-  if (found_any && !diagnosis.complete) finish_fit(setup, selection.chosen.hypothesis, run);
+  if (found_any && !diagnosis.complete) {
+    finish_fit(setup, selection.chosen.hypothesis, run);
+    selection.chosen.errors.mean_squares = error_squares(setup.bound, selection.chosen.hypothesis,
+                                                         selection.fit.recordings, setup.bound.integration,
+                                                         problem.scale, run.parallel)
+                                               .mean_squares;
+  }
   refit_with_finer_steps(setup, selection, run);
   remove_outliers_from(setup, selection.chosen.hypothesis, run, diagnosis);
   remark_on_freed_states(setup, selection.chosen.hypothesis, diagnosis);
