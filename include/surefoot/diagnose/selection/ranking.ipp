@@ -21,9 +21,13 @@ SUREFOOT_ONCE double typical_error(const ErrorSquares& errors) {
   constexpr double smallest = 1e-300;  // mean square: exact
   double logs = 0, recordings = 0;
   for (Eigen::Index r = 0; r < errors.counts.rows(); ++r) {
-    const double cells = errors.counts.row(r).sum();
+    double squares = 0, cells = 0;
+    for (Eigen::Index k = 0; k < errors.counts.cols(); ++k) {
+      squares += errors.mean_squares(r, k) * errors.counts(r, k);
+      cells += errors.counts(r, k);
+    }
     if (!(cells > 0)) continue;
-    logs += std::log(std::max(errors.mean_squares.row(r).dot(errors.counts.row(r)) / cells, smallest));
+    logs += std::log(std::max(squares / cells, smallest));
     ++recordings;
   }
   return recordings > 0 ? std::exp(logs / (2 * recordings)) : 0;

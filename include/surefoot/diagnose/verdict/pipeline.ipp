@@ -365,6 +365,15 @@ SUREFOOT_ONCE FoundModel diagnose_from(const BindSimulator& bind, std::vector<Re
   return {best, setup.bound.sizes, setup.bound.integration.inputs, setup.freed, named, setup.bound.integration.follow};
 }
 
+SUREFOOT_ONCE BindSimulator with_integration(const BindSimulator& bind, const Integration& needed) {
+  return [bind, needed](std::vector<Recording> some) {
+    BoundSimulator result = bind(std::move(some));
+    result.integration.step = needed.step;
+    result.integration.follow = needed.follow;
+    return result;
+  };
+}
+
 /// Whether simulations are lost: what is left of whole recordings tells little of what is missing.
 SUREFOOT_ONCE bool is_lost(const Diagnosis& diagnosis) {
   constexpr double far_off = 10;  // times what noise leaves
@@ -381,20 +390,14 @@ SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vec
   if (!is_lost(diagnosis) || !run.has_time_for_as_much_again(started)) return found;
   EstimationSetup setup = hold_out_recordings(bind, recordings, run);
   if (setup.bound.integration.follow > 0 || !can_be_guided(setup.bound, setup.problem)) return found;
-  const auto along = search_along_readings(std::move(setup), run);
+  const auto along = search_along_readings(setup, run);
   if (!along) return found;
-  BindSimulator bind_to_follow = bind;
   Diagnosis other;
   other.remarks = remarks;
-  if (along->follow > 0) {
-    other.remarks.push_back({"", following_sentence(1 / along->follow, true)});
-    bind_to_follow = [&](std::vector<Recording> some) {
-      BoundSimulator result = bind(std::move(some));
-      result.integration.follow = along->follow;
-      return result;
-    };
-  }
-  FoundModel again = diagnose_from(bind_to_follow, recordings, &*along, run, other);
+  if (along->follow > 0) other.remarks.push_back({"", following_sentence(1 / along->follow, true)});
+  Integration needed = setup.bound.integration;
+  needed.follow = along->follow;
+  FoundModel again = diagnose_from(with_integration(bind, needed), recordings, &*along, run, other);
   const bool nearer = along->follow == 0 && other.noise_ratio < clearly_nearer * diagnosis.noise_ratio;
   if (other.verdict != Verdict::missing_physics && !nearer) return found;
   diagnosis = std::move(other);
@@ -517,15 +520,6 @@ SUREFOOT_ONCE Integration needed_integration(const BindSimulator& bind, const st
   if (follow > 0) remarks.push_back({"", following_sentence(1 / follow, moves_as_measured(bound, nominal))});
   bound.integration.follow = follow;
   return bound.integration;
-}
-
-SUREFOOT_ONCE BindSimulator with_integration(const BindSimulator& bind, const Integration& needed) {
-  return [bind, needed](std::vector<Recording> some) {
-    BoundSimulator result = bind(std::move(some));
-    result.integration.step = needed.step;
-    result.integration.follow = needed.follow;
-    return result;
-  };
 }
 
 SUREFOOT_ONCE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorInfo& info,

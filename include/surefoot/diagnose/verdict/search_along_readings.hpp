@@ -13,7 +13,7 @@ namespace surefoot::diagnosis {
 /// One effect or two that explain predictions over the shortest of the horizons of guided fits; none if no such leave
 /// only noise. Its Integration::follow is what the machine needs with them: 0 unless they make it unstable. Takes at
 /// most as long as the diagnosis took until now.
-std::optional<FoundModel> search_along_readings(EstimationSetup setup, const RunContext& run);
+std::optional<FoundModel> search_along_readings(EstimationSetup& setup, const RunContext& run);
 
 }  // namespace surefoot::diagnosis
 

@@ -13,7 +13,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_ONCE std::optional<FoundModel> search_along_readings(EstimationSetup setup, const RunContext& run) {
+SUREFOOT_ONCE std::optional<FoundModel> search_along_readings(EstimationSetup& setup, const RunContext& run) {
   constexpr int most_effects = 2;  // beside others, predictions over so few rows show little of one
   DiagnoseOptions options = run.options;
   options.max_effects = std::min(options.max_effects, most_effects);
