@@ -270,7 +270,7 @@ TEST_SUITE("log_doctor") {
     CHECK(caution({}).empty());
     LogFault fault{.kind = "clipped", .sentence = "a: is clipped", .cure = "mend it", .repaired = true};
     CHECK(caution({fault}) == "Without a fault of the log (a: is clipped): ");
-    CHECK(caution({fault, fault}) == "Without faults of the log (a: is clipped, and 1 more): ");
+    CHECK(caution({fault, fault}) == "Without a fault of the log (a: is clipped, and others): ");
     fault.repaired = false;
     CHECK(caution({fault}) == "Caution, the log has a fault: a: is clipped; mend it. ");
   }

@@ -50,8 +50,8 @@ EvaluatedHypothesis evaluated(const std::vector<double>& mean_squares, double lo
 double behind(double mean_square, double cells, double memory, double least) {
   ErrorSquares reference = errors_of({1}, cells, memory);
   reference.least = Eigen::VectorXd::Constant(1, least);
-  return log_densities(reference, reference, selection_criteria, reference.least)[0] -
-         log_densities(errors_of({mean_square}, cells, memory), reference, selection_criteria, reference.least)[0];
+  return log_densities(reference, reference, selection_criteria)[0] -
+         log_densities(errors_of({mean_square}, cells, memory), reference, selection_criteria)[0];
 }
 
 TEST_CASE("the larger the errors, the less probable they are, and the more so the more of them there are") {
@@ -81,15 +81,12 @@ TEST_CASE("beside what leaves only noise, errors of form are as small as a diagn
   SearchProblem problem;
   problem.least = Eigen::VectorXd::Constant(1, 9.0);
   const double tolerated = selection_criteria.tolerated_form;
-  const auto negligible = [&](double mean_square) {
-    return negligible_beside(errors_of({mean_square}), problem, tolerated)[0];
-  };
+  const auto negligible = [&](double mean_square) { return negligible_beside(errors_of({mean_square}), problem)[0]; };
   CHECK(negligible(1) == 9);  // the noise is not known
   problem.noise = Eigen::VectorXd::Constant(1, 1.0);
   CHECK(negligible(1) == tolerated);
   CHECK(negligible(1.3) == tolerated);
   CHECK(negligible(2) == 9);  // nothing is of quite the right form
-  CHECK(negligible_beside(errors_of({1}), problem, 0)[0] == 0);
   problem.least.setConstant(0.1);
   CHECK(negligible(1) == 0.1);
 }
@@ -102,7 +99,6 @@ TEST_CASE("a further effect may mend the form of another, and is no better for t
   EvaluatedHypothesis one = evaluated({3}), two = evaluated({1});
   two.errors.least = Eigen::VectorXd::Constant(1, 9.0);
   two.errors.least_elsewhere = Eigen::VectorXd::Constant(1, 0.4);
-  two.errors.least_of_as_many = Eigen::VectorXd::Zero(1);
   one.hypothesis.effects = {attached(effects::coulomb_friction())};
   two.hypothesis.effects = {attached(effects::coulomb_friction()), attached(effects::viscous_friction())};
   const double against_fewer = log_odds(two, one, selection_criteria);
@@ -127,10 +123,9 @@ TEST_CASE("of two with as many effects the one that leaves only noise is better 
   better.errors.least_elsewhere = Eigen::VectorXd::Constant(1, 0.4);
   better.hypothesis.effects = {attached(effects::coulomb_friction())};
   other.hypothesis.effects = {attached(effects::viscous_friction())};
-  better.errors.least_of_as_many = better.errors.least_elsewhere;
-  const double tolerated = log_odds(better, other, selection_criteria);
-  better.errors.least_of_as_many = Eigen::VectorXd::Zero(1);
-  CHECK(log_odds(better, other, selection_criteria) > tolerated + 1);
+  const double in_full = log_odds(better, other, selection_criteria);
+  better.errors.least_elsewhere = better.errors.least;  // not known to be noise alone
+  CHECK(in_full > log_odds(better, other, selection_criteria) + 1);
 }
 
 TEST_CASE("what acts on the same, along a coupling, or is like another effect may mend its form") {
@@ -159,7 +154,7 @@ TEST_CASE("what acts on the same, along a coupling, or is like another effect ma
 TEST_CASE("the scale of a recording is its own in part: errors that differ from one to the next are no worse for it") {
   const ErrorSquares even = errors_of({1, 1}), uneven = errors_of({0.5, 1.5});
   const auto total = [&](const ErrorSquares& errors) {
-    const auto of = log_densities(errors, even, selection_criteria, even.least);
+    const auto of = log_densities(errors, even, selection_criteria);
     return std::accumulate(of.begin(), of.end(), 0.0);
   };
   CHECK(total(uneven) > total(even));  // with one scale for all only the mean over all would count
@@ -168,8 +163,8 @@ TEST_CASE("the scale of a recording is its own in part: errors that differ from 
 TEST_CASE("each recording has its own density, and what was not measured has none") {
   ErrorSquares reference = errors_of({1, 1, 1}), errors = errors_of({1, 4, 9});
   reference.counts(2, 0) = errors.counts(2, 0) = 0;
-  const auto densities = log_densities(errors, reference, selection_criteria, reference.least),
-             best = log_densities(reference, reference, selection_criteria, reference.least);
+  const auto densities = log_densities(errors, reference, selection_criteria),
+             best = log_densities(reference, reference, selection_criteria);
   REQUIRE(densities.size() == 3);
   CHECK(densities[0] == best[0]);
   CHECK(densities[1] < best[1]);
@@ -179,8 +174,8 @@ TEST_CASE("each recording has its own density, and what was not measured has non
 TEST_CASE("errors far below those of the integration are as good as each other") {
   const double tiny = 1e-6 * selection_criteria.least_error * selection_criteria.least_error;
   const ErrorSquares reference = errors_of({tiny});
-  const double nine_times = log_densities(reference, reference, selection_criteria, reference.least)[0] -
-                            log_densities(errors_of({9 * tiny}), reference, selection_criteria, reference.least)[0];
+  const double nine_times = log_densities(reference, reference, selection_criteria)[0] -
+                            log_densities(errors_of({9 * tiny}), reference, selection_criteria)[0];
   CHECK(nine_times < 0.01);
 }
 

@@ -21,8 +21,7 @@ struct ErrorSquares {
   Eigen::MatrixXd counts;        // of measured cells
   Eigen::VectorXd memory;        // by output: integrated autocorrelation time of the errors [rows], at least 1
   Eigen::VectorXd least = {};    // by output: differences of the mean square that mean nothing; empty: 0
-  Eigen::VectorXd least_elsewhere = {};   // the same to one without effects that mend no form; empty: as `least`
-  Eigen::VectorXd least_of_as_many = {};  // the same to one with no fewer effects; empty: as `least`
+  Eigen::VectorXd least_elsewhere = {};  // the same where no form is mended: less beside noise alone; empty: as `least`
 
   bool empty() const { return mean_squares.size() == 0; }
   /// Root of the mean over all cells.

@@ -15,30 +15,15 @@
 
 namespace surefoot::diagnosis {
 
-/// Readings of one output, without rows that were not read.
-struct Readings {
-  std::vector<double> rows, values;
-};
-
-SUREFOOT_ONCE Readings readings_of(const Recording& recording, Eigen::Index output) {
-  Readings read;
-  for (Eigen::Index i = 0; i < recording.outputs.cols(); ++i) {
-    if (!std::isfinite(recording.outputs(output, i))) continue;
-    read.rows.push_back(static_cast<double>(i));
-    read.values.push_back(recording.outputs(output, i));
-  }
-  return read;
-}
-
 /// Third divided difference of four readings in turn, by the root of the sum of its squared weights.
-SUREFOOT_ONCE double third_difference(const Readings& read, std::size_t first) {
+SUREFOOT_ONCE double third_difference(const double (&rows)[4], const double (&values)[4]) {
   double sum = 0, squares = 0;
-  for (std::size_t i = first; i < first + 4; ++i) {
+  for (int i = 0; i < 4; ++i) {
     double weight = 1;
-    for (std::size_t j = first; j < first + 4; ++j) {
-      if (j != i) weight /= read.rows[i] - read.rows[j];
+    for (int j = 0; j < 4; ++j) {
+      if (j != i) weight /= rows[i] - rows[j];
     }
-    sum += weight * read.values[i];
+    sum += weight * values[i];
     squares += weight * weight;
   }
   return sum / std::sqrt(squares);
@@ -48,8 +33,19 @@ SUREFOOT_ONCE double fast_noise(const BoundSimulator& bound, const std::vector<s
                                 Eigen::Index output) {
   std::vector<double> third;
   for (const std::size_t r : recordings) {
-    const Readings read = readings_of(bound.recordings[r], output);
-    for (std::size_t i = 0; i + 3 < read.rows.size(); ++i) third.push_back(std::abs(third_difference(read, i)));
+    const Eigen::MatrixXd& outputs = bound.recordings[r].outputs;
+    double rows[4] = {}, values[4] = {};  // of the last readings
+    int count = 0;
+    for (Eigen::Index row = 0; row < outputs.cols(); ++row) {
+      if (!std::isfinite(outputs(output, row))) continue;
+      for (int i = 0; i < 3; ++i) {
+        rows[i] = rows[i + 1];
+        values[i] = values[i + 1];
+      }
+      rows[3] = static_cast<double>(row);
+      values[3] = outputs(output, row);
+      if (++count >= 4) third.push_back(std::abs(third_difference(rows, values)));
+    }
   }
   if (third.size() < 20) return 0;
   const auto middle = third.begin() + static_cast<std::ptrdiff_t>(third.size() / 2);
@@ -57,30 +53,43 @@ SUREFOOT_ONCE double fast_noise(const BoundSimulator& bound, const std::vector<s
   return *middle / 0.6745;
 }
 
-SUREFOOT_ONCE double resolution(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
-                                Eigen::Index output) {
+/// Steps between readings of one output in turn.
+struct Steps {
+  double count = 0, repeated = 0;                          // readings, and those equal to the one before
+  double least = std::numeric_limits<double>::infinity();  // of those that differ
+};
+
+SUREFOOT_ONCE Steps steps_of(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                             Eigen::Index output) {
   constexpr double rounding = 1e-9;  // of a reading: no step of a sensor
-  double least = std::numeric_limits<double>::infinity();
+  Steps steps;
   for (const std::size_t r : recordings) {
-    const std::vector<double> y = readings_of(bound.recordings[r], output).values;
-    for (std::size_t i = 1; i < y.size(); ++i) {
-      const double step = std::abs(y[i] - y[i - 1]);
-      if (step > rounding * std::abs(y[i])) least = std::min(least, step);
+    const Eigen::MatrixXd& outputs = bound.recordings[r].outputs;
+    double before = std::numeric_limits<double>::quiet_NaN();
+    for (Eigen::Index row = 0; row < outputs.cols(); ++row) {
+      const double reading = outputs(output, row);
+      if (!std::isfinite(reading)) continue;
+      ++steps.count;
+      const double step = std::abs(reading - before);  // not a number for the first
+      if (step > rounding * std::abs(reading)) steps.least = std::min(steps.least, step);
+      steps.repeated += reading == before ? 1 : 0;
+      before = reading;
     }
   }
-  return std::isfinite(least) ? least : 0;
+  return steps;
+}
+
+SUREFOOT_ONCE double resolution(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
+                                Eigen::Index output) {
+  const Steps steps = steps_of(bound, recordings, output);
+  return std::isfinite(steps.least) ? steps.least : 0;
 }
 
 SUREFOOT_ONCE double rounding_error(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
                                     Eigen::Index output) {
   constexpr double often = 0.2;  // of the readings: where less repeats, rounding looks like fast noise
-  double repeated = 0, count = 0;
-  for (const std::size_t r : recordings) {
-    const std::vector<double> y = readings_of(bound.recordings[r], output).values;
-    for (std::size_t i = 1; i < y.size(); ++i) repeated += y[i] == y[i - 1] ? 1 : 0;
-    count += static_cast<double>(y.size());
-  }
-  if (!(repeated > often * count)) return 0;
+  const Steps steps = steps_of(bound, recordings, output);
+  if (!(steps.repeated > often * steps.count)) return 0;
   return resolution(bound, recordings, output) / std::sqrt(12.0);  // evenly spread over a step
 }
 

@@ -200,15 +200,11 @@ SUREFOOT_ONCE std::string caution(const std::vector<LogFault>& faults) {
     if (first == nullptr) first = &fault;
     ++left;
   }
-  const auto more = [](std::size_t count, const std::string& before) {
-    return count > 1 ? before + std::to_string(count - 1) + " more" : "";
-  };
   if (left == 0) {
-    const std::string several = faults.size() > 1 ? "Without faults" : "Without a fault";
-    return several + " of the log (" + faults.front().sentence + more(faults.size(), ", and ") + "): ";
+    return "Without a fault of the log (" + faults.front().sentence + (faults.size() > 1 ? ", and others): " : "): ");
   }
-  return "Caution, the log has a fault: " + first->sentence + "; " + first->cure +
-         (left > 1 ? " (and " + more(left, "") + ")" : "") + ". ";
+  const std::string more = left > 1 ? " (and " + std::to_string(left - 1) + " more)" : "";
+  return "Caution, the log has a fault: " + first->sentence + "; " + first->cure + more + ". ";
 }
 
 }  // namespace surefoot::diagnosis

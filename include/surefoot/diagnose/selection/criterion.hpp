@@ -145,10 +145,10 @@ bool is_like(const Effect& a, const Effect& b);
 /// place as some effect of it, along a coupling, or is like it. A constant has no form to be mended.
 bool may_mend_form(const Hypothesis& larger, const Hypothesis& smaller);
 
-/// Differences to a hypothesis that mean nothing. What leaves only noise is of the right form: beside that, errors of form
-/// are no larger than `tolerated`, a share of the noise's mean square; none from one with as many effects. Not so from
-/// one with fewer where a further effect may mend the form of another.
-Eigen::VectorXd negligible_beside(const ErrorSquares& errors, const SearchProblem& problem, double tolerated);
+/// Differences to a hypothesis that mean nothing to one with fewer effects, unless a further one may mend the form of
+/// another. What leaves only noise is of the right form: beside that, errors of form are as small as a diagnosis
+/// tolerates them.
+Eigen::VectorXd negligible_beside(const ErrorSquares& errors, const SearchProblem& problem);
 
 /// Whether a structure leaves no more of any output than the noise, as far as that is known, and what a diagnosis
 /// tolerates: its effects are of the right form.
@@ -173,18 +173,25 @@ bool is_at_bound(const Hypothesis& hypothesis, const Variable& variable, const S
 double log_prior(const BoundSimulator& bound, const Hypothesis& hypothesis, std::size_t known, std::size_t candidates,
                  const SelectionCriteria& criteria);
 
+/// What a hypothesis is compared with that comes closer: one of as many effects, one with more of which those mend the
+/// form of others, or one with more elsewhere.
+enum class Beside { as_many, mended_form, more_elsewhere };
+
 /// Log density of each recording [nat], but for a constant that is the same for all hypotheses with the same
-/// reference: the closest of those to be compared. Differences of mean squares up to `reference.least` may be errors of
-/// form, which last for all of a recording: they count as one error. `fewer`: the errors are of fewer effects than the
-/// reference.
+/// reference: the closest of those to be compared. Differences of mean squares that may be errors of form last for all
+/// of a recording: they count as one error. Such are those up to `reference.least`; beside what leaves only noise,
+/// which is of the right form, those up to `least_elsewhere`, and none where effects are as many.
 std::vector<double> log_densities(const ErrorSquares& errors, const ErrorSquares& reference,
-                                  const SelectionCriteria& criteria, const Eigen::VectorXd& least);
+                                  const SelectionCriteria& criteria, Beside beside = Beside::mended_form);
 
 /// The one with the largest sum of log densities and log prior, in units that make all comparable: a good reference.
 std::size_t best_of(const std::vector<EvaluatedHypothesis>& evaluated, const SelectionCriteria& criteria);
 
 /// Log of the posterior odds of `a` against `b` [nat], all recordings taken as they are.
 double log_odds(const EvaluatedHypothesis& a, const EvaluatedHypothesis& b, const SelectionCriteria& criteria);
+
+/// Lets all differences between errors count.
+void forget_errors_of_form(ErrorSquares& errors);
 
 /// The same of two forms of one structure: what may be an error of form counts as well.
 double log_odds_of_forms(EvaluatedHypothesis a, EvaluatedHypothesis b, const SelectionCriteria& criteria);

@@ -57,14 +57,13 @@ SUREFOOT_ONCE FitProblem screening_fit(const SearchProblem& problem, int iterati
   return quick;
 }
 
-SUREFOOT_ONCE Eigen::VectorXd negligible_beside(const ErrorSquares& errors, const SearchProblem& problem,
-                                                double tolerated) {
+SUREFOOT_ONCE Eigen::VectorXd negligible_beside(const ErrorSquares& errors, const SearchProblem& problem) {
   Eigen::VectorXd least = problem.least;
   const Eigen::VectorXd left = pooled(errors);
+  const double tolerated = problem.criteria.tolerated_form;
   for (Eigen::Index k = 0; k < std::min(least.size(), problem.noise.size()); ++k) {
     const double noise = problem.noise[k];
-    const bool only_noise = noise > 0 && left[k] <= (1 + problem.criteria.tolerated_form) * noise;
-    if (only_noise) least[k] = std::min(least[k], tolerated * noise);
+    if (noise > 0 && left[k] <= (1 + tolerated) * noise) least[k] = std::min(least[k], tolerated * noise);
   }
   return least;
 }
@@ -96,8 +95,7 @@ SUREFOOT_ONCE EvaluatedHypothesis evaluate_fit(const BoundSimulator& bound, cons
       log_prior(bound, fitted.hypothesis, problem.known, problem.candidates, problem.criteria) +
           log_occam_factor(bound, fitted.hypothesis, problem.fit, least_variance(problem), parallel)};
   result.errors.least = problem.least;
-  result.errors.least_elsewhere = negligible_beside(result.errors, problem, problem.criteria.tolerated_form);
-  result.errors.least_of_as_many = negligible_beside(result.errors, problem, 0);
+  result.errors.least_elsewhere = negligible_beside(result.errors, problem);
   for (const AttachedEffect& one : fitted.hypothesis.effects) {
     if (one.effect->starts_anywhere) result.log_prior -= cost_of_own_numbers(result.errors);
   }
@@ -170,8 +168,16 @@ SUREFOOT_ONCE double log_density(double n, double mean_square, double degrees) {
   return -0.5 * (n + degrees) * std::log1p(n * mean_square / degrees);
 }
 
+/// Differences of the mean square of output k to a reference that mean nothing.
+SUREFOOT_ONCE double negligible_of(const ErrorSquares& reference, Eigen::Index k, Beside beside) {
+  const double least = reference.least.size() > 0 ? reference.least[k] : 0;
+  const double elsewhere = reference.least_elsewhere.size() > 0 ? reference.least_elsewhere[k] : least;
+  if (beside == Beside::mended_form || !(elsewhere < least)) return least;
+  return beside == Beside::as_many ? 0 : elsewhere;
+}
+
 SUREFOOT_ONCE std::vector<double> log_densities(const ErrorSquares& errors, const ErrorSquares& reference,
-                                                const SelectionCriteria& criteria, const Eigen::VectorXd& least) {
+                                                const SelectionCriteria& criteria, Beside beside) {
   const Eigen::VectorXd scale = pooled(reference);
   std::vector<double> result(static_cast<std::size_t>(errors.counts.rows()), 0.0);
   for (Eigen::Index r = 0; r < errors.counts.rows(); ++r) {
@@ -179,7 +185,7 @@ SUREFOOT_ONCE std::vector<double> log_densities(const ErrorSquares& errors, cons
       const double cells = errors.counts(r, k);
       if (!(cells > 0)) continue;
       const double unit = std::max(scale[k], criteria.least_error * criteria.least_error);
-      const double margin = least.size() > 0 ? least[k] : 0;
+      const double margin = negligible_of(reference, k, beside);
       const double best = reference.mean_squares(r, k), own = errors.mean_squares(r, k);
       const double beyond_form = best + shrunk(own - best, margin);
       result[static_cast<std::size_t>(r)] +=
@@ -238,11 +244,11 @@ SUREFOOT_ONCE bool may_mend_form(const Hypothesis& larger, const Hypothesis& sma
 SUREFOOT_ONCE std::vector<double> log_densities_beside(const EvaluatedHypothesis& one,
                                                        const EvaluatedHypothesis& reference,
                                                        const SelectionCriteria& criteria) {
-  const ErrorSquares& errors = reference.errors;
-  const bool fewer = one.hypothesis.effects.size() < reference.hypothesis.effects.size();
-  const Eigen::VectorXd* least = fewer ? &errors.least_elsewhere : &errors.least_of_as_many;
-  if (least->size() == 0 || (fewer && may_mend_form(reference.hypothesis, one.hypothesis))) least = &errors.least;
-  return log_densities(one.errors, errors, criteria, *least);
+  Beside beside = Beside::as_many;
+  if (one.hypothesis.effects.size() < reference.hypothesis.effects.size()) {
+    beside = may_mend_form(reference.hypothesis, one.hypothesis) ? Beside::mended_form : Beside::more_elsewhere;
+  }
+  return log_densities(one.errors, reference.errors, criteria, beside);
 }
 
 /// The one that leaves least, beside which all others are weighed.
@@ -277,9 +283,15 @@ SUREFOOT_ONCE double log_odds(const EvaluatedHypothesis& a, const EvaluatedHypot
   return sum;
 }
 
+SUREFOOT_ONCE void forget_errors_of_form(ErrorSquares& errors) {
+  errors.least.resize(0);
+  errors.least_elsewhere.resize(0);
+}
+
 SUREFOOT_ONCE double log_odds_of_forms(EvaluatedHypothesis a, EvaluatedHypothesis b,
                                        const SelectionCriteria& criteria) {
-  for (ErrorSquares* one : {&a.errors, &b.errors}) one->least = one->least_elsewhere = one->least_of_as_many = {};
+  forget_errors_of_form(a.errors);
+  forget_errors_of_form(b.errors);
   return log_odds(a, b, criteria);
 }
 

@@ -31,7 +31,7 @@ SUREFOOT_ONCE ErrorSquares errors_of_predictions(const Search& search, const Eva
     }
   }
   const Eigen::VectorXd left = pooled(result);
-  for (Eigen::VectorXd* least : {&result.least, &result.least_elsewhere, &result.least_of_as_many}) {
+  for (Eigen::VectorXd* least : {&result.least, &result.least_elsewhere}) {
     for (Eigen::Index k = 0; k < least->size(); ++k) (*least)[k] = std::min((*least)[k], left[k]);
   }
   return result;

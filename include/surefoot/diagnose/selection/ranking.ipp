@@ -80,7 +80,7 @@ SUREFOOT_ONCE std::size_t closest_of_tie(const Search& search, const std::vector
   const SelectionCriteria& criteria = search.problem.criteria;
   const auto as_it_is = [&](std::size_t i) {
     EvaluatedHypothesis one = pool[i];
-    one.errors.least = one.errors.least_elsewhere = one.errors.least_of_as_many = {};
+    forget_errors_of_form(one.errors);
     return one;
   };
   std::size_t closest = best;

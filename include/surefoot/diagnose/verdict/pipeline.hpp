@@ -59,9 +59,10 @@ void evaluate_selection(const EstimationSetup& setup, const Calibration& calibra
 /// short.
 void finish_fit(const EstimationSetup& setup, Hypothesis& chosen, const RunContext& run);
 
-/// All stages after the recordings were screened and examined: fills in the diagnosis.
+/// All stages after the recordings were screened and examined, from `begun` on if that is not null: fills in the
+/// diagnosis.
 FoundModel diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings, const RunContext& run,
-                               Diagnosis& diagnosis);
+                               Diagnosis& diagnosis, const FoundModel* begun = nullptr);
 
 /// Runs all stages. The result does not depend on how `parallel` shares out the work.
 Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorInfo& info, std::vector<Recording> recordings,

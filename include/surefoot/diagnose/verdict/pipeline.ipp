@@ -26,7 +26,6 @@
 #include "surefoot/diagnose/log_doctor/reading_faults.hpp"
 #include "surefoot/diagnose/residual_tests/noise.hpp"
 #include "surefoot/diagnose/screening.hpp"
-#include "surefoot/diagnose/selection/ranking.hpp"
 #include "surefoot/diagnose/selection/search.hpp"
 #include "surefoot/diagnose/text.hpp"
 #include "surefoot/diagnose/verdict/describe.hpp"
@@ -328,9 +327,8 @@ SUREFOOT_ONCE void remark_on_freed_states(const EstimationSetup& setup, const Hy
   }
 }
 
-/// From `begun` on, if that is not null.
-SUREFOOT_ONCE FoundModel diagnose_from(const BindSimulator& bind, std::vector<Recording> recordings,
-                                       const FoundModel* begun, const RunContext& run, Diagnosis& diagnosis) {
+SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
+                                             const RunContext& run, Diagnosis& diagnosis, const FoundModel* begun) {
   recordings = cut_sensitive_recordings(bind, std::move(recordings), run, diagnosis.remarks, begun);
   recordings = cut_few_recordings(bind, std::move(recordings), run);
   EstimationSetup setup = hold_out_recordings(bind, std::move(recordings), run);
@@ -365,11 +363,12 @@ SUREFOOT_ONCE FoundModel diagnose_from(const BindSimulator& bind, std::vector<Re
   return {best, setup.bound.sizes, setup.bound.integration.inputs, setup.freed, named, setup.bound.integration.follow};
 }
 
-SUREFOOT_ONCE BindSimulator with_integration(const BindSimulator& bind, const Integration& needed) {
-  return [bind, needed](std::vector<Recording> some) {
+/// With so many steps a row, unless that is 0, and following the readings so.
+SUREFOOT_ONCE BindSimulator with_integration(const BindSimulator& bind, double step, double follow) {
+  return [bind, step, follow](std::vector<Recording> some) {
     BoundSimulator result = bind(std::move(some));
-    result.integration.step = needed.step;
-    result.integration.follow = needed.follow;
+    if (step > 0) result.integration.step = step;
+    if (follow > 0) result.integration.follow = follow;
     return result;
   };
 }
@@ -380,28 +379,12 @@ SUREFOOT_ONCE bool is_lost(const Diagnosis& diagnosis) {
   return diagnosis.verdict == Verdict::unexplained && diagnosis.noise_ratio > far_off;
 }
 
-/// Where whole recordings show nothing that explains them, what predictions over short horizons show is tried on them;
-/// with simulations that follow the readings, if that makes the machine unstable.
-SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vector<Recording> recordings,
-                                             const RunContext& run, Diagnosis& diagnosis) {
-  const double started = run.seconds();
-  const std::vector<Remark> remarks = diagnosis.remarks;
-  FoundModel found = diagnose_from(bind, recordings, nullptr, run, diagnosis);
-  if (!is_lost(diagnosis) || !run.has_time_for_as_much_again(started)) return found;
+/// Whether predictions over short horizons show what explains them, where whole recordings do not.
+SUREFOOT_ONCE bool shows_along_readings(const BindSimulator& bind, const std::vector<Recording>& recordings,
+                                        const RunContext& run, FoundModel& found) {
   EstimationSetup setup = hold_out_recordings(bind, recordings, run);
-  if (setup.bound.integration.follow > 0 || !can_be_guided(setup.bound, setup.problem)) return found;
-  const auto along = search_along_readings(setup, run);
-  if (!along) return found;
-  Diagnosis other;
-  other.remarks = remarks;
-  if (along->follow > 0) other.remarks.push_back({"", following_sentence(1 / along->follow, true)});
-  Integration needed = setup.bound.integration;
-  needed.follow = along->follow;
-  FoundModel again = diagnose_from(with_integration(bind, needed), recordings, &*along, run, other);
-  const bool nearer = along->follow == 0 && other.noise_ratio < clearly_nearer * diagnosis.noise_ratio;
-  if (other.verdict != Verdict::missing_physics && !nearer) return found;
-  diagnosis = std::move(other);
-  return again;
+  if (setup.bound.integration.follow > 0 || !can_be_guided(setup.bound, setup.problem)) return false;
+  return search_along_readings(setup, run, found);
 }
 
 /// Suspected faults are true if the model with what is found without them names them beyond doubt in the recordings as
@@ -442,9 +425,11 @@ SUREFOOT_ONCE bool parts_have_no_fault(const BindSimulator& bind, const std::vec
 /// Stages after the log was examined. What was found shows more faults: with these repaired all begins anew, if there
 /// is time for as much again.
 SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, const std::vector<Recording>& logged,
-                                                   LogExamination log, const std::vector<Remark>& remarks,
+                                                   LogExamination log, std::vector<Remark> remarks,
                                                    const RunContext& run) {
-  bool begins_anew = false;
+  bool begins_anew = false, goes_along = false;
+  FoundModel along;  // what shows along the readings, tried on whole recordings
+  BindSimulator bind_now = bind;
   const double examined = run.seconds();
   std::optional<Diagnosis> without_suspected = diagnose_without_suspected(bind, logged, log, remarks, run);
   bool confirmed = without_suspected.has_value();
@@ -456,7 +441,15 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
     const std::vector<LogFault> considered = log.faults;
     Diagnosis diagnosis;
     diagnosis.remarks = remarks;
-    const FoundModel found = diagnose_recordings(bind, run.options.repair ? log.repaired : logged, run, diagnosis);
+    const std::vector<Recording>& recordings = run.options.repair ? log.repaired : logged;
+    const FoundModel found = diagnose_recordings(bind_now, recordings, run, diagnosis, goes_along ? &along : nullptr);
+    const bool lost = !goes_along && is_lost(diagnosis) && run.has_time_for_as_much_again(started);
+    if (lost && shows_along_readings(bind, recordings, run, along)) {
+      goes_along = true;
+      if (along.follow > 0) remarks.push_back({"", following_sentence(1 / along.follow, true)});
+      bind_now = with_integration(bind, 0, along.follow);
+      continue;
+    }
     const bool found_any = found.hypothesis.effects.size() > run.options.known.size();
     LogExamination more;
     if (found_any && !begins_anew && !run.has_ended()) {
@@ -533,12 +526,12 @@ SUREFOOT_ONCE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorI
   const Eigen::Index kept = shorten_recordings(recordings, options.max_rows);
   if (kept > 0) remarks.push_back({"", shortening_sentence(kept)});
   const Integration needed = needed_integration(bind, recordings, run, remarks);
-  const BindSimulator bind_to_run = with_integration(bind, needed);
+  const BindSimulator bind_to_run = with_integration(bind, needed.step, needed.follow);
   LogExamination log = examine_recordings(bind_to_run, recordings, run);
   examine_parts_as_well(bind_to_run, run, recordings, remarks, log);
   const std::string warning = caution(log.faults);
   try {
-    Diagnosis diagnosis = diagnose_and_examine_again(bind_to_run, recordings, std::move(log), remarks, run);
+    Diagnosis diagnosis = diagnose_and_examine_again(bind_to_run, recordings, std::move(log), std::move(remarks), run);
     diagnosis.model = info.name;
     diagnosis.seed = seed;
     diagnosis.sentence = caution(diagnosis.log_faults) + diagnosis.sentence;

@@ -3,17 +3,15 @@
 // lost in every recording, and no effect brings it near by itself.
 #pragma once
 
-#include <optional>
-
 #include "surefoot/diagnose/verdict/examine_recordings.hpp"
 #include "surefoot/diagnose/verdict/prepare.hpp"
 
 namespace surefoot::diagnosis {
 
-/// One effect or two that explain predictions over the shortest of the horizons of guided fits; none if no such leave
-/// only noise. Its Integration::follow is what the machine needs with them: 0 unless they make it unstable. Takes at
-/// most as long as the diagnosis took until now.
-std::optional<FoundModel> search_along_readings(EstimationSetup& setup, const RunContext& run);
+/// One effect or two that explain predictions over the shortest of the horizons of guided fits, into `found`; false if
+/// none leave only noise. FoundModel::follow is 0 unless they make the machine unstable. Takes at most as long as the
+/// diagnosis took until now.
+bool search_along_readings(EstimationSetup& setup, const RunContext& run, FoundModel& found);
 
 }  // namespace surefoot::diagnosis
 

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <optional>
-#include <utility>
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/guided_fit.hpp"
@@ -13,7 +11,7 @@
 
 namespace surefoot::diagnosis {
 
-SUREFOOT_ONCE std::optional<FoundModel> search_along_readings(EstimationSetup& setup, const RunContext& run) {
+SUREFOOT_ONCE bool search_along_readings(EstimationSetup& setup, const RunContext& run, FoundModel& model) {
   constexpr int most_effects = 2;  // beside others, predictions over so few rows show little of one
   DiagnoseOptions options = run.options;
   options.max_effects = std::min(options.max_effects, most_effects);
@@ -23,12 +21,13 @@ SUREFOOT_ONCE std::optional<FoundModel> search_along_readings(EstimationSetup& s
   Diagnosis aside;
   const Searched found = search_effects(setup, part, aside);
   const Hypothesis& chosen = found.selection.chosen.hypothesis;
-  if (part.search_has_ended() || chosen.effects.size() == found.problem.known) return std::nullopt;
-  if (found.problem.structured(chosen, found.selection.fit)) return std::nullopt;
-  FoundModel result{chosen, setup.bound.sizes, found.selection.fit.integration.inputs, setup.freed};
+  if (part.search_has_ended() || chosen.effects.size() == found.problem.known) return false;
+  if (found.problem.structured(chosen, found.selection.fit)) return false;
+  model.hypothesis = chosen;
+  model.sizes = setup.bound.sizes;
   setup.bound.integration.follow = 0;
-  result.follow = needed_follow(setup.bound, chosen, run.parallel);
-  return result;
+  model.follow = needed_follow(setup.bound, chosen, run.parallel);
+  return true;
 }
 
 }  // namespace surefoot::diagnosis
