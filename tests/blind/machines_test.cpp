@@ -127,7 +127,7 @@ TEST_CASE("every effect can be drawn at every place, and development draws nothi
       CHECK(!one.attached_to.empty());
       for (const Law own :
            {Law::rational_dry, Law::stribeck_lorentz, Law::tangent_spring, Law::two_wave_cogging, Law::raised_hole,
-            Law::tanh_clip, Law::third_lag, Law::passing_drift, Law::heat_fade, Law::radiation, Law::ageing})
+            Law::tanh_clip, Law::fourth_lag, Law::passing_drift, Law::heat_fade, Law::radiation, Law::ageing})
         CHECK(one.law != own);
     }
   }

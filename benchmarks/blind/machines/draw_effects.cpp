@@ -121,6 +121,7 @@ class Drawing {
       case Law::lag:
       case Law::second_lag:
       case Law::third_lag:
+      case Law::fourth_lag:
         one.a = shortest + random_.log_uniform(0.01, 0.2) * time;
         break;
       case Law::sag:

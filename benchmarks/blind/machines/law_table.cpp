@@ -36,7 +36,7 @@ const std::map<std::string, Laws>& laws() {
       {"saturation", {{Law::clip}, {Law::smooth_clip}, {Law::tanh_clip}}},
       {"rate_limit", {{Law::rate_limit}, {}, {}}},
       {"input_delay", {{Law::delay}, {}, {}}},
-      {"first_order_lag", {{Law::lag}, {Law::second_lag}, {Law::third_lag}}},
+      {"first_order_lag", {{Law::lag}, {Law::second_lag, Law::third_lag}, {Law::fourth_lag}}},
       {"supply_sag", {{Law::sag}, {}, {}}},
       {"sensor_bias", {{Law::bias}, {}, {}}},
       {"sensor_scale", {{Law::scale}, {}, {}}},

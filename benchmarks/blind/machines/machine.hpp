@@ -123,6 +123,7 @@ enum class Law {
   lag,
   second_lag,
   third_lag,
+  fourth_lag,
   sag,
   slow_sag,
   // in sensors

@@ -81,7 +81,20 @@ double Past::value_at(double time) const {
 
 bool has_memory(Law law) { return lags_of(law) > 0 || law == Law::rate_limit || law == Law::delay; }
 
-int lags_of(Law law) { return law == Law::lag ? 1 : law == Law::second_lag ? 2 : law == Law::third_lag ? 3 : 0; }
+int lags_of(Law law) {
+  switch (law) {
+    case Law::lag:
+      return 1;
+    case Law::second_lag:
+      return 2;
+    case Law::third_lag:
+      return 3;
+    case Law::fourth_lag:
+      return 4;
+    default:
+      return 0;
+  }
+}
 
 double rate_of(const Hidden& one, const Surroundings& around) {
   const double x = around.amount;

@@ -184,7 +184,10 @@ class Run {
       if (one.where != Where::signal || at(one.target) != signal) continue;
       const std::size_t own = states_ + hidden_size * k;
       const int lags = lags_of(one.law);
-      if (starting_) y_[own] = y_[own + 1] = y_[own + 2] = held_[k] = value;
+      if (starting_) {
+        held_[k] = value;
+        std::fill_n(&y_[own], hidden_size, value);
+      }
       asked_now_ = value;
       if (lags > 0) {
         value = starting_ ? value : y[own + at(lags) - 1];
