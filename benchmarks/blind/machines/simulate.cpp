@@ -1,5 +1,6 @@
 #include "simulate.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
