@@ -375,8 +375,10 @@ SUREFOOT_ONCE BindSimulator with_integration(const BindSimulator& bind, double s
 
 /// Whether simulations are lost: what is left of whole recordings tells little of what is missing.
 SUREFOOT_ONCE bool is_lost(const Diagnosis& diagnosis) {
-  constexpr double far_off = 10;  // times what noise leaves
-  return diagnosis.verdict == Verdict::unexplained && diagnosis.noise_ratio > far_off;
+  constexpr double far_off = 10;         // times what noise leaves
+  constexpr double of_the_motion = 0.1;  // standard deviations of outputs
+  return diagnosis.verdict == Verdict::unexplained && diagnosis.noise_ratio > far_off &&
+         diagnosis.held_out_after > of_the_motion;
 }
 
 /// Whether predictions over short horizons show what explains them, where whole recordings do not.
