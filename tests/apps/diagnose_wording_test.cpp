@@ -10,7 +10,10 @@ TEST_CASE("a fault of the log is said with its cure, or that it was repaired") {
         "a.csv: y has the opposite sign; flip its sign, or run again with --repair");
   fault.repaired = true;
   CHECK(diagnose_program::fault_text(fault) == "a.csv: y has the opposite sign (repaired for this diagnosis)");
-  CHECK(diagnose_program::fault_text({.kind = "odd_recording", .sentence = "a", .cure = "b"}) == "a; b");
+  CHECK(diagnose_program::fault_text({.kind = "odd_recording", .sentence = "a", .cure = "b"}) ==
+        "a; b, as --repair does");
+  CHECK(diagnose_program::fault_text({.kind = "odd_recording", .sentence = "a", .cure = "b", .repaired = true}) ==
+        "a (left out of this diagnosis)");
 }
 
 TEST_CASE("shares are printed without exponents") {
