@@ -11,7 +11,8 @@ namespace surefoot::effects {
   return {
       .name = "input_asymmetry",
       .sentence =
-          "an asymmetry of {asymmetry} at {at}: 1 plus that of its positive values acts, and 1 minus that of its negative ones",
+          "an asymmetry of {asymmetry} at {at}: 1 plus that of its positive values acts, and 1 minus that of its "
+          "negative ones",
       .place = Place::input,
       .parameters = parameters_of(
           {{.name = "asymmetry", .measure = {}, .low = -0.95, .high = 0.95, .starts = {0.003, 0.1}, .strength = true}}),

@@ -21,7 +21,7 @@ struct LogDoctorInputs {
   LogDoctorCriteria criteria = {};
   std::function<bool()> stopped = [] { return false; };  // the time is over: what was found until then counts
   std::vector<LogFault> named = {};                      // before: asked for again, however well the model fits
-  bool may_leave_out = true;             // a recording unlike all others
+  bool may_leave_out = true;                             // a recording unlike all others
 };
 
 /// Simulated minus measured, output x row; NaN: not measured, infinite: the simulation ran away.

@@ -24,8 +24,8 @@ struct Selection {
 /// Of an error: what leaves less comes clearly nearer.
 inline constexpr double clearly_nearer = 0.8;
 
-/// Of the structures that were not chosen, the one that leaves least of recordings, by the geometric mean of their errors,
-/// if that is clearly less than the choice leaves; else the choice.
+/// Of the structures that were not chosen, the one that leaves least of recordings, by the geometric mean of their
+/// errors, if that is clearly less than the choice leaves; else the choice.
 const EvaluatedHypothesis& clearly_nearest(const Selection& selection);
 
 /// What the errors gain, each output's in units of what it was before, with its standard error over recordings; the

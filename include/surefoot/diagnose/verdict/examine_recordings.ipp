@@ -92,7 +92,8 @@ SUREFOOT_ONCE bool is_named_again(const std::vector<LogFault>& repaired, const s
 }
 
 SUREFOOT_ONCE void withdraw_odd_recording(LogExamination& log) {
-  drop_items(log.faults, [](const LogFault& fault) { return fault.kind == name_of(LogFaultKind::odd) && !fault.repaired; });
+  drop_items(log.faults,
+             [](const LogFault& fault) { return fault.kind == name_of(LogFaultKind::odd) && !fault.repaired; });
 }
 
 SUREFOOT_ONCE bool withdraw_faults(LogExamination& log, const LogExamination& again, bool can_begin_anew) {

@@ -346,10 +346,10 @@ SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vec
   const bool found_any = selection.chosen.hypothesis.effects.size() > problem.known;
   if (found_any && !diagnosis.complete) {
     finish_fit(setup, selection.chosen.hypothesis, run);
-    selection.chosen.errors.mean_squares = error_squares(setup.bound, selection.chosen.hypothesis,
-                                                         selection.fit.recordings, setup.bound.integration,
-                                                         problem.scale, run.parallel)
-                                               .mean_squares;
+    selection.chosen.errors.mean_squares =
+        error_squares(setup.bound, selection.chosen.hypothesis, selection.fit.recordings, setup.bound.integration,
+                      problem.scale, run.parallel)
+            .mean_squares;
   }
   refit_with_finer_steps(setup, selection, run);
   remove_outliers_from(setup, selection.chosen.hypothesis, run, diagnosis);
@@ -413,8 +413,8 @@ SUREFOOT_ONCE std::optional<Diagnosis> diagnose_without_suspected(const BindSimu
   return diagnosis;
 }
 
-/// Whether recordings are sensitive with what was found, so that a simulation may go another way, and parts of them show
-/// no fault.
+/// Whether recordings are sensitive with what was found, so that a simulation may go another way, and parts of them
+/// show no fault.
 SUREFOOT_ONCE bool parts_have_no_fault(const BindSimulator& bind, const std::vector<Recording>& recordings,
                                        const FoundModel& found, const RunContext& run) {
   std::vector<Remark> cuts;
