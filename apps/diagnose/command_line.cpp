@@ -57,9 +57,10 @@ std::optional<CommandLine> parse_command_line(int argc, const char* const* argv,
   program.add_option("--threads", line.threads, "0: as many as the machine has; results do not depend on it")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  program.add_flag("--repair", line.repair,
-                   "repairs faults of the log that are found (signs, units, swapped columns, clocks, sensors) and goes "
-                   "on with that; files stay as they are");
+  program.add_flag(
+      "--repair", line.repair,
+      "repairs faults of the log that are found (signs, units, swapped columns, clocks, sensors), leaves out a "
+      "recording unlike all others, and goes on with that; files stay as they are");
   program.add_flag("--quiet", line.quiet, "no progress and no summary, only files and errors");
   program.add_option("recordings", line.recordings, "recordings (CSV)")->required();
   try {

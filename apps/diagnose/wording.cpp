@@ -43,8 +43,9 @@ std::string effects_text(const std::vector<std::pair<std::string, std::string>>&
 
 std::string fault_text(const surefoot::LogFault& fault) {
   const bool left_out = fault.kind == "odd_recording";
-  if (fault.repaired)
+  if (fault.repaired) {
     return fault.sentence + (left_out ? " (left out of this diagnosis)" : " (repaired for this diagnosis)");
+  }
   return fault.sentence + "; " + fault.cure + (left_out ? ", as --repair does" : ", or run again with --repair");
 }
 

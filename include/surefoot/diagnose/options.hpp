@@ -21,7 +21,8 @@ struct DiagnoseOptions {
   std::vector<NamedEffect> known = {};     // part of the model already; their parameters are calibrated with the others
   int max_effects = 4;                     // to combine; 0: calibrates and tests only
   double max_seconds = std::numeric_limits<double>::infinity();  // [s] since the begin, until the search ends
-  bool repair = false;  // repairs faults of the log (Diagnosis::log_faults) before anything is concluded from it
+  bool repair = false;  // repairs faults of the log (Diagnosis::log_faults) before anything is concluded from it, and
+                        // leaves out a recording unlike all others
   std::size_t max_rows = 40000;  // of all recordings together; of more, only the first rows of each are used
   std::size_t starts = 24;  // points of the global search for the nominal parameters, beside these themselves
   /// Told what is being done, the share of the work done (0..1) and the best so far.

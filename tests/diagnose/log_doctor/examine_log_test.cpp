@@ -266,13 +266,13 @@ TEST_SUITE("log_doctor") {
   }
 
   TEST_CASE("a caution names the first fault that was not repaired, or was if all were") {
-    using surefoot::diagnosis::caution;
-    CHECK(caution({}).empty());
+    using surefoot::diagnosis::fault_preface;
+    CHECK(fault_preface({}).empty());
     LogFault fault{.kind = "clipped", .sentence = "a: is clipped", .cure = "mend it", .repaired = true};
-    CHECK(caution({fault}) == "Without a fault of the log (a: is clipped): ");
-    CHECK(caution({fault, fault}) == "Without a fault of the log (a: is clipped, and others): ");
+    CHECK(fault_preface({fault}) == "Without a fault of the log (a: is clipped): ");
+    CHECK(fault_preface({fault, fault}) == "Without a fault of the log (a: is clipped, and others): ");
     fault.repaired = false;
-    CHECK(caution({fault}) == "Caution, the log has a fault: a: is clipped; mend it. ");
+    CHECK(fault_preface({fault}) == "Caution, the log has a fault: a: is clipped; mend it. ");
   }
 }
 

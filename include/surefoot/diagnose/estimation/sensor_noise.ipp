@@ -11,7 +11,6 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/sensor_noise.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
-#include "surefoot/optimize/linear_algebra.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -55,14 +54,15 @@ SUREFOOT_ONCE double fast_noise(const BoundSimulator& bound, const std::vector<s
 
 /// Steps between readings of one output in turn.
 struct Steps {
-  double count = 0, repeated = 0;                          // readings, and those equal to the one before
-  double least = std::numeric_limits<double>::infinity();  // of those that differ
+  double count = 0, repeated = 0;  // readings, and those equal to the one before
+  double least = 0;                // of those that differ; 0 if none does
 };
 
 SUREFOOT_ONCE Steps steps_of(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
                              Eigen::Index output) {
   constexpr double rounding = 1e-9;  // of a reading: no step of a sensor
   Steps steps;
+  double least = std::numeric_limits<double>::infinity();
   for (const std::size_t r : recordings) {
     const Eigen::MatrixXd& outputs = bound.recordings[r].outputs;
     double before = std::numeric_limits<double>::quiet_NaN();
@@ -71,18 +71,18 @@ SUREFOOT_ONCE Steps steps_of(const BoundSimulator& bound, const std::vector<std:
       if (!std::isfinite(reading)) continue;
       ++steps.count;
       const double step = std::abs(reading - before);  // not a number for the first
-      if (step > rounding * std::abs(reading)) steps.least = std::min(steps.least, step);
+      if (step > rounding * std::abs(reading)) least = std::min(least, step);
       steps.repeated += reading == before ? 1 : 0;
       before = reading;
     }
   }
+  if (std::isfinite(least)) steps.least = least;
   return steps;
 }
 
 SUREFOOT_ONCE double resolution(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
                                 Eigen::Index output) {
-  const Steps steps = steps_of(bound, recordings, output);
-  return std::isfinite(steps.least) ? steps.least : 0;
+  return steps_of(bound, recordings, output).least;
 }
 
 SUREFOOT_ONCE double rounding_error(const BoundSimulator& bound, const std::vector<std::size_t>& recordings,
@@ -90,7 +90,7 @@ SUREFOOT_ONCE double rounding_error(const BoundSimulator& bound, const std::vect
   constexpr double often = 0.2;  // of the readings: where less repeats, rounding looks like fast noise
   const Steps steps = steps_of(bound, recordings, output);
   if (!(steps.repeated > often * steps.count)) return 0;
-  return resolution(bound, recordings, output) / std::sqrt(12.0);  // evenly spread over a step
+  return steps.least / std::sqrt(12.0);  // evenly spread over a step
 }
 
 SUREFOOT_ONCE void free_measured_initial_states(BoundSimulator& bound, const std::vector<std::size_t>& training) {

@@ -22,7 +22,7 @@ struct LogExamination {
 LogExamination examine_log(const LogDoctorInputs& inputs, const std::vector<Recording>& recordings);
 
 /// Faults before anything else that is said: a caution, or what was repaired; empty if there is none.
-std::string caution(const std::vector<LogFault>& faults);
+std::string fault_preface(const std::vector<LogFault>& faults);
 
 }  // namespace surefoot::diagnosis
 

@@ -191,7 +191,7 @@ SUREFOOT_ONCE LogExamination examine_log(const LogDoctorInputs& inputs, const st
           std::move(log.without_suspected)};
 }
 
-SUREFOOT_ONCE std::string caution(const std::vector<LogFault>& faults) {
+SUREFOOT_ONCE std::string fault_preface(const std::vector<LogFault>& faults) {
   if (faults.empty()) return "";
   std::size_t left = 0;
   const LogFault* first = nullptr;

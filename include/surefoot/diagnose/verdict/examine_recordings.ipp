@@ -1,6 +1,7 @@
 // Definitions of surefoot/diagnose/verdict/examine_recordings.hpp.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <utility>

@@ -363,7 +363,8 @@ SUREFOOT_ONCE FoundModel diagnose_recordings(const BindSimulator& bind, std::vec
   return {best, setup.bound.sizes, setup.bound.integration.inputs, setup.freed, named, setup.bound.integration.follow};
 }
 
-/// With so many steps a row, unless that is 0, and following the readings so.
+/// The same with steps of at most so long [s], and simulations that follow the readings so (Integration); as it is for
+/// 0.
 SUREFOOT_ONCE BindSimulator with_integration(const BindSimulator& bind, double step, double follow) {
   return [bind, step, follow](std::vector<Recording> some) {
     BoundSimulator result = bind(std::move(some));
@@ -424,8 +425,8 @@ SUREFOOT_ONCE bool parts_have_no_fault(const BindSimulator& bind, const std::vec
   return of_parts.faults.empty() && !run.has_ended();
 }
 
-/// Stages after the log was examined. What was found shows more faults: with these repaired all begins anew, if there
-/// is time for as much again.
+/// Stages after the log was examined. What was found may show more faults, or, where simulations are lost, what shows
+/// along the readings may name an effect: with these all begins anew, if there is time for as much again.
 SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, const std::vector<Recording>& logged,
                                                    LogExamination log, std::vector<Remark> remarks,
                                                    const RunContext& run) {
@@ -531,12 +532,12 @@ SUREFOOT_ONCE Diagnosis run_pipeline(const BindSimulator& bind, const SimulatorI
   const BindSimulator bind_to_run = with_integration(bind, needed.step, needed.follow);
   LogExamination log = examine_recordings(bind_to_run, recordings, run);
   examine_parts_as_well(bind_to_run, run, recordings, remarks, log);
-  const std::string warning = caution(log.faults);
+  const std::string warning = fault_preface(log.faults);
   try {
     Diagnosis diagnosis = diagnose_and_examine_again(bind_to_run, recordings, std::move(log), std::move(remarks), run);
     diagnosis.model = info.name;
     diagnosis.seed = seed;
-    diagnosis.sentence = caution(diagnosis.log_faults) + diagnosis.sentence;
+    diagnosis.sentence = fault_preface(diagnosis.log_faults) + diagnosis.sentence;
     diagnosis.seconds = run.seconds();
     run.progress("done", 1, diagnosis.sentence);
     return diagnosis;
