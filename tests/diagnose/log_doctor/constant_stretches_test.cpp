@@ -68,6 +68,28 @@ TEST_SUITE("log_doctor") {
     CHECK_FALSE(any_beyond());
   }
 
+  TEST_CASE("what clips more than once is not what a coarse sensor repeats by chance") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    auto log = toys::servo_log();
+    LogFit fit = fit_log(inputs, log);
+    auto readings = fit.bound.recordings[0].outputs.row(0);
+    const double end = 0.7 * readings.maxCoeff();
+    int beyond = 0;  // nine readings at the end in a row, and three more in a row later
+    for (double& reading : readings) {
+      if (reading <= end) continue;
+      ++beyond;
+      if (beyond > 9 && (beyond <= 20 || beyond > 23))
+        reading = end - 1e-3 - 1e-5 * beyond;
+      else
+        reading = end;
+    }
+    REQUIRE(beyond > 23);
+    const auto found = find_reading_faults(fit, inputs.criteria);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].repairs[0].kind == LogFaultKind::clipped);
+  }
+
   TEST_CASE("as many equal readings as a coarse sensor has by chance are no stretch that says anything") {
     const LogDoctorCriteria criteria;
     std::vector<double> lengths(400, 1);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/diagnose/log_doctor/servo_log.hpp"
+#include "tests/support/walking_robot.hpp"
 
 namespace {
 
@@ -105,6 +106,21 @@ TEST_SUITE("log_doctor") {
     errors.back() = 0.006;
     CHECK(error_by_chance(errors, errors.size() - 1) > 0.01);
     CHECK(error_by_chance({1e-3, 1, 30, 1e-2, 300}, 4) > 1e-3);
+  }
+
+  TEST_CASE("the readings of another walk are odd though noise adds up in all") {
+    const auto bind = [](std::vector<surefoot::Recording> some) {
+      return bind_simulator(toys::WalkingRobot{}, std::move(some));
+    };
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs{bind, [](const BoundSimulator& bound) { return nominal_hypothesis(bound); }, parallel};
+    const auto as_ordered = [](const surefoot::Pose2& moved, const surefoot::Pose2&) { return moved; };
+    auto log = toys::walk_recordings(as_ordered, false, 8, 1);
+    CHECK_FALSE(find_odd_recording(inputs, fit_log(inputs, log)));
+    log[3].outputs = toys::walk_recordings(as_ordered, false, 4, 2)[3].outputs;
+    const auto odd = find_odd_recording(inputs, fit_log(inputs, log));
+    REQUIRE(odd);
+    CHECK(odd->recording == 3);
   }
 
   TEST_CASE("three recordings do not say what most are like") {

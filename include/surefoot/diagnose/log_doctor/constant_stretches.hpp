@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -32,8 +33,10 @@ double expected_repeats(const std::vector<double>& lengths, double readings, con
 /// Motion that is missed in all stretches: their squares, summed.
 double total_missed(const std::vector<ConstantStretch>& stretches);
 
-/// Lengths of the stretches in which readings are equal, whatever the model does meanwhile.
-std::vector<double> lengths_of_repeats(const Recording& recording, Eigen::Index output);
+/// Lengths of the stretches in which readings are equal, whatever the model does meanwhile; but for those of one value:
+/// what clips reads the same whenever it does, which says nothing of chance.
+std::vector<double> lengths_of_repeats(const Recording& recording, Eigen::Index output,
+                                       double but_for = std::numeric_limits<double>::quiet_NaN());
 
 /// Whether no reading of any output changes within these rows.
 bool all_stand_still(const Recording& recording, const std::vector<RowRange>& rows);

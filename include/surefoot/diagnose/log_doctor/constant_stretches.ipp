@@ -201,14 +201,16 @@ SUREFOOT_ONCE double error_elsewhere(const LogFit& fit, std::size_t r, Eigen::In
   return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
-SUREFOOT_ONCE std::vector<double> lengths_of_repeats(const Recording& recording, Eigen::Index output) {
+SUREFOOT_ONCE std::vector<double> lengths_of_repeats(const Recording& recording, Eigen::Index output, double but_for) {
   double before = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> lengths;
   for (Eigen::Index row = 0; row < recording.rows(); ++row) {
     const double value = recording.outputs(output, row);
     if (!std::isfinite(value)) continue;
-    if (value != before) lengths.push_back(0);
-    ++lengths.back();
+    if (value != but_for) {
+      if (value != before) lengths.push_back(0);
+      ++lengths.back();
+    }
     before = value;
   }
   return lengths;

@@ -81,6 +81,13 @@ SUREFOOT_ONCE bool beyond_scatter(const std::vector<double>& errors, std::size_t
   return error_by_chance(errors, r) * static_cast<double>(errors.size()) * tests < criteria.significance;
 }
 
+/// Whether it is so in single steps, where the fit is to these: noise adds up in whole recordings, so that these
+/// scatter by more than steps do.
+SUREFOOT_ONCE bool steps_are_beyond_scatter(const LogDoctorInputs& inputs, const LogFit& logged, std::size_t r) {
+  return logged.bound.integration.restart > 0 &&
+         beyond_scatter(predicted_without(inputs, logged, r).error, r, inputs.criteria);
+}
+
 /// Squared correlation of what was measured with what is simulated, as far as it is positive, of the output where it
 /// is largest.
 SUREFOOT_ONCE double alikeness(const Recording& recording, const ResidualRows& residuals) {
@@ -178,7 +185,10 @@ SUREFOOT_ONCE std::optional<OddRecording> find_odd_recording(const LogDoctorInpu
     if (ran_away(predicted.error[*odd], inputs.criteria)) continue;
     const std::vector<double> errors = errors_of(predicted, fit, relative);
     if (outstanding(errors, inputs.criteria) != odd) continue;
-    if (!beyond_scatter(errors, *odd, inputs.criteria) && !is_unrelated(inputs, fit, predicted, *odd)) continue;
+    if (!beyond_scatter(errors, *odd, inputs.criteria) && !steps_are_beyond_scatter(inputs, logged, *odd) &&
+        !is_unrelated(inputs, fit, predicted, *odd)) {
+      continue;
+    }
     return OddRecording{*odd, times_the_others(errors, *odd)};
   }
   return with_own_parameters(inputs, logged);

@@ -147,7 +147,8 @@ SUREFOOT_ONCE std::vector<FoundFault> find_reading_faults(const LogFit& fit, con
     for (std::size_t r = 0; r < count; ++r) {
       const std::vector<double> lengths = lengths_of_repeats(fit.bound.recordings[r], output);
       for (const ConstantStretch& one : constant_stretches(fit, r, output, resolution, criteria)) {
-        const double by_chance = expected_repeats(lengths, static_cast<double>(one.readings), criteria);
+        const auto others = lengths_of_repeats(fit.bound.recordings[r], output, one.value);
+        const double by_chance = expected_repeats(others, static_cast<double>(one.readings), criteria);
         if (by_chance * static_cast<double>(count) < criteria.significance) stretches[r].push_back(one);
       }
       missed[r] = total_missed(stretches[r]);
