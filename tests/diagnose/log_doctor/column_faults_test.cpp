@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/diagnose/log_doctor/servo_log.hpp"
+#include "tests/diagnose/small_simulators.hpp"
 
 namespace {
 
@@ -175,6 +176,34 @@ TEST_SUITE("log_doctor") {
     const LogFit fit = fit_log(inputs, toys::servo_log());
     CHECK_FALSE(fit.error[0] < 1e4);  // in milliseconds it stands still instead, which explains nothing
     CHECK_FALSE(find_fault_of_all(inputs, fit));
+  }
+
+  TEST_CASE("just a thousand times slower than all others is milliseconds, though noise hides most of it") {
+    std::vector<surefoot::Recording> log;
+    surefoot::Rng rng(3);
+    for (int r = 0; r < 5; ++r) {
+      surefoot::Recording recording;
+      recording.time.setLinSpaced(4000, 0, 3.999);
+      recording.inputs.setConstant(1, 4000, 1 + 0.1 * r);
+      recording.inputs.rightCols(2000) *= 0.2;
+      recording.initial = recording.initial_scale = Eigen::VectorXd::Zero(1);
+      recording.outputs.setZero(1, 4000);
+      recording.outputs = simulate_augmented(toys::LeakyTank{}, {}, recording).outputs;
+      for (double& reading : recording.outputs.row(0)) reading += 0.4 * rng.normal();
+      log.push_back(std::move(recording));
+    }
+    log[2].time *= 1000;
+    const auto bind = [](std::vector<surefoot::Recording> some) {
+      return bind_simulator(toys::LeakyTank{}, std::move(some));
+    };
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs{bind, [](const BoundSimulator& bound) { return nominal_hypothesis(bound); }, parallel};
+    const auto found = find_fault_of_one(inputs, fit_log(inputs, log));
+    REQUIRE(found);
+    CHECK(found->recording == 2);
+    CHECK(found->repairs.front().kind == LogFaultKind::time_unit);
+    log[2].time *= 3;  // another setting of the logger as well
+    CHECK_FALSE(find_fault_of_one(inputs, fit_log(inputs, log)));
   }
 
   TEST_CASE("the effect of a repair is the odds for it") {

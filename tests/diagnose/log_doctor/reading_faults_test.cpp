@@ -44,8 +44,8 @@ TEST_SUITE("log_doctor") {
     const Parallel parallel = serially();
     const LogDoctorInputs inputs = toys::servo_doctor(parallel);
     const LogFit fit = fit_log(inputs, toys::servo_log({}));  // noise of 0.002 rad and 0.02 rad/s
-    CHECK(motion_that_shows(fit, 0, 0.0001) == doctest::Approx(4 * 0.002).epsilon(0.1));
-    CHECK(motion_that_shows(fit, 1, 0.0001) == doctest::Approx(4 * 0.02).epsilon(0.1));
+    CHECK(motion_that_shows(fit, 0, 0.0001) == doctest::Approx(3 * 0.002).epsilon(0.1));
+    CHECK(motion_that_shows(fit, 1, 0.0001) == doctest::Approx(3 * 0.02).epsilon(0.1));
     CHECK(motion_that_shows(fit, 0, 0.1) == 0.2);
   }
 

@@ -165,6 +165,19 @@ SUREFOOT_ONCE std::vector<Repairs> unit_of_time_repairs(const BoundSimulator& bo
   return repairs;
 }
 
+/// Whether a repair of the unit of time makes the intervals of a recording those of the others: another setting of the
+/// logger would hardly be just a thousand times slower.
+SUREFOOT_ONCE bool makes_intervals_equal(const BoundSimulator& bound, std::size_t r, const Repairs& repairs) {
+  constexpr double close = 1.1;  // ratio, or its inverse: medians of clocks that are not regular
+  if (repairs.front().kind != LogFaultKind::time_unit) return false;
+  std::vector<double> others;
+  for (std::size_t o = 0; o < bound.recordings.size(); ++o) {
+    if (o != r) others.push_back(median_interval(bound.recordings[o]));
+  }
+  const double ratio = repairs.front().amount * median_interval(bound.recordings[r]) / median_of(others);
+  return ratio < close && ratio * close > 1;
+}
+
 SUREFOOT_ONCE Recording repaired(const BoundSimulator& bound, Recording recording, const Repairs& repairs) {
   for (const LogRepair& repair : repairs) recording = repaired(bound, recording, repair);
   return recording;
@@ -250,7 +263,9 @@ SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs&
     const double others_worst = worst_of_others(fit.error, r);
     for (std::size_t t = 0; t < tried[r].size(); ++t) {
       const RepairEffect& effect = effects[r][t];
-      if (!(effect.log_odds > least_odds && effect.log_ratio > std::log(criteria.decisive))) continue;
+      const bool equal = makes_intervals_equal(fit.bound, r, tried[r][t]);  // no less than that it fits better is asked
+      const double odds = equal ? 0 : least_odds, ratio = equal ? 0 : std::log(criteria.decisive);
+      if (!(effect.log_odds > odds && effect.log_ratio > ratio)) continue;
       if (!(effect.over_unlike > likeliest_of)) continue;  // it is no recording of this machine, and bends to that
       if (!is_odd(fit, r, tried[r][t]) || !moves_beyond_misfit(fit, r, tried[r][t])) continue;
       std::vector<double> of_others;

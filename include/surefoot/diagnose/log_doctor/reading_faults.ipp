@@ -51,7 +51,8 @@ SUREFOOT_ONCE bool catches_up(const Recording& recording, const Eigen::MatrixXd&
 
 SUREFOOT_ONCE double motion_that_shows(const LogFit& fit, Eigen::Index output, double resolution) {
   constexpr double steps = 2;   // of the sensor
-  constexpr double noises = 4;  // standard deviations of a reading
+  constexpr double noises = 3;  // standard deviations of a reading: a sensor whose steps are as large as its noise
+                                // then repeats itself in one row of 70 at most and seems to catch up
   return std::max(steps * resolution, noises * noise_of(fit.bound, all_recordings(fit.bound), output));
 }
 
