@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "tests/diagnose/log_doctor/servo_log.hpp"
@@ -47,6 +48,32 @@ TEST_SUITE("log_doctor") {
     CHECK(motion_that_shows(fit, 0, 0.0001) == doctest::Approx(3 * 0.002).epsilon(0.1));
     CHECK(motion_that_shows(fit, 1, 0.0001) == doctest::Approx(3 * 0.02).epsilon(0.1));
     CHECK(motion_that_shows(fit, 0, 0.1) == 0.2);
+  }
+
+  TEST_CASE("a sensor with more noise than its steps does not repeat itself, and samples that do are made up for") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    auto log = toys::servo_log();
+    surefoot::Rng rng(5);
+    for (surefoot::Recording& recording : log) {
+      for (double& reading : recording.outputs.row(0))
+        reading = 0.01 * std::round((reading + 0.02 * rng.normal()) / 0.01);
+    }
+    const auto found_in = [&](const std::vector<surefoot::Recording>& some) {
+      return find_reading_faults(fit_log(inputs, some), inputs.criteria);
+    };
+    CHECK(found_in(log).empty());
+    auto resting = log, dropped = log;
+    for (Eigen::Index row = 1; row < 300; ++row) {
+      if (!(rng.uniform() < 0.4)) continue;
+      dropped[2].outputs(0, row) = dropped[2].outputs(0, row - 1);
+      if (row >= 250) resting[2].outputs(0, row) = resting[2].outputs(0, row - 1);  // little moves then
+    }
+    const auto found = found_in(dropped);
+    REQUIRE(found.size() == 1);
+    CHECK(*found[0].recording == 2);
+    CHECK(found[0].repairs[0].kind == LogFaultKind::repeated);
+    CHECK(found_in(resting).empty());
   }
 
   TEST_CASE("a speed that reads nothing while the position rests is no stuck sensor, whatever comes next") {

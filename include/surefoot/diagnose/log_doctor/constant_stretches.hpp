@@ -41,6 +41,9 @@ std::vector<double> lengths_of_repeats(const Recording& recording, Eigen::Index 
 /// Whether no reading of any output changes within these rows.
 bool all_stand_still(const Recording& recording, const std::vector<RowRange>& rows);
 
+/// How far the model moves into a row from the one before; from the reading there, where it begins each step at one.
+double step_of_model(const LogFit& fit, std::size_t r, Eigen::Index output, Eigen::Index row);
+
 /// The value that one in twenty exceed.
 double high_value(std::vector<double> values);
 

@@ -111,7 +111,6 @@ SUREFOOT_ONCE bool ends_in_jump(const LogFit& fit, std::size_t r, Eigen::Index o
   return std::abs(step) > jump * high_value(steps);
 }
 
-/// How far the model moves into a row from the one before; from the reading there, where it begins each step at one.
 SUREFOOT_ONCE double step_of_model(const LogFit& fit, std::size_t r, Eigen::Index output, Eigen::Index row) {
   const bool steps = fit.bound.integration.restart > 0;
   const Eigen::MatrixXd& simulated = fit.runs[r].outputs;

@@ -20,8 +20,14 @@ std::vector<FoundFault> find_gaps(const BoundSimulator& bound, const LogDoctorCr
 int lost_rows(const Recording& recording);
 
 /// By how much the model must move from row to row, that equal readings of an output are no chance: two steps of its
-/// sensor, or four standard deviations of its noise.
+/// sensor, or three standard deviations of its noise.
 double motion_that_shows(const LogFit& fit, Eigen::Index output, double resolution);
+
+/// Rows of an output that repeat the reading before, more of them than the noise of its sensor lets be equal even at
+/// rest and than any other recording has, with readings after them that catch up; none otherwise. Beside
+/// motion_that_shows for noise that is larger than a sensor's steps.
+std::vector<RowRange> repeats_in_spite_of_noise(const LogFit& fit, std::size_t r, Eigen::Index output,
+                                                double resolution, const LogDoctorCriteria& criteria);
 
 /// Stuck sensors, clipped readings and repeated rows.
 std::vector<FoundFault> find_reading_faults(const LogFit& fit, const LogDoctorCriteria& criteria);

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
@@ -82,6 +84,63 @@ SUREFOOT_ONCE double log_likelihood_ratio(double hits, double rows, double share
   return rows > 0 ? term(hits, hits / rows, share) + term(rows - hits, 1 - hits / rows, 1 - share) : 0;
 }
 
+/// Rows that are equal to the one before, and their share of all, but for stretches of many.
+struct EqualRows {
+  std::vector<RowRange> rows;
+  double asked = 0, share = 0;
+};
+
+SUREFOOT_ONCE EqualRows equal_rows(const Recording& recording, Eigen::Index output, const LogDoctorCriteria& criteria) {
+  EqualRows equal;
+  std::size_t in_a_row = 0;
+  for (Eigen::Index row = 1; row < recording.rows(); ++row) {
+    const double value = recording.outputs(output, row), before = recording.outputs(output, row - 1);
+    if (!std::isfinite(value) || !std::isfinite(before)) continue;
+    in_a_row = value == before ? in_a_row + 1 : 0;
+    if (in_a_row >= criteria.constant_rows) continue;  // a stretch
+    ++equal.asked;
+    if (in_a_row > 0) equal.rows.emplace_back(row, row + 1);
+  }
+  equal.share = equal.asked > 0 ? static_cast<double>(equal.rows.size()) / equal.asked : 0;
+  return equal;
+}
+
+/// Log-likelihood, over that of readings that go on from there, of what follows repeated ones if it makes up for what
+/// was missed, as the model moves and with this noise.
+SUREFOOT_ONCE double odds_of_catching_up(const LogFit& fit, std::size_t r, Eigen::Index output,
+                                         const std::vector<RowRange>& repeated, double noise) {
+  const Recording& recording = fit.bound.recordings[r];
+  double sum = 0;
+  for (const RowRange& one : repeated) {
+    const Eigen::Index row = one.first, next = row + 1;
+    if (next >= recording.rows() || recording.outputs(output, next) == recording.outputs(output, row)) continue;
+    const double step = recording.outputs(output, next) - recording.outputs(output, row);
+    const double last = step_of_model(fit, r, output, next), whole = last + step_of_model(fit, r, output, row);
+    if (!std::isfinite(step - whole)) continue;
+    sum += ((step - last) * (step - last) - (step - whole) * (step - whole)) / (4 * noise * noise);  // of two readings
+  }
+  return sum;
+}
+
+SUREFOOT_ONCE std::vector<RowRange> repeats_in_spite_of_noise(const LogFit& fit, std::size_t r, Eigen::Index output,
+                                                              double resolution, const LogDoctorCriteria& criteria) {
+  const std::size_t count = fit.bound.recordings.size();
+  const double noise = noise_of(fit.bound, all_recordings(fit.bound), output);
+  if (count < 2 || !(noise > resolution) || !fit.runs[r].finite) return {};
+  double chance =
+      resolution / (2 * noise * std::sqrt(std::numbers::pi));  // density of a difference of two readings at 0
+  for (std::size_t o = 0; o < count; ++o) {
+    if (o != r) chance = std::max(chance, equal_rows(fit.bound.recordings[o], output, criteria).share);
+  }
+  EqualRows equal = equal_rows(fit.bound.recordings[r], output, criteria);
+  if (!(chance > 0 && equal.share - chance > criteria.repeats * (1 - chance))) return {};
+  const double least_odds = std::log(static_cast<double>(count) / criteria.significance);
+  const double hits = equal.share * equal.asked;
+  if (log_likelihood_ratio(hits, equal.asked, chance) < least_odds) return {};
+  if (odds_of_catching_up(fit, r, output, equal.rows, noise) < least_odds) return {};
+  return std::move(equal.rows);
+}
+
 SUREFOOT_ONCE std::vector<FoundFault> repeated_row_faults(const LogFit& fit, Eigen::Index output, double resolution,
                                                           const LogDoctorCriteria& criteria) {
   const std::size_t count = fit.bound.recordings.size();
@@ -96,6 +155,11 @@ SUREFOOT_ONCE std::vector<FoundFault> repeated_row_faults(const LogFit& fit, Eig
   std::vector<FoundFault> found;
   const double least_odds = std::log(static_cast<double>(count) / criteria.significance);
   for (std::size_t r = 0; r < count; ++r) {
+    std::vector<RowRange> noisy = repeats_in_spite_of_noise(fit, r, output, resolution, criteria);
+    if (!noisy.empty()) {
+      found.push_back({{{.kind = LogFaultKind::repeated, .channel = {false, output}, .rows = std::move(noisy)}}, r});
+      continue;
+    }
     const double hits = static_cast<double>(repeated[r].rows.size()), rows = repeated[r].moving;
     const double other_hits = all_hits - hits, other_rows = all_rows - rows;
     if (!(hits > criteria.repeats * rows) || hits * other_rows <= criteria.decisive * other_hits * rows) continue;
