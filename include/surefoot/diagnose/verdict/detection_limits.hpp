@@ -8,7 +8,8 @@
 
 namespace surefoot::diagnosis {
 
-/// Limits of those proposals that have a strength and can be seen, by name.
+/// Limits of those proposals that have a strength and can be seen at a size that is not far beyond the one at which
+/// they were sought, by name: of each effect and place the plain form, or that which shows first.
 std::vector<DetectionLimit> detection_limits(const BoundSimulator& bound, const std::vector<Proposal>& proposals);
 
 }  // namespace surefoot::diagnosis
