@@ -120,6 +120,9 @@ TEST_SUITE("log_doctor") {
     log = toys::servo_log(toys::dry_friction());
     for (Recording& recording : log) recording.outputs.row(0).swap(recording.outputs.row(1));
     only_fault(log, "columns_swapped", "");
+    log = toys::servo_log(toys::dry_friction());
+    log[3].inputs.row(0).swap(log[3].outputs.row(0));  // the goal, and what was reached
+    only_fault(log, "columns_swapped", "rec_04.csv");
   }
 
   TEST_CASE("clocks that are off by another time in each recording are named, a delay of all is not") {
@@ -130,6 +133,19 @@ TEST_SUITE("log_doctor") {
     REQUIRE(examined.faults.size() == 1);
     CHECK(examined.faults[0].kind == "clock_offset");
     CHECK(examined.faults[0].size == doctest::Approx(0.1).epsilon(0.1));
+  }
+
+  TEST_CASE("outputs that are early in most recordings are the clock's as far as that goes, for no machine is early") {
+    Log log = toys::servo_log(toys::dry_friction());
+    const double early[] = {0.06, 0.0, 0.09, 0.03, 0.1, 0.07};
+    for (std::size_t r = 0; r < log.size(); ++r) toys::advance_outputs(log[r], early[r]);
+    const auto examined = toys::examined(log);
+    REQUIRE(examined.faults.size() == 1);
+    CHECK(examined.faults[0].kind == "clock_offset");
+    const Log on_time = toys::servo_log(toys::dry_friction());
+    for (std::size_t r = 0; r < log.size(); ++r) {
+      CHECK(examined.repaired[r].outputs(0, 120) == doctest::Approx(on_time[r].outputs(0, 120)).epsilon(0.05));
+    }
   }
 
   TEST_CASE("clocks that differ beside much physics that is missing are suspected, a delay of all is not") {

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -75,6 +76,18 @@ inline void delay_outputs(surefoot::Recording& recording, double late) {
   for (Eigen::Index row = 0; row < recording.rows(); ++row) {
     const Eigen::Index from = row < rows ? rows - row : row - rows;
     for (Eigen::Index k = 0; k < 2; ++k) recording.outputs(k, row) = before.outputs(k, from);
+  }
+}
+
+/// Outputs `early` [s] before the inputs; the last ones are not there.
+inline void advance_outputs(surefoot::Recording& recording, double early) {
+  const surefoot::Recording before = recording;
+  const auto rows = static_cast<Eigen::Index>(std::lround(early * 100));
+  for (Eigen::Index row = 0; row < recording.rows(); ++row) {
+    for (Eigen::Index k = 0; k < 2; ++k) {
+      recording.outputs(k, row) =
+          row + rows < recording.rows() ? before.outputs(k, row + rows) : std::numeric_limits<double>::quiet_NaN();
+    }
   }
 }
 

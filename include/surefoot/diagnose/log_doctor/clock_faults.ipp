@@ -262,7 +262,7 @@ SUREFOOT_ONCE std::optional<ClockFault> differing_offsets(const LogDoctorInputs&
   const double gain = mean_gain(delayed.fit, cured.fit);
   if (!(gain > std::log(criteria.suspect_gain))) return std::nullopt;
   ClockFault fault{LogFaultKind::offset, cured.amounts, gain > std::log(criteria.decisive)};
-  const double middle = median_of(fault.amounts);
+  const double middle = std::max(median_of(fault.amounts), 0.0);  // a delay; that a machine is early is its clock again
   for (double& amount : fault.amounts) amount -= middle;
   return fault;
 }

@@ -68,7 +68,7 @@ SUREFOOT_ONCE SpreadOfSizes spread_of_others(const LogFit& fit, std::size_t r) {
 SUREFOOT_ONCE ResidualRows touched(ResidualRows residuals, const Repairs& repairs) {
   std::vector<bool> keep(static_cast<std::size_t>(residuals.rows()), false);
   for (const LogRepair& repair : repairs) {
-    if (repair.channel.input || repair.kind == LogFaultKind::time_unit) return residuals;
+    if (repair.channel.input || repair.other.input || repair.kind == LogFaultKind::time_unit) return residuals;
     keep[static_cast<std::size_t>(repair.channel.index)] = true;
     if (repair.kind == LogFaultKind::swap) keep[static_cast<std::size_t>(repair.other.index)] = true;
   }

@@ -51,7 +51,8 @@ Recording repaired(const BoundSimulator& bound, const Recording& recording, cons
 const std::string& name_of(const SimulatorInfo& info, const Channel& channel);
 const std::string& unit_of(const SimulatorInfo& info, const Channel& channel);
 
-/// All repairs of columns that may be tried: signs, units of angles, pairs of columns.
+/// All repairs of columns that may be tried: signs, units of angles, pairs of inputs, of outputs, and of one of each in
+/// the same unit.
 std::vector<LogRepair> column_repairs(const SimulatorInfo& info);
 
 }  // namespace surefoot::diagnosis

@@ -69,7 +69,7 @@ SUREFOOT_ONCE std::vector<LogRepair> column_repairs(const SimulatorInfo& info) {
       repairs.push_back({.kind = LogFaultKind::degrees, .channel = channels[c], .amount = factor});
     }
     for (std::size_t d = c + 1; d < channels.size(); ++d) {
-      if (channels[d].input != channels[c].input) continue;
+      if (channels[d].input != channels[c].input && unit_of(info, channels[d]) != unit) continue;
       repairs.push_back({.kind = LogFaultKind::swap, .channel = channels[c], .other = channels[d]});
     }
   }
@@ -124,6 +124,7 @@ SUREFOOT_ONCE void reread_initial(const BoundSimulator& bound, const Recording& 
 SUREFOOT_ONCE Recording repaired(const BoundSimulator& bound, const Recording& recording, const LogRepair& repair) {
   Recording result = recording;
   Eigen::MatrixXd& columns = repair.channel.input ? result.inputs : result.outputs;
+  Eigen::MatrixXd& others = repair.other.input ? result.inputs : result.outputs;
   const Eigen::Index k = repair.channel.index;
   Eigen::VectorXd times = recording.time;
   const double start = recording.time[0];
@@ -134,7 +135,8 @@ SUREFOOT_ONCE Recording repaired(const BoundSimulator& bound, const Recording& r
       break;
     case LogFaultKind::swap:
       for (Eigen::Index row = 0; row < columns.cols(); ++row) {
-        std::swap(columns(k, row), columns(repair.other.index, row));
+        std::swap(columns(k, row), others(repair.other.index, row));
+        if (repair.other.input && !std::isfinite(others(repair.other.index, row))) return recording;  // was not read
       }
       break;
     case LogFaultKind::time_unit:
