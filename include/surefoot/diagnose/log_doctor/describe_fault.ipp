@@ -64,6 +64,9 @@ SUREFOOT_ONCE std::string what_is_wrong_in_readings(const SimulatorInfo& info, c
     case LogFaultKind::repeated:
       return std::to_string(repair.rows.size()) + " readings of " + name +
              " repeat the one before, unlike those of other recordings: samples were dropped";
+    case LogFaultKind::jump:
+      return "all readings jump at " + in_short(recording.time[rows.second]) +
+             " s: rows were lost there while the time was counted on";
     default:
       return "rows are missing for " + in_short(recording.time[rows.second] - from) + " s from " + in_short(from) +
              " s on" + more;
@@ -86,6 +89,7 @@ SUREFOOT_ONCE std::string cure_of(const LogRepair& repair) {
     case LogFaultKind::repeated:
       return "leave these readings empty";
     case LogFaultKind::gap:
+    case LogFaultKind::jump:
       return "cut the recording there, or record it again";
     case LogFaultKind::offset:
       return "shift the times of its outputs, or log both with one clock";
@@ -100,7 +104,8 @@ SUREFOOT_ONCE std::vector<LogFault> describe_fault(const BoundSimulator& bound, 
     LogFault fault;
     fault.kind = name_of(repair.kind);
     if (found.recording) fault.recording = bound.recordings[*found.recording].name;
-    if (repair.kind != LogFaultKind::time_unit && repair.kind != LogFaultKind::gap) {
+    if (repair.kind != LogFaultKind::time_unit && repair.kind != LogFaultKind::gap &&
+        repair.kind != LogFaultKind::jump) {
       fault.channel = name_of(bound.info, repair.channel);
     }
     fault.size = repair.rows.empty() ? repair.amount : static_cast<double>(repair.rows.size());

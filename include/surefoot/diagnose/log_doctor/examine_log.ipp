@@ -12,6 +12,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/log_doctor/describe_fault.hpp"
 #include "surefoot/diagnose/log_doctor/examine_log.hpp"
+#include "surefoot/diagnose/log_doctor/jumps.hpp"
 #include "surefoot/diagnose/log_doctor/odd_recording.hpp"
 #include "surefoot/diagnose/log_doctor/reading_faults.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
@@ -101,7 +102,9 @@ SUREFOOT_ONCE void examine_readings(LogUnderExamination& log) {
     log.add(describe_fault(log.fit.bound, fault), true);
     recordings[*fault.recording] = repaired(log.fit.bound, recordings[*fault.recording], fault.repairs);
   }
-  for (const FoundFault& gaps : find_gaps(log.fit.bound, criteria)) {
+  std::vector<FoundFault> cuts = find_gaps(log.fit.bound, criteria);
+  if (cuts.empty()) cuts = find_jumps(log.fit, criteria);
+  for (const FoundFault& gaps : cuts) {
     const std::size_t r = *gaps.recording;
     const Recording before = std::exchange(log.fit.bound.recordings[r], recordings[r]);
     recordings[r] = longest_piece(log.fit, r, gaps.repairs.front());

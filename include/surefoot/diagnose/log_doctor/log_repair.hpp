@@ -23,6 +23,7 @@ enum class LogFaultKind : std::uint8_t {
   clipped,      // a sensor stays at the end of its range
   repeated,     // rows repeat the ones before
   gap,          // rows are missing
+  jump,         // rows are missing, but their time is, too
   odd,          // unlike all other recordings
 };
 

@@ -37,6 +37,7 @@ SUREFOOT_ONCE std::string name_of(LogFaultKind kind) {
       return "clipped";
     case LogFaultKind::repeated:
     case LogFaultKind::gap:
+    case LogFaultKind::jump:
       return "dropped_samples";
     case LogFaultKind::odd:
       break;
@@ -162,6 +163,7 @@ SUREFOOT_ONCE Recording repaired(const BoundSimulator& bound, const Recording& r
       }
       return result;
     case LogFaultKind::gap:
+    case LogFaultKind::jump:
     case LogFaultKind::odd:
       return result;
   }
