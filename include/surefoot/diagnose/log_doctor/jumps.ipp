@@ -52,31 +52,42 @@ SUREFOOT_ONCE Eigen::VectorXd common_jumps(const LogFit& fit, std::size_t r, con
   return jumps;
 }
 
+/// The largest change of an output beyond that of the model in any other row, of all recordings.
+SUREFOOT_ONCE double largest_elsewhere(const LogFit& fit, std::size_t r, Eigen::Index output, Eigen::Index row) {
+  double largest = 0;
+  for (std::size_t o = 0; o < fit.runs.size(); ++o) {
+    for (Eigen::Index other = 1; fit.runs[o].finite && other < fit.bound.recordings[o].rows(); ++other) {
+      const double change = std::abs(change_beyond_model(fit, o, output, other));
+      if ((o != r || other != row) && std::isfinite(change)) largest = std::max(largest, change);
+    }
+  }
+  return largest;
+}
+
+/// Whether no output changes as much in any other row, and one by far less.
+SUREFOOT_ONCE bool stands_out(const LogFit& fit, std::size_t r, Eigen::Index row, const LogDoctorCriteria& criteria) {
+  bool by_far = false;
+  for (Eigen::Index k = 0; k < fit.bound.recordings[r].outputs.rows(); ++k) {
+    const double change = std::abs(change_beyond_model(fit, r, k, row)), elsewhere = largest_elsewhere(fit, r, k, row);
+    if (!(change > elsewhere)) return false;
+    by_far = by_far || change > criteria.decisive * elsewhere;
+  }
+  return by_far;
+}
+
 SUREFOOT_ONCE std::vector<FoundFault> find_jumps(const LogFit& fit, const LogDoctorCriteria& criteria) {
   constexpr double certain = 8;  // times what is usual: no noise
   const std::size_t count = fit.bound.recordings.size();
-  if (fit.bound.info.kind != SimulatorKind::ode || fit.bound.integration.restart > 0 || count < 2) return {};
+  std::vector<FoundFault> found;
+  if (fit.bound.info.kind != SimulatorKind::ode || fit.bound.integration.restart > 0 || count < 2) return found;
   const Eigen::VectorXd usual = usual_changes(fit);
-  std::vector<double> largest(count), second(count);
-  std::vector<Eigen::Index> where(count);
   for (std::size_t r = 0; r < count; ++r) {
     if (!fit.runs[r].finite) continue;
     const Eigen::VectorXd jumps = common_jumps(fit, r, usual);
-    for (Eigen::Index row = 1; row < jumps.size(); ++row) {
-      if (jumps[row] > largest[r]) {
-        second[r] = largest[r];
-        largest[r] = jumps[row];
-        where[r] = row;
-      } else {
-        second[r] = std::max(second[r], jumps[row]);
-      }
-    }
-  }
-  std::vector<FoundFault> found;
-  for (std::size_t r = 0; r < count; ++r) {
-    const double elsewhere = std::max(second[r], worst_of_others(largest, r));
-    if (!(largest[r] > std::max(certain, criteria.decisive * elsewhere))) continue;
-    found.push_back({{{.kind = LogFaultKind::jump, .rows = {{where[r] - 1, where[r]}}}}, r});
+    Eigen::Index row = 0;
+    for (Eigen::Index other = 1; other < jumps.size(); ++other) row = jumps[other] > jumps[row] ? other : row;
+    if (!(jumps[row] > certain && stands_out(fit, r, row, criteria))) continue;
+    found.push_back({{{.kind = LogFaultKind::jump, .rows = {{row - 1, row}}}}, r});
   }
   return found;
 }
