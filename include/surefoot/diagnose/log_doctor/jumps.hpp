@@ -1,16 +1,11 @@
 // Jumps of all readings at once: rows that were lost while the times were counted on.
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "surefoot/diagnose/log_doctor/column_faults.hpp"
 
 namespace surefoot::diagnosis {
-
-/// How far all outputs jump into each row, beyond what the model moves meanwhile: of the output that does so least, in
-/// units of what is usual from row to row; 0 where one is not read.
-Eigen::VectorXd common_jumps(const LogFit& fit, std::size_t r, const Eigen::VectorXd& usual);
 
 /// Recordings with one row into which all readings jump as they do nowhere else, by the rows on both sides: no machine
 /// moves so, with positions among its outputs.

@@ -21,35 +21,30 @@ SUREFOOT_ONCE double change_beyond_model(const LogFit& fit, std::size_t r, Eigen
   return read(output, row) - read(output, row - 1) - simulated(output, row) + simulated(output, row - 1);
 }
 
-/// What is usual of each output from row to row, as a standard deviation: at least noise and steps of its sensor.
-SUREFOOT_ONCE Eigen::VectorXd usual_changes(const LogFit& fit) {
+/// What is usual of an output from row to row, as a standard deviation: at least noise and steps of its sensor.
+SUREFOOT_ONCE double usual_change(const LogFit& fit, Eigen::Index output) {
   constexpr double of_median = 0.6745;  // the median absolute value of a normal distribution
-  Eigen::VectorXd usual(static_cast<Eigen::Index>(fit.bound.info.outputs.size()));
-  for (Eigen::Index k = 0; k < usual.size(); ++k) {
-    std::vector<double> changes;
-    for (std::size_t r = 0; r < fit.runs.size(); ++r) {
-      for (Eigen::Index row = 1; fit.runs[r].finite && row < fit.bound.recordings[r].rows(); ++row) {
-        const double change = change_beyond_model(fit, r, k, row);
-        if (std::isfinite(change)) changes.push_back(std::abs(change));
-      }
+  std::vector<double> changes;
+  for (std::size_t r = 0; r < fit.runs.size(); ++r) {
+    for (Eigen::Index row = 1; fit.runs[r].finite && row < fit.bound.recordings[r].rows(); ++row) {
+      const double change = change_beyond_model(fit, r, output, row);
+      if (std::isfinite(change)) changes.push_back(std::abs(change));
     }
-    usual[k] = std::max({median_of(changes) / of_median, noise_of(fit.bound, all_recordings(fit.bound), k),
-                         resolution_of(fit.bound.recordings, k)});
   }
-  return usual;
+  const double noise = noise_of(fit.bound, all_recordings(fit.bound), output);
+  const double sensor = std::max(noise, resolution_of(fit.bound.recordings, output));
+  return std::max(median_of(changes) / of_median, sensor);
 }
 
-SUREFOOT_ONCE Eigen::VectorXd common_jumps(const LogFit& fit, std::size_t r, const Eigen::VectorXd& usual) {
-  Eigen::VectorXd jumps = Eigen::VectorXd::Zero(fit.bound.recordings[r].rows());
-  for (Eigen::Index row = 1; row < jumps.size(); ++row) {
-    double least = std::numeric_limits<double>::infinity();
-    for (Eigen::Index k = 0; k < usual.size(); ++k) {
-      const double change = std::abs(change_beyond_model(fit, r, k, row));
-      least = std::isfinite(change) && usual[k] > 0 ? std::min(least, change / usual[k]) : 0;
-    }
-    if (std::isfinite(least)) jumps[row] = least;
+/// How far all outputs jump into a row: that which does so least, in units of what is usual; 0 where one is not read.
+SUREFOOT_ONCE double common_jump(const LogFit& fit, std::size_t r, Eigen::Index row, const std::vector<double>& usual) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < usual.size(); ++k) {
+    const double change = std::abs(change_beyond_model(fit, r, static_cast<Eigen::Index>(k), row));
+    if (!(std::isfinite(change) && usual[k] > 0)) return 0;
+    least = std::min(least, change / usual[k]);
   }
-  return jumps;
+  return least;
 }
 
 /// The largest change of an output beyond that of the model in any other row, of all recordings.
@@ -80,13 +75,20 @@ SUREFOOT_ONCE std::vector<FoundFault> find_jumps(const LogFit& fit, const LogDoc
   const std::size_t count = fit.bound.recordings.size();
   std::vector<FoundFault> found;
   if (fit.bound.info.kind != SimulatorKind::ode || fit.bound.integration.restart > 0 || count < 2) return found;
-  const Eigen::VectorXd usual = usual_changes(fit);
+  std::vector<double> usual;
+  for (std::size_t k = 0; k < fit.bound.info.outputs.size(); ++k) {
+    usual.push_back(usual_change(fit, static_cast<Eigen::Index>(k)));
+  }
   for (std::size_t r = 0; r < count; ++r) {
     if (!fit.runs[r].finite) continue;
-    const Eigen::VectorXd jumps = common_jumps(fit, r, usual);
     Eigen::Index row = 0;
-    for (Eigen::Index other = 1; other < jumps.size(); ++other) row = jumps[other] > jumps[row] ? other : row;
-    if (!(jumps[row] > certain && stands_out(fit, r, row, criteria))) continue;
+    double jump = certain;
+    for (Eigen::Index other = 1; other < fit.bound.recordings[r].rows(); ++other) {
+      const double size = common_jump(fit, r, other, usual);
+      if (size > jump) row = other;
+      jump = std::max(jump, size);
+    }
+    if (row == 0 || !stands_out(fit, r, row, criteria)) continue;
     found.push_back({{{.kind = LogFaultKind::jump, .rows = {{row - 1, row}}}}, r});
   }
   return found;

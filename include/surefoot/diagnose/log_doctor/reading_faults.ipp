@@ -110,6 +110,7 @@ SUREFOOT_ONCE EqualRows equal_rows(const Recording& recording, Eigen::Index outp
 SUREFOOT_ONCE double odds_of_catching_up(const LogFit& fit, std::size_t r, Eigen::Index output,
                                          const std::vector<RowRange>& repeated, double noise) {
   const Recording& recording = fit.bound.recordings[r];
+  const double variance = 2 * noise * noise;  // of the difference of two readings
   double sum = 0;
   for (const RowRange& one : repeated) {
     const Eigen::Index row = one.first, next = row + 1;
@@ -117,7 +118,7 @@ SUREFOOT_ONCE double odds_of_catching_up(const LogFit& fit, std::size_t r, Eigen
     const double step = recording.outputs(output, next) - recording.outputs(output, row);
     const double last = step_of_model(fit, r, output, next), whole = last + step_of_model(fit, r, output, row);
     if (!std::isfinite(step - whole)) continue;
-    sum += ((step - last) * (step - last) - (step - whole) * (step - whole)) / (4 * noise * noise);  // of two readings
+    sum += ((step - last) * (step - last) - (step - whole) * (step - whole)) / (2 * variance);
   }
   return sum;
 }
