@@ -31,7 +31,7 @@ void check_finite(const Number* numbers, Eigen::Index rows, Eigen::Index count, 
   }
 }
 
-SUREFOOT_INLINE void check_samples(const DatasetView& samples, Eigen::Index outputs, Eigen::Index weights) {
+SUREFOOT_ONCE void check_samples(const DatasetView& samples, Eigen::Index outputs, Eigen::Index weights) {
   const Eigen::Index count = samples.count;
   const auto fail = [](const std::string& what) { throw ForestError("Dataset: " + what); };
   if (count == 0) fail("there are no samples (inputs has no columns)");
@@ -77,7 +77,7 @@ double sum_of(Eigen::Index count, const Term& term) {
   return count % 2 == 0 ? sum : sum + term(count - 1);
 }
 
-SUREFOOT_INLINE std::vector<double> inverse_variances(const DatasetView& samples) {
+SUREFOOT_ONCE std::vector<double> inverse_variances(const DatasetView& samples) {
   const auto weight = [&](Eigen::Index i) { return samples.weights == nullptr ? 1.0 : samples.weights[i]; };
   const double weights = sum_of(samples.count, weight);
   std::vector<double> inverse;

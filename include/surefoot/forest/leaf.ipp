@@ -27,7 +27,7 @@ SUREFOOT_INLINE void ConstantLeaf::fit(const LeafSamples& samples, const LeafOpt
   }
 }
 
-SUREFOOT_INLINE std::string ConstantLeaf::c_code(int /*inputs*/, int outputs) {
+SUREFOOT_ONCE std::string ConstantLeaf::c_code(int /*inputs*/, int outputs) {
   return "for (o = 0; o < " + std::to_string(outputs) + "; ++o) out[o] += (double)number(p + o);";
 }
 
@@ -121,7 +121,7 @@ SUREFOOT_INLINE void LinearLeaf::fit(const LeafSamples& samples, const LeafOptio
   }
 }
 
-SUREFOOT_INLINE std::string LinearLeaf::c_code(int inputs, int outputs) {
+SUREFOOT_ONCE std::string LinearLeaf::c_code(int inputs, int outputs) {
   const std::string n = std::to_string(inputs);
   const auto at = [&](int i) { return "(double)number(p + " + std::to_string(inputs + i) + ")"; };
   return "for (o = 0; o < " + std::to_string(outputs) + "; ++o, p += " + std::to_string(inputs + 3) + ") {\n" +

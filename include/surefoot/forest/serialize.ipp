@@ -138,14 +138,14 @@ SUREFOOT_INLINE void write_trees(ByteWriter& out, const Trees& trees, std::uint3
   out.add_checksum(start);
 }
 
-SUREFOOT_INLINE void save_trees(std::ostream& stream, const Trees& trees, std::uint32_t leaf_tag) {
+SUREFOOT_ONCE void save_trees(std::ostream& stream, const Trees& trees, std::uint32_t leaf_tag) {
   ByteWriter out;
   write_trees(out, trees, leaf_tag);
   stream.write(reinterpret_cast<const char*>(out.bytes().data()), static_cast<std::streamsize>(out.size()));
   if (!stream) throw ForestError("the forest cannot be written to the stream");
 }
 
-SUREFOOT_INLINE void save_trees(const std::string& path, const Trees& trees, std::uint32_t leaf_tag) {
+SUREFOOT_ONCE void save_trees(const std::string& path, const Trees& trees, std::uint32_t leaf_tag) {
   ByteWriter out;
   write_trees(out, trees, leaf_tag);
   as_forest_error([&] { write_file_atomically(path, out.bytes()); });
@@ -155,7 +155,7 @@ SUREFOOT_INLINE Trees read_trees(ByteReader& in, const ForestType& type) {
   return as_forest_error([&] { return checked_trees<Trees>(in, type); });
 }
 
-SUREFOOT_INLINE Trees load_trees(std::istream& stream, const std::string& source, const ForestType& type) {
+SUREFOOT_ONCE Trees load_trees(std::istream& stream, const std::string& source, const ForestType& type) {
   Bytes bytes;
   auto read_more = [&](std::uint64_t count) {  // in pieces: a size that lies costs no more memory than there are bytes
     while (count > 0 && stream) {
@@ -176,7 +176,7 @@ SUREFOOT_INLINE Trees load_trees(std::istream& stream, const std::string& source
   return read_trees(in, type);
 }
 
-SUREFOOT_INLINE Trees load_trees(std::span<const std::byte> bytes, const std::string& source, const ForestType& type) {
+SUREFOOT_ONCE Trees load_trees(std::span<const std::byte> bytes, const std::string& source, const ForestType& type) {
   return as_forest_error([&] {
     ByteReader in(bytes, source);
     Trees trees = checked_trees<Trees>(in, type);
@@ -185,13 +185,13 @@ SUREFOOT_INLINE Trees load_trees(std::span<const std::byte> bytes, const std::st
   });
 }
 
-SUREFOOT_INLINE Trees load_trees(const std::string& path, const ForestType& type) {
+SUREFOOT_ONCE Trees load_trees(const std::string& path, const ForestType& type) {
   const Bytes bytes = as_forest_error([&] { return read_file(path); });
   return load_trees(bytes, "file " + path, type);
 }
 
-SUREFOOT_INLINE TreesView view_trees(std::span<const std::byte> bytes, const std::string& source,
-                                     const ForestType& type) {
+SUREFOOT_ONCE TreesView view_trees(std::span<const std::byte> bytes, const std::string& source,
+                                   const ForestType& type) {
   return as_forest_error([&] {
     ByteReader in(bytes, source);
     if (reinterpret_cast<std::uintptr_t>(bytes.data()) % alignof(Node) != 0) {
@@ -203,8 +203,6 @@ SUREFOOT_INLINE TreesView view_trees(std::span<const std::byte> bytes, const std
   });
 }
 
-SUREFOOT_INLINE std::uint64_t stored_bytes(ByteReader& in) {
-  return forest_header_bytes + read_header(in).body_bytes();
-}
+SUREFOOT_ONCE std::uint64_t stored_bytes(ByteReader& in) { return forest_header_bytes + read_header(in).body_bytes(); }
 
 }  // namespace surefoot::detail

@@ -36,12 +36,12 @@ SUREFOOT_INLINE void release_lines(void* memory, std::size_t bytes) {
 
 }  // namespace detail
 
-SUREFOOT_INLINE std::string TreesShape::shape() const {
+SUREFOOT_ONCE std::string TreesShape::shape() const {
   return std::to_string(inputs) + " inputs, " + std::to_string(outputs) + " outputs, " +
          std::to_string(leaf_parameters) + " numbers per leaf";
 }
 
-SUREFOOT_INLINE void Trees::append(const Trees& other) {
+SUREFOOT_ONCE void Trees::append(const Trees& other) {
   if (other.inputs != inputs || other.outputs != outputs || other.leaf_parameters != leaf_parameters) {
     throw ForestError("forests to join must have the same inputs, outputs and leaves, got " + shape() + " and " +
                       other.shape());

@@ -18,8 +18,8 @@ namespace surefoot::detail {
 
 /// The inverse of a^T a by its eigenvectors, and how many of them it is determined by. `open` becomes true for
 /// parameters that take part in a combination that `a` does not determine.
-SUREFOOT_INLINE Eigen::MatrixXd invert_normal_matrix(const Eigen::MatrixXd& a, Eigen::Index& rank,
-                                                     std::vector<bool>& open) {
+SUREFOOT_ONCE Eigen::MatrixXd invert_normal_matrix(const Eigen::MatrixXd& a, Eigen::Index& rank,
+                                                   std::vector<bool>& open) {
   constexpr double least_eigenvalue = 1e-12;  // per parameter; columns of `a` have length 1
   constexpr double takes_part = 1e-4;         // component of an eigenvector
   const SymmetricEigen eigen = eigen_of_symmetric(transposed_product(a, a));
@@ -45,8 +45,8 @@ SUREFOOT_INLINE Eigen::MatrixXd invert_normal_matrix(const Eigen::MatrixXd& a, E
 
 /// The asymptotic covariance of an M-estimate (Huber 1981, section 7.6); for the squared loss the usual one, the
 /// variance of a residual times the inverse of J^T J.
-SUREFOOT_INLINE void estimate_covariance(LeastSquaresResult& result, const Eigen::MatrixXd& full_jacobian,
-                                         const LeastSquaresOptions& options) {
+SUREFOOT_ONCE void estimate_covariance(LeastSquaresResult& result, const Eigen::MatrixXd& full_jacobian,
+                                       const LeastSquaresOptions& options) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::vector<Eigen::Index> free;
   for (Eigen::Index i = 0; i < result.x.size(); ++i) {

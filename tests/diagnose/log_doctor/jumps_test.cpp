@@ -20,14 +20,20 @@ void lose_rows(surefoot::Recording& recording, Eigen::Index from, Eigen::Index l
   recording.outputs.conservativeResize(Eigen::NoChange, rows);
 }
 
+std::vector<FoundFault> jumps_of(const LogDoctorInputs& inputs, const std::vector<surefoot::Recording>& log) {
+  std::vector<FoundFault> found;
+  add_jumps(fit_log(inputs, log), inputs.criteria, found);
+  return found;
+}
+
 TEST_SUITE("log_doctor") {
   TEST_CASE("rows that were lost while the time was counted on are a jump of all readings, an end stop is none") {
     const Parallel parallel = serially();
     const LogDoctorInputs inputs = toys::servo_doctor(parallel);
     auto log = toys::servo_log(toys::dry_friction());
-    CHECK(find_jumps(fit_log(inputs, log), inputs.criteria).empty());
+    CHECK(jumps_of(inputs, log).empty());
     lose_rows(log[2], 117, 30);
-    const auto found = find_jumps(fit_log(inputs, log), inputs.criteria);
+    const auto found = jumps_of(inputs, log);
     REQUIRE(found.size() == 1);
     CHECK(*found[0].recording == 2);
     CHECK(found[0].repairs[0].rows[0] == RowRange{116, 117});
@@ -41,7 +47,7 @@ TEST_SUITE("log_doctor") {
     stopped.parameters = {90, 8};
     stopped.effects = {{.name = "end_stop", .attached_to = "omega", .form = "upper", .values = {0.2, 0.0}}};
     log[2].outputs = simulate_augmented(toys::Servo{}, stopped, log[2]).outputs;
-    CHECK(find_jumps(fit_log(inputs, log), inputs.criteria).empty());
+    CHECK(jumps_of(inputs, log).empty());
   }
 }
 

@@ -103,7 +103,7 @@ SUREFOOT_ONCE void examine_readings(LogUnderExamination& log) {
     recordings[*fault.recording] = repaired(log.fit.bound, recordings[*fault.recording], fault.repairs);
   }
   std::vector<FoundFault> cuts = find_gaps(log.fit.bound, criteria);
-  if (cuts.empty()) cuts = find_jumps(log.fit, criteria);
+  if (cuts.empty()) add_jumps(log.fit, criteria, cuts);
   for (const FoundFault& gaps : cuts) {
     const std::size_t r = *gaps.recording;
     const Recording before = std::exchange(log.fit.bound.recordings[r], recordings[r]);

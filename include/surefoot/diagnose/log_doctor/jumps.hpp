@@ -7,9 +7,9 @@
 
 namespace surefoot::diagnosis {
 
-/// Recordings with one row into which all readings jump as they do nowhere else, by the rows on both sides: no machine
-/// moves so, with positions among its outputs.
-std::vector<FoundFault> find_jumps(const LogFit& fit, const LogDoctorCriteria& criteria);
+/// Adds recordings with one row into which all readings jump as they do nowhere else, by the rows on both sides: no
+/// machine moves so, with positions among its outputs.
+void add_jumps(const LogFit& fit, const LogDoctorCriteria& criteria, std::vector<FoundFault>& found);
 
 }  // namespace surefoot::diagnosis
 

@@ -70,11 +70,10 @@ SUREFOOT_ONCE bool stands_out(const LogFit& fit, std::size_t r, Eigen::Index row
   return by_far;
 }
 
-SUREFOOT_ONCE std::vector<FoundFault> find_jumps(const LogFit& fit, const LogDoctorCriteria& criteria) {
+SUREFOOT_ONCE void add_jumps(const LogFit& fit, const LogDoctorCriteria& criteria, std::vector<FoundFault>& found) {
   constexpr double certain = 8;  // times what is usual: no noise
   const std::size_t count = fit.bound.recordings.size();
-  std::vector<FoundFault> found;
-  if (fit.bound.info.kind != SimulatorKind::ode || fit.bound.integration.restart > 0 || count < 2) return found;
+  if (fit.bound.info.kind != SimulatorKind::ode || fit.bound.integration.restart > 0 || count < 2) return;
   std::vector<double> usual;
   for (std::size_t k = 0; k < fit.bound.info.outputs.size(); ++k) {
     usual.push_back(usual_change(fit, static_cast<Eigen::Index>(k)));
@@ -89,9 +88,10 @@ SUREFOOT_ONCE std::vector<FoundFault> find_jumps(const LogFit& fit, const LogDoc
       jump = std::max(jump, size);
     }
     if (row == 0 || !stands_out(fit, r, row, criteria)) continue;
-    found.push_back({{{.kind = LogFaultKind::jump, .rows = {{row - 1, row}}}}, r});
+    LogRepair jump_there{.kind = LogFaultKind::jump};
+    jump_there.rows.emplace_back(row - 1, row);
+    found.push_back({{jump_there}, r});
   }
-  return found;
 }
 
 }  // namespace surefoot::diagnosis

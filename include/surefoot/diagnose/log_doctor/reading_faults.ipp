@@ -158,15 +158,15 @@ SUREFOOT_ONCE std::vector<FoundFault> repeated_row_faults(const LogFit& fit, Eig
   for (std::size_t r = 0; r < count; ++r) {
     std::vector<RowRange> noisy = repeats_in_spite_of_noise(fit, r, output, resolution, criteria);
     if (!noisy.empty()) {
-      found.push_back({{{.kind = LogFaultKind::repeated, .channel = {false, output}, .rows = std::move(noisy)}}, r});
-      continue;
+      repeated[r].rows = std::move(noisy);
+    } else {
+      const double hits = static_cast<double>(repeated[r].rows.size()), rows = repeated[r].moving;
+      const double other_hits = all_hits - hits, other_rows = all_rows - rows;
+      if (!(hits > criteria.repeats * rows) || hits * other_rows <= criteria.decisive * other_hits * rows) continue;
+      const double share = all_hits / all_rows;  // if all recordings repeat alike
+      const double odds = log_likelihood_ratio(hits, rows, share) + log_likelihood_ratio(other_hits, other_rows, share);
+      if (odds < least_odds) continue;
     }
-    const double hits = static_cast<double>(repeated[r].rows.size()), rows = repeated[r].moving;
-    const double other_hits = all_hits - hits, other_rows = all_rows - rows;
-    if (!(hits > criteria.repeats * rows) || hits * other_rows <= criteria.decisive * other_hits * rows) continue;
-    const double share = all_hits / all_rows;  // if all recordings repeat alike
-    const double odds = log_likelihood_ratio(hits, rows, share) + log_likelihood_ratio(other_hits, other_rows, share);
-    if (odds < least_odds) continue;
     found.push_back({{{.kind = LogFaultKind::repeated, .channel = {false, output}, .rows = repeated[r].rows}}, r});
   }
   return found;

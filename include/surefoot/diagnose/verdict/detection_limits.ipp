@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "surefoot/core/compiled.hpp"
-#include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
 #include "surefoot/diagnose/verdict/detection_limits.hpp"
 
@@ -32,7 +31,9 @@ SUREFOOT_ONCE std::vector<DetectionLimit> detection_limits(const BoundSimulator&
   for (const Proposal& proposal : proposals) {
     const std::vector<Eigen::Index> strengths = strengths_of(*proposal.effect.effect);
     if (strengths.empty() || !can_be_seen(proposal)) continue;
-    if (holds_for_any(proposals, [&](const Proposal& other) { return says_it_better(other, proposal); })) continue;
+    bool is_best = true;
+    for (const Proposal& other : proposals) is_best = is_best && !says_it_better(other, proposal);
+    if (!is_best) continue;
     const Eigen::Index k = strengths.front();
     const EffectParameter& parameter = proposal.effect.effect->parameters[static_cast<std::size_t>(k)];
     limits.push_back({proposal.effect.effect->name,

@@ -16,7 +16,7 @@
 
 namespace surefoot::detail {
 
-SUREFOOT_INLINE LooseTree loosen(const Trees& trees, std::size_t tree) {
+SUREFOOT_ONCE LooseTree loosen(const Trees& trees, std::size_t tree) {
   const std::size_t width = trees.leaf_parameters;
   LooseTree loose;
   std::vector<std::size_t> from{trees.roots[tree]};  // of each loose node
@@ -47,7 +47,7 @@ SUREFOOT_INLINE LooseTree loosen(const Trees& trees, std::size_t tree) {
   return loose;
 }
 
-SUREFOOT_INLINE void fasten(const LooseTree& loose, Trees& into) {
+SUREFOOT_ONCE void fasten(const LooseTree& loose, Trees& into) {
   const std::size_t width = into.leaf_parameters;
   Trees one;
   one.inputs = into.inputs;
@@ -79,7 +79,7 @@ SUREFOOT_INLINE void fasten(const LooseTree& loose, Trees& into) {
   into.append(one);
 }
 
-SUREFOOT_INLINE Trees without_trees(const Trees& like) {
+SUREFOOT_ONCE Trees without_trees(const Trees& like) {
   Trees trees;
   trees.inputs = like.inputs;
   trees.outputs = like.outputs;
@@ -87,7 +87,7 @@ SUREFOOT_INLINE Trees without_trees(const Trees& like) {
   return trees;
 }
 
-SUREFOOT_INLINE std::size_t tree_bytes(std::size_t leaves, std::size_t leaf_parameters) {
+SUREFOOT_ONCE std::size_t tree_bytes(std::size_t leaves, std::size_t leaf_parameters) {
   const std::size_t lines = (2 * leaves + nodes_per_line - 1) / nodes_per_line;
   const std::size_t numbers = leaf_parameters == 1 ? 0 : leaves * leaf_parameters;
   return lines * nodes_per_line * sizeof(Node) + numbers * sizeof(float) + sizeof(std::uint32_t);

@@ -181,7 +181,7 @@ inline std::size_t trees_bytes(const Trees& trees) {
          trees.roots.size() * sizeof(std::uint32_t);
 }
 
-SUREFOOT_INLINE Trees collapse_to(std::vector<PrunedTree> pruned, const Trees& like, std::size_t bytes) {
+SUREFOOT_ONCE Trees collapse_to(std::vector<PrunedTree> pruned, const Trees& like, std::size_t bytes) {
   const std::size_t width = like.leaf_parameters;
   const std::size_t least = pruned.size() * tree_bytes(1, width);
   std::vector<PruningStep> steps;

@@ -28,7 +28,7 @@ inline Records pack(const DatasetView& samples, const RecordShape& shape) {
   return records;
 }
 
-SUREFOOT_INLINE TrainingSet training_set(const DatasetView& samples, const ExtraTreesOptions& options) {
+SUREFOOT_ONCE TrainingSet training_set(const DatasetView& samples, const ExtraTreesOptions& options) {
   check(options);
   if (samples.input_rows > max_forest_inputs) throw ForestError("a forest can have at most 255 inputs");
   if (samples.count > std::numeric_limits<std::int32_t>::max()) {
@@ -39,7 +39,7 @@ SUREFOOT_INLINE TrainingSet training_set(const DatasetView& samples, const Extra
   return {shape, pack(samples, shape), inverse_variances(samples)};
 }
 
-SUREFOOT_INLINE GrownTrees join(std::vector<GrownTrees> grown) {
+SUREFOOT_ONCE GrownTrees join(std::vector<GrownTrees> grown) {
   std::size_t nodes = 0;
   std::size_t parameters = 0;
   for (const GrownTrees& tree : grown) {

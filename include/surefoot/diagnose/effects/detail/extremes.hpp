@@ -11,7 +11,7 @@
 namespace surefoot::effects {
 
 /// The reading that a share of all readings lies below.
-inline double quantile(Values readings, double share) {
+[[gnu::cold]] inline double quantile(Values readings, double share) {
   std::vector<double> sorted(readings.begin(), readings.end());
   const auto at = static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(sorted.size() - 1)));
   std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
@@ -19,12 +19,12 @@ inline double quantile(Values readings, double share) {
 }
 
 /// Near the largest readings; none where there are too few readings to tell noise from a limit.
-inline std::vector<double> near_largest(Values readings, Values) {
+[[gnu::cold]] inline std::vector<double> near_largest(Values readings, Values) {
   if (readings.size() < 50) return {};
   return {quantile(readings, 0.998), quantile(readings, 0.98)};
 }
 
-inline std::vector<double> near_smallest(Values readings, Values) {
+[[gnu::cold]] inline std::vector<double> near_smallest(Values readings, Values) {
   if (readings.size() < 50) return {};
   return {quantile(readings, 0.002), quantile(readings, 0.02)};
 }
