@@ -42,6 +42,12 @@ TEST_SUITE("log_doctor") {
     CHECK(examined.faults[0].kind == "dropped_samples");
     CHECK(examined.repaired[2].rows() == 153);
 
+    log = toys::servo_log(toys::dry_friction());
+    for (Eigen::Index row = 112; row < 140; ++row) {  // stuck
+      for (Eigen::Index k = 0; k < 2; ++k) log[2].outputs(k, row) = log[2].outputs(k, 111);
+    }
+    CHECK(jumps_of(inputs, log).empty());
+
     log = toys::servo_log();
     surefoot::Augmented stopped;
     stopped.parameters = {90, 8};

@@ -36,10 +36,24 @@ SUREFOOT_ONCE double usual_change(const LogFit& fit, Eigen::Index output) {
   return std::max(median_of(changes) / of_median, sensor);
 }
 
-/// How far all outputs jump into a row: that which does so least, in units of what is usual; 0 where one is not read.
-SUREFOOT_ONCE double common_jump(const LogFit& fit, std::size_t r, Eigen::Index row, const std::vector<double>& usual) {
+/// Whether a row ends a stretch of equal readings: a sensor that was stuck jumps as well.
+SUREFOOT_ONCE bool ends_a_stretch(const Recording& recording, Eigen::Index output, Eigen::Index row,
+                                  const LogDoctorCriteria& criteria) {
+  const auto equal = static_cast<Eigen::Index>(criteria.constant_rows);
+  if (row < equal) return false;
+  for (Eigen::Index before = row - equal; before < row; ++before) {
+    if (recording.outputs(output, before) != recording.outputs(output, row - 1)) return false;
+  }
+  return true;
+}
+
+/// How far all outputs jump into a row: that which does so least, in units of what is usual; 0 where one is not read,
+/// or was stuck before.
+SUREFOOT_ONCE double common_jump(const LogFit& fit, std::size_t r, Eigen::Index row, const std::vector<double>& usual,
+                                 const LogDoctorCriteria& criteria) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < usual.size(); ++k) {
+    if (ends_a_stretch(fit.bound.recordings[r], static_cast<Eigen::Index>(k), row, criteria)) return 0;
     const double change = std::abs(change_beyond_model(fit, r, static_cast<Eigen::Index>(k), row));
     if (!(std::isfinite(change) && usual[k] > 0)) return 0;
     least = std::min(least, change / usual[k]);
@@ -83,7 +97,7 @@ SUREFOOT_ONCE void add_jumps(const LogFit& fit, const LogDoctorCriteria& criteri
     Eigen::Index row = 0;
     double jump = certain;
     for (Eigen::Index other = 1; other < fit.bound.recordings[r].rows(); ++other) {
-      const double size = common_jump(fit, r, other, usual);
+      const double size = common_jump(fit, r, other, usual, criteria);
       if (size > jump) row = other;
       jump = std::max(jump, size);
     }
