@@ -41,7 +41,7 @@ SUREFOOT_ONCE std::string TreesShape::shape() const {
          std::to_string(leaf_parameters) + " numbers per leaf";
 }
 
-SUREFOOT_ONCE void Trees::append(const Trees& other) {
+SUREFOOT_INLINE void Trees::append(const Trees& other) {
   if (other.inputs != inputs || other.outputs != outputs || other.leaf_parameters != leaf_parameters) {
     throw ForestError("forests to join must have the same inputs, outputs and leaves, got " + shape() + " and " +
                       other.shape());

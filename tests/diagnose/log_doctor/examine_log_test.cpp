@@ -281,7 +281,7 @@ TEST_SUITE("log_doctor") {
     for (const LogFault& fault : cut_short.faults) CHECK(fault.kind == "sign_flipped");
   }
 
-  TEST_CASE("a caution names the first fault that was not repaired, or was if all were") {
+  TEST_CASE("what stands before a verdict names the first fault that was not repaired, or was if all were") {
     using surefoot::diagnosis::fault_preface;
     CHECK(fault_preface({}).empty());
     LogFault fault{.kind = "clipped", .sentence = "a: is clipped", .cure = "mend it", .repaired = true};

@@ -147,15 +147,20 @@ SUREFOOT_ONCE double median_interval(const Recording& recording) {
   return median_of(intervals);
 }
 
-/// The time unit that would make the intervals of a recording those of the others, if they are far apart.
-SUREFOOT_ONCE std::vector<Repairs> unit_of_time_repairs(const BoundSimulator& bound, std::size_t r) {
-  constexpr double alike = 10;  // ratio of intervals that different settings of a logger explain
-  if (bound.info.kind != SimulatorKind::ode) return {};
+/// How many times as long as those of the other recordings the intervals of one are, by medians.
+SUREFOOT_ONCE double ratio_of_intervals(const BoundSimulator& bound, std::size_t r) {
   std::vector<double> others;
   for (std::size_t o = 0; o < bound.recordings.size(); ++o) {
     if (o != r) others.push_back(median_interval(bound.recordings[o]));
   }
-  const double ratio = median_interval(bound.recordings[r]) / median_of(others);
+  return median_interval(bound.recordings[r]) / median_of(others);
+}
+
+/// The time unit that would make the intervals of a recording those of the others, if they are far apart.
+SUREFOOT_ONCE std::vector<Repairs> unit_of_time_repairs(const BoundSimulator& bound, std::size_t r) {
+  constexpr double alike = 10;  // ratio of intervals that different settings of a logger explain
+  if (bound.info.kind != SimulatorKind::ode) return {};
+  const double ratio = ratio_of_intervals(bound, r);
   std::vector<Repairs> repairs;
   for (const double unit : time_units) {
     if (ratio > alike && ratio * unit < alike && ratio * unit * alike > 1) {
@@ -170,11 +175,7 @@ SUREFOOT_ONCE std::vector<Repairs> unit_of_time_repairs(const BoundSimulator& bo
 SUREFOOT_ONCE bool makes_intervals_equal(const BoundSimulator& bound, std::size_t r, const Repairs& repairs) {
   constexpr double close = 1.1;  // ratio, or its inverse: medians of clocks that are not regular
   if (repairs.front().kind != LogFaultKind::time_unit) return false;
-  std::vector<double> others;
-  for (std::size_t o = 0; o < bound.recordings.size(); ++o) {
-    if (o != r) others.push_back(median_interval(bound.recordings[o]));
-  }
-  const double ratio = repairs.front().amount * median_interval(bound.recordings[r]) / median_of(others);
+  const double ratio = repairs.front().amount * ratio_of_intervals(bound, r);
   return ratio < close && ratio * close > 1;
 }
 
@@ -263,7 +264,7 @@ SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs&
     const double others_worst = worst_of_others(fit.error, r);
     for (std::size_t t = 0; t < tried[r].size(); ++t) {
       const RepairEffect& effect = effects[r][t];
-      const bool equal = makes_intervals_equal(fit.bound, r, tried[r][t]);  // no less than that it fits better is asked
+      const bool equal = makes_intervals_equal(fit.bound, r, tried[r][t]);  // then it is only asked to fit better
       const double odds = equal ? 0 : least_odds, ratio = equal ? 0 : std::log(criteria.decisive);
       if (!(effect.log_odds > odds && effect.log_ratio > ratio)) continue;
       if (!(effect.over_unlike > likeliest_of)) continue;  // it is no recording of this machine, and bends to that

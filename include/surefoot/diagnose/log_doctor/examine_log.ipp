@@ -104,11 +104,11 @@ SUREFOOT_ONCE void examine_readings(LogUnderExamination& log) {
   }
   std::vector<FoundFault> cuts = find_gaps(log.fit.bound, criteria);
   if (cuts.empty()) add_jumps(log.fit, criteria, cuts);
-  for (const FoundFault& gaps : cuts) {
-    const std::size_t r = *gaps.recording;
+  for (const FoundFault& cut : cuts) {
+    const std::size_t r = *cut.recording;
     const Recording before = std::exchange(log.fit.bound.recordings[r], recordings[r]);
-    recordings[r] = longest_piece(log.fit, r, gaps.repairs.front());
-    log.add(describe_fault(log.fit.bound, gaps), recordings[r].rows() < before.rows());
+    recordings[r] = longest_piece(log.fit, r, cut.repairs.front());
+    log.add(describe_fault(log.fit.bound, cut), recordings[r].rows() < before.rows());
   }
   if (!log.faults.empty()) log.calibrate_again(std::move(recordings));
 }

@@ -98,13 +98,14 @@ SUREFOOT_ONCE void add_jumps(const LogFit& fit, const LogDoctorCriteria& criteri
     double jump = certain;
     for (Eigen::Index other = 1; other < fit.bound.recordings[r].rows(); ++other) {
       const double size = common_jump(fit, r, other, usual, criteria);
-      if (size > jump) row = other;
-      jump = std::max(jump, size);
+      if (!(size > jump)) continue;
+      jump = size;
+      row = other;
     }
     if (row == 0 || !stands_out(fit, r, row, criteria)) continue;
-    LogRepair jump_there{.kind = LogFaultKind::jump};
-    jump_there.rows.emplace_back(row - 1, row);
-    found.push_back({{jump_there}, r});
+    LogRepair lost{.kind = LogFaultKind::jump};
+    lost.rows.emplace_back(row - 1, row);
+    found.push_back({{lost}, r});
   }
 }
 

@@ -23,7 +23,7 @@ enum class LogFaultKind : std::uint8_t {
   clipped,      // a sensor stays at the end of its range
   repeated,     // rows repeat the ones before
   gap,          // rows are missing
-  jump,         // rows are missing, but their time is, too
+  jump,         // rows are missing, and so is their time
   odd,          // unlike all other recordings
 };
 

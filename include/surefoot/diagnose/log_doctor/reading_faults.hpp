@@ -23,12 +23,6 @@ int lost_rows(const Recording& recording);
 /// sensor, or three standard deviations of its noise.
 double motion_that_shows(const LogFit& fit, Eigen::Index output, double resolution);
 
-/// Rows of an output that repeat the reading before, more of them than the noise of its sensor lets be equal even at
-/// rest and than any other recording has, with readings after them that catch up; none otherwise. Beside
-/// motion_that_shows for noise that is larger than a sensor's steps.
-std::vector<RowRange> repeats_in_spite_of_noise(const LogFit& fit, std::size_t r, Eigen::Index output,
-                                                double resolution, const LogDoctorCriteria& criteria);
-
 /// Stuck sensors, clipped readings and repeated rows.
 std::vector<FoundFault> find_reading_faults(const LogFit& fit, const LogDoctorCriteria& criteria);
 

@@ -123,19 +123,19 @@ SUREFOOT_ONCE double odds_of_catching_up(const LogFit& fit, std::size_t r, Eigen
   return sum;
 }
 
+/// Rows that repeat the reading before: more of them than the noise of the sensor lets be equal even at rest and than
+/// any other recording has (`shares` of all), with readings after them that catch up; none otherwise. Beside
+/// motion_that_shows, for noise that is larger than the sensor's steps.
 SUREFOOT_ONCE std::vector<RowRange> repeats_in_spite_of_noise(const LogFit& fit, std::size_t r, Eigen::Index output,
-                                                              double resolution, const LogDoctorCriteria& criteria) {
-  const std::size_t count = fit.bound.recordings.size();
+                                                              double resolution, const std::vector<double>& shares,
+                                                              const LogDoctorCriteria& criteria) {
   const double noise = noise_of(fit.bound, all_recordings(fit.bound), output);
-  if (count < 2 || !(noise > resolution) || !fit.runs[r].finite) return {};
-  double chance =
-      resolution / (2 * noise * std::sqrt(std::numbers::pi));  // density of a difference of two readings at 0
-  for (std::size_t o = 0; o < count; ++o) {
-    if (o != r) chance = std::max(chance, equal_rows(fit.bound.recordings[o], output, criteria).share);
-  }
+  if (shares.size() < 2 || !(noise > resolution) || !fit.runs[r].finite) return {};
+  const double density = 1 / (2 * noise * std::sqrt(std::numbers::pi));  // at 0, of the difference of two readings
+  const double chance = std::max(resolution * density, worst_of_others(shares, r));
   EqualRows equal = equal_rows(fit.bound.recordings[r], output, criteria);
   if (!(chance > 0 && equal.share - chance > criteria.repeats * (1 - chance))) return {};
-  const double least_odds = std::log(static_cast<double>(count) / criteria.significance);
+  const double least_odds = std::log(static_cast<double>(shares.size()) / criteria.significance);
   const double hits = equal.share * equal.asked;
   if (log_likelihood_ratio(hits, equal.asked, chance) < least_odds) return {};
   if (odds_of_catching_up(fit, r, output, equal.rows, noise) < least_odds) return {};
@@ -147,16 +147,18 @@ SUREFOOT_ONCE std::vector<FoundFault> repeated_row_faults(const LogFit& fit, Eig
   const std::size_t count = fit.bound.recordings.size();
   const double least_motion = motion_that_shows(fit, output, resolution);
   std::vector<RepeatedRows> repeated(count);
+  std::vector<double> equal;  // share of the rows of each recording
   double all_hits = 0, all_rows = 0;
   for (std::size_t r = 0; r < count; ++r) {
     if (fit.runs[r].finite) repeated[r] = repeated_rows(fit, r, output, least_motion, criteria);
+    equal.push_back(equal_rows(fit.bound.recordings[r], output, criteria).share);
     all_hits += static_cast<double>(repeated[r].rows.size());
     all_rows += repeated[r].moving;
   }
   std::vector<FoundFault> found;
   const double least_odds = std::log(static_cast<double>(count) / criteria.significance);
   for (std::size_t r = 0; r < count; ++r) {
-    std::vector<RowRange> noisy = repeats_in_spite_of_noise(fit, r, output, resolution, criteria);
+    std::vector<RowRange> noisy = repeats_in_spite_of_noise(fit, r, output, resolution, equal, criteria);
     if (!noisy.empty()) {
       repeated[r].rows = std::move(noisy);
     } else {

@@ -22,8 +22,8 @@ SUREFOOT_INLINE double size_at(const Sizes& sizes, const Effect& effect, std::si
   return at < inputs ? sizes.input[at] : sizes.signal[at - inputs];
 }
 
-SUREFOOT_ONCE EffectSlots assign_slots(const Augmentation& augmentation, const SimulatorInfo& info,
-                                       const SimulatorStructure& structure, const Sizes& sizes) {
+SUREFOOT_INLINE EffectSlots assign_slots(const Augmentation& augmentation, const SimulatorInfo& info,
+                                         const SimulatorStructure& structure, const Sizes& sizes) {
   EffectSlots slots;
   const auto inputs = static_cast<int>(info.inputs.size());
   for (std::size_t i = 0; i < augmentation.effects.size(); ++i) {
