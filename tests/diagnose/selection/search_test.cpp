@@ -14,6 +14,8 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/diagnose.hpp"
+#include "surefoot/diagnose/effects/overflow.hpp"
+#include "surefoot/diagnose/selection/propose.hpp"
 #include "tests/diagnose/selection/tank_bench.hpp"
 
 namespace surefoot::diagnosis {
@@ -64,25 +66,30 @@ struct TwoTanks {
   Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return Output(x[1]); }
 };
 
-TEST_CASE("two tanks that both overflow are found, though neither overflow explains much without the other") {
+/// Four recordings of two tanks with these effects, begun at levels that are not known.
+std::vector<Recording> logs_of_tanks(const std::vector<NamedEffect>& effects) {
   std::vector<Recording> logs;
   Rng rng(5);
   for (int r = 0; r < 4; ++r) {
     Recording log = toys::blank_recording(TwoTanks{}.info(), 200, 4);
     log.name = "tanks " + std::to_string(r);
     log.initial = Vec<2>(5, 5);
-    log.initial_scale = Vec<2>(5, 5);  // not known
+    log.initial_scale = Vec<2>(5, 5);
     double pump = 3;
     for (Eigen::Index i = 0; i < log.rows(); ++i) {
       if (i % 20 == 0) pump = 1.5 + 4 * rng.uniform();
       log.inputs(0, i) = pump;
     }
-    const std::vector<NamedEffect> both{{"overflow", "upper", "spill", "lower", {8, 0.5}},
-                                        {"overflow", "lower", {}, {}, {9}}};
-    log.outputs = simulate_augmented(TwoTanks{}, toys::machine({0.06, 0.055, 0.05, 0.05}, both), log).outputs;
+    log.outputs = simulate_augmented(TwoTanks{}, toys::machine({0.06, 0.055, 0.05, 0.05}, effects), log).outputs;
     for (double& level : log.outputs.reshaped()) level += 0.03 * rng.normal();
     logs.push_back(std::move(log));
   }
+  return logs;
+}
+
+TEST_CASE("two tanks that both overflow are found, though neither overflow explains much without the other") {
+  const std::vector<Recording> logs =
+      logs_of_tanks({{"overflow", "upper", "spill", "lower", {8, 0.5}}, {"overflow", "lower", {}, {}, {9}}});
   const Diagnosis found = diagnose(TwoTanks{}, logs, DiagnoseOptions{}, Threads{}, 1);
   INFO(found.sentence);
   CHECK(found.verdict == Verdict::missing_physics);
@@ -91,6 +98,24 @@ TEST_CASE("two tanks that both overflow are found, though neither overflow expla
   std::sort(labels.begin(), labels.end());
   CHECK(labels == std::vector<std::string>{"overflow at lower", "overflow at upper"});
   CHECK(found.noise_ratio < 1.2);
+}
+
+TEST_CASE("a tank that begins high may overflow far below that") {
+  std::vector<Recording> logs = logs_of_tanks({{"overflow", "upper", "spill", "lower", {9, 0.5}}});
+  logs[0].initial[0] = 22;  // as far as the model knows
+  BoundSimulator bound = bind_simulator(TwoTanks{}, logs);
+  Hypothesis base = nominal_hypothesis(bound);
+  base.parameters = Vec<4>(0.06, 0.055, 0.05, 0.05);
+  FitProblem problem;
+  problem.recordings = all_recordings(bound);
+  const auto runs = simulate_all(bound, base, problem.recordings, {}, serially());
+  problem.weighting.sigma = residual_sizes(bound, problem.recordings, runs);
+  bound.sizes = measure_sizes(bound, base, problem.recordings, runs);
+  const auto overflow = attachments(bound, {effects::overflow_spill()}, {true});
+  const auto proposals = propose(bound, base, problem, overflow, 0, serially());
+  REQUIRE_FALSE(proposals.empty());
+  CHECK(proposals.front().effect.place == "upper");
+  CHECK(proposals.front().gain > 0.5);
 }
 
 TEST_CASE("probabilities of the choice and of its alternatives add up to 1, the most probable first") {
