@@ -55,7 +55,9 @@ void print_row(Bus<Protocol, SerialPort>& bus, std::uint8_t id) {
 template <class Protocol>
 void check(const Options& options) {
   const auto ids = example::parse_ids(options.ids);
-  Bus<Protocol, SerialPort> bus{SerialPort(options.port, options.bits_per_s), {.memory_s = 5e-3, .retries = 2}};
+  constexpr double patience_s = 20e-3;  // adapters keep what they read for 16 ms, as they come
+  Bus<Protocol, SerialPort> bus{SerialPort(options.port, options.bits_per_s),
+                                {.latency_s = patience_s, .memory_s = 5e-3, .retries = 2}};
   std::size_t found = 0;
   for (const std::uint8_t id : ids) {
     if (!bus.ping(id)) continue;
