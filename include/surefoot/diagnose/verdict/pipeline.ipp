@@ -307,7 +307,7 @@ SUREFOOT_ONCE std::string shortening_sentence(Eigen::Index rows) {
 }
 
 SUREFOOT_ONCE std::string no_time_to_begin_anew_sentence() {
-  return "a fault of the log showed only with what was found, and there was no time to begin anew with it repaired: "
+  return "a fault of the log showed with what was found, and there was no time to begin anew with it repaired: "
          "repair the recording, or give more time (max_seconds, --budget)";
 }
 
@@ -464,7 +464,8 @@ SUREFOOT_ONCE Diagnosis diagnose_and_examine_again(const BindSimulator& bind, co
     if (found_late && !begins_anew) diagnosis.remarks.push_back({"", no_time_to_begin_anew_sentence()});
     const bool named_again = is_named_again(log.faults, more.faults);
     if (named_again) {
-      log = examine_with_effects(bind, logged, found, run, log.faults);
+      LogExamination again = examine_with_effects(bind, logged, found, run, log.faults);
+      if (!run.has_ended()) log = std::move(again);  // what was cut short says nothing
     } else if (!more.faults.empty()) {
       append_items(log.faults, more.faults);
       log.repaired = std::move(more.repaired);
