@@ -7,8 +7,11 @@
 namespace diagnose_program {
 namespace {
 
-// Ending of a column's name, and the unit as it is printed. Longer endings are looked for first.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 79> units{{
+using Unit = std::pair<std::string_view, std::string_view>;
+
+// Ending of a column's name, and the unit as it is printed; longer endings are looked for first. Units per time are
+// told from these: "m_s", "mL_min".
+constexpr std::array<Unit, 65> units{{
     {"s", "s"},
     {"ms", "ms"},
     {"us", "us"},
@@ -24,29 +27,18 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 79> units{{
     {"mrad", "mrad"},
     {"rev", "rev"},
     {"rpm", "rpm"},
-    {"rad_s", "rad/s"},
-    {"deg_s", "deg/s"},
-    {"m_s", "m/s"},
-    {"cm_s", "cm/s"},
-    {"mm_s", "mm/s"},
-    {"km_h", "km/h"},
     {"m_s2", "m/s^2"},
     {"rad_s2", "rad/s^2"},
     {"m3", "m^3"},
-    {"m3_s", "m^3/s"},
     {"m2", "m^2"},
     {"cm2", "cm^2"},
     {"cm3", "cm^3"},
-    {"cm3_s", "cm^3/s"},
     {"l", "l"},
-    {"l_s", "l/s"},
-    {"l_min", "l/min"},
     {"L", "L"},
-    {"L_s", "L/s"},
-    {"L_min", "L/min"},
+    {"ml", "ml"},
+    {"mL", "mL"},
     {"kg", "kg"},
     {"g", "g"},
-    {"kg_s", "kg/s"},
     {"N", "N"},
     {"mN", "mN"},
     {"kN", "kN"},
@@ -76,9 +68,6 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 79> units{{
     {"mol", "mol"},
     {"mol_l", "mol/l"},
     {"lx", "lx"},
-    {"V_s", "V/s"},
-    {"A_s", "A/s"},
-    {"K_s", "K/s"},
     {"N_m2", "N/m^2"},
     {"pct", "%"},
     {"percent", "%"},
@@ -89,6 +78,20 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 79> units{{
     {"1", "1"},
     {"duty", "1"},
 }};
+
+// The longest of these endings of a column's name; empty if there is none.
+Unit last_unit(std::string_view column) {
+  Unit last;
+  for (const Unit& one : units) {
+    const std::string_view ending = one.first;
+    const bool ends =
+        column.size() > ending.size() && column.ends_with(ending) && column[column.size() - ending.size() - 1] == '_';
+    if (ends && ending.size() > last.first.size()) last = one;
+  }
+  return last;
+}
+
+bool is_time(std::string_view unit) { return unit == "s" || unit == "min" || unit == "h"; }
 
 // Letters and digits alone: "N m", "N.m" and "N*m" are the same.
 std::string bare(std::string_view unit) {
@@ -110,16 +113,11 @@ bool ends_in_words_of(std::string_view column, std::string_view unit) {
 }  // namespace
 
 std::string unit_of_column(std::string_view column) {
-  std::string_view best_ending, best;
-  for (const auto& [ending, unit] : units) {
-    const bool ends =
-        column.size() > ending.size() && column.ends_with(ending) && column[column.size() - ending.size() - 1] == '_';
-    if (ends && ending.size() > best_ending.size()) {
-      best_ending = ending;
-      best = unit;
-    }
-  }
-  return std::string(best);
+  const Unit last = last_unit(column);
+  if (!is_time(last.second)) return std::string(last.second);
+  const std::string_view before = last_unit(column.substr(0, column.size() - last.first.size() - 1)).second;
+  const bool rate = !before.empty() && before != "1" && !is_time(before);
+  return (rate ? std::string(before) + "/" : "") + std::string(last.second);
 }
 
 bool unit_fits(std::string_view column, std::string_view unit) {

@@ -180,6 +180,15 @@ TEST_CASE("a unit may be written as the column's name ends") {
   CHECK(diagnose_program::unit_fits("heater_degC", "degC"));
   CHECK(diagnose_program::unit_fits("flow_L_min", "L/min"));
   CHECK(diagnose_program::unit_fits("flow_L_s", "L/s"));
+  for (const auto& [column, unit] : std::vector<std::pair<std::string, std::string>>{{"flow_mL_s", "mL/s"},
+                                                                                     {"rate_degC_min", "C/min"},
+                                                                                     {"v_km_h", "km/h"},
+                                                                                     {"impulse_N_s", "N s"},
+                                                                                     {"t_s", "s"},
+                                                                                     {"speed_rad_s", "rad/s"},
+                                                                                     {"level_norm_s", "s"}}) {
+    CHECK(diagnose_program::unit_of_column(column) == unit);
+  }
   CHECK(diagnose_program::unit_fits("heater_degC", "C"));
   CHECK_FALSE(diagnose_program::unit_fits("heater_degC", "K"));
   CHECK(diagnose_program::unit_fits("conc_g_l", "g/l"));
