@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,26 @@
 namespace {
 
 using namespace surefoot::diagnosis;
+using surefoot::Recording;
+
+/// Two carts, each driven by a command of its own, that reach from half to twice the speed that the model says.
+struct TwoCarts {
+  using State = surefoot::Vec<2>;
+  using Input = surefoot::Vec<2>;
+  using Output = surefoot::Vec<2>;
+
+  surefoot::SimulatorInfo info() const {
+    return {.name = "carts",
+            .states = {{"a", "m"}, {"b", "m"}},
+            .inputs = {{"speed_a", "m/s"}, {"speed_b", "m/s"}},
+            .outputs = {{"a_m", "m"}, {"b_m", "m"}},
+            .parameters = {{"gain_a", "1", 1, 0.5, 2}, {"gain_b", "1", 1, 0.5, 2}}};
+  }
+  State derivative(const State& /*x*/, const Input& u, const Eigen::VectorXd& p) const {
+    return {p[0] * u[0], p[1] * u[1]};
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return x; }
+};
 
 TEST_SUITE("log_doctor") {
   TEST_CASE("a fault of one recording is found there, and not where all have it") {
@@ -160,6 +181,31 @@ TEST_SUITE("log_doctor") {
     CHECK(found->repairs[0].channel.input);
     inputs.named = {{.kind = "sign_flipped", .channel = "theta_rad"}};
     CHECK_FALSE(find_fault_of_all(inputs, fit));
+  }
+
+  TEST_CASE("columns whose exchange takes parameters off their bounds need not be all that is wrong") {
+    const Parallel parallel = serially();
+    const auto bind = [](std::vector<Recording> some) { return bind_simulator(TwoCarts{}, std::move(some)); };
+    const LogDoctorInputs inputs{bind, [](const BoundSimulator& bound) { return nominal_hypothesis(bound); }, parallel};
+    std::vector<Recording> log;
+    for (int r = 0; r < 6; ++r) {
+      Recording one = toys::blank_recording(TwoCarts{}.info(), 200, 0.05);
+      one.name = "rec_" + std::to_string(r);
+      for (Eigen::Index row = 0; row < 200; ++row) {
+        const double t = one.time[row];
+        one.inputs(0, row) = std::cos(t + r);
+        one.inputs(1, row) = 2 * std::cos(2 * t + r);
+        const double missed = 0.9 * std::sin(3 * t);  // physics that the model lacks
+        one.outputs(1, row) = std::sin(t + r) - std::sin(r) + missed;
+        one.outputs(0, row) = std::sin(2 * t + r) - std::sin(r) - missed;
+      }
+      log.push_back(std::move(one));
+    }
+    const auto found = find_fault_of_all(inputs, fit_log(inputs, log));
+    REQUIRE(found);
+    CHECK(found->repairs[0].kind == LogFaultKind::swap);
+    for (Recording& one : log) one.outputs.row(0).swap(one.outputs.row(1));
+    CHECK_FALSE(find_fault_of_all(inputs, fit_log(inputs, log)));
   }
 
   TEST_CASE("that a model cannot be simulated in steps of a row is no fault of the clock") {

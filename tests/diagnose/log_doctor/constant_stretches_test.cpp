@@ -88,18 +88,20 @@ TEST_SUITE("log_doctor") {
     const auto found = find_reading_faults(fit, inputs.criteria);
     REQUIRE(found.size() == 1);
     CHECK(found[0].repairs[0].kind == LogFaultKind::clipped);
+    CHECK(found[0].repairs[0].rows.size() == 2);  // both visits are left empty
   }
 
   TEST_CASE("as many equal readings as a coarse sensor has by chance are no stretch that says anything") {
     const LogDoctorCriteria criteria;
     std::vector<double> lengths(400, 1);
-    CHECK(expected_repeats(lengths, 5, criteria) == 0);
+    CHECK(expected_repeats(lengths, 5, 0, criteria) == 0);
     for (const double length : {2, 3, 4})
       lengths.insert(lengths.end(), length == 2 ? 64 : length == 3 ? 12 : 4, length);
     // 80 pairs and 20 further readings: of 100 chances to end there, 20 go on
-    CHECK(expected_repeats(lengths, 5, criteria) == doctest::Approx(80 * std::pow(20.0 / 100, 3)));
+    CHECK(expected_repeats(lengths, 5, 0, criteria) == doctest::Approx(80 * std::pow(20.0 / 100, 3)));
     lengths.push_back(60);  // that in question
-    CHECK(expected_repeats(lengths, 5, criteria) == doctest::Approx(80 * std::pow(20.0 / 100, 3)));
+    CHECK(expected_repeats(lengths, 5, 0, criteria) == doctest::Approx(80 * std::pow(20.0 / 100, 3)));
+    CHECK(expected_repeats(std::vector<double>(400, 1), 4, 1e-3, criteria) == doctest::Approx(0.4 * 1e-6));
   }
 }
 

@@ -286,7 +286,20 @@ SUREFOOT_ONCE std::optional<FoundFault> find_fault_of_one(const LogDoctorInputs&
   return found;
 }
 
-/// How much less the error of all recordings together is, as a logarithm; 0 unless it halves, and is less in most.
+/// Whether calibration went as far as it may, beyond what the model file believes: not for values of nothing at all.
+SUREFOOT_ONCE bool ends_at_a_bound(const LogFit& fit) {
+  constexpr double near = 0.01;  // of a range
+  for (std::size_t i = 0; i < fit.bound.info.parameters.size(); ++i) {
+    const ParameterInfo& one = fit.bound.info.parameters[i];
+    const double value = fit.hypothesis.parameters[static_cast<Eigen::Index>(i)], reach = near * (one.high - one.low);
+    if (one.fixed || !(reach > 0)) continue;
+    if (value > one.high - reach || (value < one.low + reach && one.low != 0)) return true;
+  }
+  return false;
+}
+
+/// How much less the error of all recordings together is, as a logarithm; 0 unless it halves, and is less in most. Half
+/// the mean square will do where that takes parameters off the bounds of what the model file believes.
 SUREFOOT_ONCE double common_gain(const LogFit& before, const LogFit& after, const Repairs& repairs,
                                  const LogDoctorCriteria& criteria) {
   constexpr double least = 1e-12, whole = 1;  // of an output's variance: as good as no error; nothing is explained
@@ -304,7 +317,8 @@ SUREFOOT_ONCE double common_gain(const LogFit& before, const LogFit& after, cons
   const double gain = std::log(sum_before / sum_after), count = static_cast<double>(before.error.size());
   const double by_chance = 0.5 * (count + criteria.deviations * std::sqrt(count));  // of recordings, by a fair coin
   const bool in_most = better >= std::min(criteria.most_of * count, by_chance);
-  return in_most && gain > std::log(criteria.decisive) ? gain : 0;
+  const bool believable = ends_at_a_bound(before) && !ends_at_a_bound(after);
+  return in_most && gain > std::log(believable ? criteria.suspect_gain : criteria.decisive) ? gain : 0;
 }
 
 SUREFOOT_ONCE double worst_output_error(const LogFit& fit) {
@@ -314,18 +328,6 @@ SUREFOOT_ONCE double worst_output_error(const LogFit& fit) {
     worst = std::max(worst, share * share);
   }
   return worst;
-}
-
-/// Whether calibration went as far as it may, beyond what the model file believes: not for values of nothing at all.
-SUREFOOT_ONCE bool ends_at_a_bound(const LogFit& fit) {
-  constexpr double near = 0.01;  // of a range
-  for (std::size_t i = 0; i < fit.bound.info.parameters.size(); ++i) {
-    const ParameterInfo& one = fit.bound.info.parameters[i];
-    const double value = fit.hypothesis.parameters[static_cast<Eigen::Index>(i)], reach = near * (one.high - one.low);
-    if (one.fixed || !(reach > 0)) continue;
-    if (value > one.high - reach || (value < one.low + reach && one.low != 0)) return true;
-  }
-  return false;
 }
 
 /// Whether these were faults of all recordings to an examination before.

@@ -22,13 +22,15 @@ struct ConstantStretch {
   bool beyond = false;   // it is, and the model goes beyond it
 };
 
-/// Stretches of at least `constant_rows` equal readings, while the model moves by more than a sensor can tell.
+/// Stretches of at least `fewest_equal` equal readings, while the model moves by more than a sensor can tell.
 std::vector<ConstantStretch> constant_stretches(const LogFit& fit, std::size_t r, Eigen::Index output,
                                                 double resolution, const LogDoctorCriteria& criteria);
 
 /// How many stretches of so many equal readings the short ones lead to expect in a recording: each reading more has the
-/// chance that it has in those, as of a coarse sensor in slow motion. `lengths`: of all stretches, from 1 on.
-double expected_repeats(const std::vector<double>& lengths, double readings, const LogDoctorCriteria& criteria);
+/// chance that it has in those, as of a coarse sensor in slow motion, or at least that of any reading to be equal to
+/// the one before. `lengths`: of all stretches, from 1 on.
+double expected_repeats(const std::vector<double>& lengths, double readings, double equal_to_the_last,
+                        const LogDoctorCriteria& criteria);
 
 /// Motion that is missed in all stretches: their squares, summed.
 double total_missed(const std::vector<ConstantStretch>& stretches);

@@ -70,7 +70,7 @@ SUREFOOT_ONCE std::vector<ConstantStretch> constant_stretches(const LogFit& fit,
   if (!fit.runs[r].finite) return stretches;
   ConstantStretch now{{0, 0}, 0, std::numeric_limits<double>::quiet_NaN()};
   const auto close = [&] {
-    if (now.readings < static_cast<Eigen::Index>(criteria.constant_rows)) return;
+    if (now.readings < static_cast<Eigen::Index>(criteria.fewest_equal)) return;
     now.missed = missed_motion(fit, r, output, now.rows);
     const int side = end_of_range(recording, output, now.value);
     now.extreme = side != 0;
@@ -215,16 +215,29 @@ SUREFOOT_ONCE std::vector<double> lengths_of_repeats(const Recording& recording,
   return lengths;
 }
 
-SUREFOOT_ONCE double expected_repeats(const std::vector<double>& lengths, double readings,
+SUREFOOT_ONCE double expected_repeats(const std::vector<double>& lengths, double readings, double equal_to_the_last,
                                       const LogDoctorCriteria& criteria) {
-  double pairs = 0, more = 0, asked = 0;
+  double rows = 0, pairs = 0, more = 0, asked = 0;
   for (const double length : lengths) {
+    rows += length;
     if (length < 2 || length >= static_cast<double>(criteria.constant_rows)) continue;
     ++pairs;
     more += length - 2;
     asked += length - 1;
   }
-  return pairs > 0 ? pairs * std::pow(more / asked, readings - 2) : 0;
+  const double goes_on = std::max(pairs > 0 ? more / asked : 0, equal_to_the_last);
+  return std::max(pairs, equal_to_the_last * rows) * std::pow(goes_on, readings - 2);
+}
+
+/// All rows that read this value.
+SUREFOOT_ONCE std::vector<RowRange> rows_at(const Recording& recording, Eigen::Index output, double value) {
+  std::vector<RowRange> rows;
+  for (Eigen::Index row = 0; row < recording.rows(); ++row) {
+    if (recording.outputs(output, row) != value) continue;
+    if (rows.empty() || rows.back().second != row) rows.emplace_back(row, row);
+    rows.back().second = row + 1;
+  }
+  return rows;
 }
 
 SUREFOOT_ONCE std::optional<FoundFault> constant_fault(const LogFit& fit, std::size_t r, Eigen::Index output,
@@ -239,7 +252,10 @@ SUREFOOT_ONCE std::optional<FoundFault> constant_fault(const LogFit& fit, std::s
     const bool noiseless = static_cast<double>(one.readings) > natural;
     const bool jump = ends_in_jump(fit, r, output, one.rows) || moved_on_meanwhile(fit, r, output, one.rows, off);
     if (one.extreme && !jump && (noiseless || one.beyond || steps)) {
-      clipped.rows.push_back(one.rows);
+      const std::vector<RowRange> all = rows_at(fit.bound.recordings[r], output, one.value);  // short visits as well
+      if (std::find(clipped.rows.begin(), clipped.rows.end(), all.front()) == clipped.rows.end()) {
+        append_items(clipped.rows, all);
+      }
       clipped_rows += static_cast<double>(one.readings);
     } else if (noiseless || jump || (one.missed > off && !leaves_a_limit(fit.bound.recordings[r], one))) {
       stuck.rows.push_back(one.rows);

@@ -30,11 +30,13 @@ struct LogDoctorCriteria {
   double skew_gain = 1.5;           // least ratio of mean square errors for a rate: motions hide most of it, and the
                                     // scatter of all clocks decides already
 
-  double suspect_gain = 2;  // least ratio for offsets that are tried beside physics that is missing
+  double suspect_gain = 2;  // least ratio for offsets that are tried beside physics that is missing, and for columns
+                            // that take parameters off their bounds
 
   double gap = 10;                 // times the median interval: rows are missing
   double gap_against_others = 3;   // times what one in twenty intervals exceed
   std::size_t constant_rows = 5;   // equal readings in a row that are a stretch
+  std::size_t fewest_equal = 3;    // of these, where hardly any reading is equal to the one before
   double repeats = 0.05;           // share of rows that repeat the one before while the model moves on
   double odd = 0.5;                // least share of its variance unexplained: physics that is missing leaves less
   double far_off = 5;              // times as far off as any other, where parameters of its own explain it

@@ -198,6 +198,20 @@ SUREFOOT_ONCE void take_for_repeated_where_all_stick(const BoundSimulator& bound
   }
 }
 
+/// The chance that a reading is equal to the one before, as other recordings have it, or this one if it is alone.
+SUREFOOT_ONCE double chance_of_repeats(const std::vector<Recording>& recordings, std::size_t r, Eigen::Index output,
+                                       const LogDoctorCriteria& criteria) {
+  constexpr double one_half = 0.5;  // of a reading: those that were not seen may come yet (Jeffreys' prior)
+  double hits = one_half, asked = 1;
+  for (std::size_t other = 0; other < recordings.size(); ++other) {
+    if (other == r && recordings.size() > 1) continue;
+    const EqualRows equal = equal_rows(recordings[other], output, criteria);
+    hits += static_cast<double>(equal.rows.size());
+    asked += equal.asked;
+  }
+  return hits / asked;
+}
+
 SUREFOOT_ONCE std::vector<FoundFault> find_reading_faults(const LogFit& fit, const LogDoctorCriteria& criteria) {
   std::vector<FoundFault> found;
   const std::size_t count = fit.bound.recordings.size();
@@ -216,7 +230,8 @@ SUREFOOT_ONCE std::vector<FoundFault> find_reading_faults(const LogFit& fit, con
       const std::vector<double> lengths = lengths_of_repeats(fit.bound.recordings[r], output);
       for (const ConstantStretch& one : constant_stretches(fit, r, output, resolution, criteria)) {
         const auto others = lengths_of_repeats(fit.bound.recordings[r], output, one.value);
-        const double by_chance = expected_repeats(others, static_cast<double>(one.readings), criteria);
+        const double equal = chance_of_repeats(fit.bound.recordings, r, output, criteria);
+        const double by_chance = expected_repeats(others, static_cast<double>(one.readings), equal, criteria);
         if (by_chance * static_cast<double>(count) < criteria.significance) stretches[r].push_back(one);
       }
       missed[r] = total_missed(stretches[r]);
