@@ -229,15 +229,17 @@ SUREFOOT_ONCE double expected_repeats(const std::vector<double>& lengths, double
   return std::max(pairs, equal_to_the_last * rows) * std::pow(goes_on, readings - 2);
 }
 
-/// All rows that read this value.
-SUREFOOT_ONCE std::vector<RowRange> rows_at(const Recording& recording, Eigen::Index output, double value) {
-  std::vector<RowRange> rows;
+/// Adds all rows that read this value, unless they are there.
+SUREFOOT_ONCE void add_rows_at(const Recording& recording, Eigen::Index output, double value,
+                               std::vector<RowRange>& rows) {
+  for (const RowRange& one : rows) {
+    if (recording.outputs(output, one.first) == value) return;
+  }
   for (Eigen::Index row = 0; row < recording.rows(); ++row) {
     if (recording.outputs(output, row) != value) continue;
-    if (rows.empty() || rows.back().second != row) rows.emplace_back(row, row);
+    if (row == 0 || recording.outputs(output, row - 1) != value) rows.emplace_back(row, row);
     rows.back().second = row + 1;
   }
-  return rows;
 }
 
 SUREFOOT_ONCE std::optional<FoundFault> constant_fault(const LogFit& fit, std::size_t r, Eigen::Index output,
@@ -252,10 +254,7 @@ SUREFOOT_ONCE std::optional<FoundFault> constant_fault(const LogFit& fit, std::s
     const bool noiseless = static_cast<double>(one.readings) > natural;
     const bool jump = ends_in_jump(fit, r, output, one.rows) || moved_on_meanwhile(fit, r, output, one.rows, off);
     if (one.extreme && !jump && (noiseless || one.beyond || steps)) {
-      const std::vector<RowRange> all = rows_at(fit.bound.recordings[r], output, one.value);  // short visits as well
-      if (std::find(clipped.rows.begin(), clipped.rows.end(), all.front()) == clipped.rows.end()) {
-        append_items(clipped.rows, all);
-      }
+      add_rows_at(fit.bound.recordings[r], output, one.value, clipped.rows);  // short visits as well
       clipped_rows += static_cast<double>(one.readings);
     } else if (noiseless || jump || (one.missed > off && !leaves_a_limit(fit.bound.recordings[r], one))) {
       stuck.rows.push_back(one.rows);
