@@ -3,11 +3,14 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "falling_pendulum.hpp"
+#include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/diagnose.hpp"
+#include "tests/diagnose/small_simulators.hpp"
 
 namespace surefoot::diagnosis {
 namespace {
@@ -32,6 +35,33 @@ TEST_CASE("a pendulum that falls from its upper rest is cut once it falls, one t
     before = row;
   }
   CHECK(400 - before >= 20);
+}
+
+/// A car whose compass is poor, seen from above by a camera that is not.
+struct Car {
+  using State = Vec<3>;
+  using Input = Vec<2>;
+  using Output = Vec<3>;
+  SimulatorInfo info() const {
+    return {.name = "car",
+            .states = {{"x", "m"}, {"y", "m"}, {"yaw", "rad"}},
+            .inputs = {{"speed", "m/s"}, {"turn", "rad/s"}},
+            .outputs = {{"x_m", "m", 0.02}, {"y_m", "m", 0.002}, {"yaw_rad", "rad", 0.2}},
+            .parameters = {}};
+  }
+  State derivative(const State& x, const Input& u, const Eigen::VectorXd& /*p*/) const {
+    return {u[0] * std::cos(x[2]), u[0] * std::sin(x[2]), u[1]};
+  }
+  Output observe(const State& x, const Input& /*u*/, const Eigen::VectorXd& /*p*/) const { return x; }
+};
+
+TEST_CASE("a heading that its sensor hardly tells is told by where it leads: a car is not cut") {
+  Recording log = toys::blank_recording(Car{}.info(), 400, 0.05);
+  log.inputs.row(0).setConstant(1);
+  for (Eigen::Index row = 0; row < 400; ++row) log.inputs(1, row) = 0.2 * std::sin(0.4 * log.time[row]);
+  const BoundSimulator bound = bind_simulator(Car{}, {log});
+  const Hypothesis nominal = nominal_hypothesis(bound);
+  CHECK(sensitive_rows(bound, nominal, 0, simulate(bound, nominal, 0, bound.integration).states).empty());
 }
 
 TEST_CASE("nothing is missing from a pendulum that falls to either side") {

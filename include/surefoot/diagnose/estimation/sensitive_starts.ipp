@@ -41,10 +41,24 @@ SUREFOOT_ONCE Eigen::Index row_of_parting(const SimulatedRun& above, const Simul
   return rows;
 }
 
-/// The same for recording r, from these states on, known up to `errors` times the noise; the least over the states
-/// that are measured.
+/// By how many standard errors the first rows of all outputs tell both starts from the one between them.
+SUREFOOT_ONCE double told_apart_by(const SimulatedRun& above, const SimulatedRun& below, const Eigen::VectorXd& noise,
+                                   Eigen::Index rows) {
+  double squares = 0;
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    for (Eigen::Index k = 0; k < noise.size(); ++k) {
+      const double half = 0.5 * (above.outputs(k, row) - below.outputs(k, row));
+      if (noise[k] > 0) squares += half * half / (noise[k] * noise[k]);
+    }
+  }
+  return std::sqrt(squares);
+}
+
+/// The same for recording r, from these states on, each known up to `errors` standard errors of its first `near` rows;
+/// the least over the states that are measured.
 SUREFOOT_ONCE Eigen::Index first_parting(const BoundSimulator& bound, Hypothesis hypothesis, std::size_t r,
-                                         const Eigen::VectorXd& begin, double errors, const Eigen::VectorXd& noise) {
+                                         const Eigen::VectorXd& begin, double errors, Eigen::Index near,
+                                         const Eigen::VectorXd& noise) {
   const auto simulated_from = [&](std::size_t state, double moved) {
     hypothesis.initial[r] = begin;
     hypothesis.initial[r][static_cast<Eigen::Index>(state)] += moved;
@@ -55,8 +69,17 @@ SUREFOOT_ONCE Eigen::Index first_parting(const BoundSimulator& bound, Hypothesis
   for (std::size_t i = 0; i < bound.structure.output_of.size(); ++i) {
     const int output = bound.structure.output_of[i];
     if (output < 0 || !(noise[output] > 0)) continue;
-    const double moved = errors * noise[output] / reading_of(bound.structure, i).slope;
-    first = std::min(first, row_of_parting(simulated_from(i, moved), simulated_from(i, -moved), middle, noise));
+    // as its own sensor tells it; where a heading is known by where it leads, all sensors do so better
+    const double own = errors * noise[output] / (std::sqrt(static_cast<double>(near)) * reading_of(bound.structure, i).slope);
+    SimulatedRun above = simulated_from(i, own), below = simulated_from(i, -own);
+    Eigen::Index parting = row_of_parting(above, below, middle, noise);
+    if (parting >= first) continue;
+    const double told = told_apart_by(above, below, noise, near);
+    if (told > errors) {
+      const double moved = own * errors / told;
+      parting = row_of_parting(simulated_from(i, moved), simulated_from(i, -moved), middle, noise);
+    }
+    first = std::min(first, parting);
   }
   return first;
 }
@@ -65,17 +88,16 @@ SUREFOOT_ONCE std::vector<std::size_t> sensitive_rows(const BoundSimulator& boun
                                                       std::size_t r, const Eigen::MatrixXd& states) {
   constexpr Eigen::Index pieces = 16;      // borders of equal pieces, where a recording may be cut
   constexpr Eigen::Index least_rows = 20;  // of a part
-  constexpr double within = 2;             // standard errors, 2 / sqrt(n) at the end of a line through n readings
+  constexpr double errors = 2 * 2;         // two standard errors, which are double at the end of a line through readings
   const Recording& whole = bound.recordings[r];
   const Eigen::Index all = whole.rows(), least = std::max(all / pieces, least_rows);
   const Eigen::VectorXd noise = reading_errors(bound, r);
-  const double errors = within * 2 / std::sqrt(static_cast<double>(least));  // times the noise
   const auto parting_after = [&](Eigen::Index from) {
     const Eigen::VectorXd begin = surefoot::detail::column_of(states, from);
-    if (from == 0) return first_parting(bound, hypothesis, r, begin, errors, noise);
+    if (from == 0) return first_parting(bound, hypothesis, r, begin, errors, least, noise);
     BoundSimulator rest = bound;
     rest.recordings[r] = part_of(whole, from, all, begin, whole.initial_scale);
-    return from + first_parting(rest, hypothesis, r, begin, errors, noise);
+    return from + first_parting(rest, hypothesis, r, begin, errors, least, noise);
   };
   std::vector<std::size_t> rows;
   Eigen::Index from = 0;
