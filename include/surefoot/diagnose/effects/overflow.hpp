@@ -13,6 +13,7 @@
 
 namespace surefoot::effects {
 
+// Levels are sought far down: the largest one may be a beginning that is not known, well above the brim.
 [[gnu::cold]] inline Effect overflow() {
   return {.name = "overflow",
           .sentence = "{at} overflows at {level}",
@@ -33,27 +34,18 @@ namespace surefoot::effects {
 }
 
 [[gnu::cold]] inline Effect overflow_spill() {
-  return {.name = "overflow",
-          .sentence = "{at} overflows at {level}, and a share of {share} of what is lost arrives elsewhere",
-          .place = Place::state,
-          .parameters = parameters_of({{.name = "level",
-                                        .measure = {.value = 1},
-                                        .low = 0.1,
-                                        .high = 4,
-                                        .starts = {0.35, 0.5, 0.7, 0.85, 0.95},
-                                        .of_peak = true},
-                                       {.name = "share", .measure = {}, .low = 0, .high = 2, .starts = {0.8}}}),
-          .confusable_with = names_of({"saturation", "leak"}),
-          .experiment = "fill it well beyond the suspected level, slowly and quickly, and watch where it goes",
-          .form = "spill",
-          .needs_conserved_state = true,
-          .has_overflow_target = true,
-          .suggest = near_largest,
-          .limit = +[](Values p, double& value, double&, double& other) {
-            if (value <= p[0]) return;
-            other += p[1] * (value - p[0]);
-            value = p[0];
-          }};
+  Effect effect = overflow();
+  effect.sentence = "{at} overflows at {level}, and a share of {share} of what is lost arrives elsewhere";
+  effect.parameters.push_back({.name = "share", .measure = {}, .low = 0, .high = 2, .starts = {0.8}});
+  effect.experiment = "fill it well beyond the suspected level, slowly and quickly, and watch where it goes";
+  effect.form = "spill";
+  effect.has_overflow_target = true;
+  effect.limit = +[](Values p, double& value, double&, double& other) {
+    if (value <= p[0]) return;
+    other += p[1] * (value - p[0]);
+    value = p[0];
+  };
+  return effect;
 }
 
 [[gnu::cold]] inline Effect overflow_weir() {

@@ -54,8 +54,8 @@ SUREFOOT_ONCE double told_apart_by(const SimulatedRun& above, const SimulatedRun
   return std::sqrt(squares);
 }
 
-/// The same for recording r, from these states on, each known up to `errors` standard errors of its first `near` rows;
-/// the least over the states that are measured.
+/// The row of parting of recording r, from these states on, each known up to `errors` standard errors of the first
+/// `near` rows; the least over the states that are measured.
 SUREFOOT_ONCE Eigen::Index first_parting(const BoundSimulator& bound, Hypothesis hypothesis, std::size_t r,
                                          const Eigen::VectorXd& begin, double errors, Eigen::Index near,
                                          const Eigen::VectorXd& noise) {
@@ -70,8 +70,9 @@ SUREFOOT_ONCE Eigen::Index first_parting(const BoundSimulator& bound, Hypothesis
     const int output = bound.structure.output_of[i];
     if (output < 0 || !(noise[output] > 0)) continue;
     // as its own sensor tells it; where a heading is known by where it leads, all sensors do so better
-    const double own = errors * noise[output] / (std::sqrt(static_cast<double>(near)) * reading_of(bound.structure, i).slope);
-    SimulatedRun above = simulated_from(i, own), below = simulated_from(i, -own);
+    const double readings = std::sqrt(static_cast<double>(near));
+    const double own = errors * noise[output] / (readings * reading_of(bound.structure, i).slope);
+    const SimulatedRun above = simulated_from(i, own), below = simulated_from(i, -own);
     Eigen::Index parting = row_of_parting(above, below, middle, noise);
     if (parting >= first) continue;
     const double told = told_apart_by(above, below, noise, near);
@@ -88,7 +89,7 @@ SUREFOOT_ONCE std::vector<std::size_t> sensitive_rows(const BoundSimulator& boun
                                                       std::size_t r, const Eigen::MatrixXd& states) {
   constexpr Eigen::Index pieces = 16;      // borders of equal pieces, where a recording may be cut
   constexpr Eigen::Index least_rows = 20;  // of a part
-  constexpr double errors = 2 * 2;         // two standard errors, which are double at the end of a line through readings
+  constexpr double errors = 2 * 2;         // standard errors: two, and twice that at the end of a line through readings
   const Recording& whole = bound.recordings[r];
   const Eigen::Index all = whole.rows(), least = std::max(all / pieces, least_rows);
   const Eigen::VectorXd noise = reading_errors(bound, r);

@@ -35,8 +35,8 @@ struct LogDoctorCriteria {
 
   double gap = 10;                 // times the median interval: rows are missing
   double gap_against_others = 3;   // times what one in twenty intervals exceed
-  std::size_t constant_rows = 5;   // equal readings in a row that are a stretch
-  std::size_t fewest_equal = 3;    // of these, where hardly any reading is equal to the one before
+  std::size_t fewest_equal = 3;    // equal readings in a row that may be a stretch, if chance hardly makes as many
+  std::size_t constant_rows = 5;   // that are one in any case, and do not tell what chance makes
   double repeats = 0.05;           // share of rows that repeat the one before while the model moves on
   double odd = 0.5;                // least share of its variance unexplained: physics that is missing leaves less
   double far_off = 5;              // times as far off as any other, where parameters of its own explain it

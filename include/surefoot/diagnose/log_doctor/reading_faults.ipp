@@ -228,9 +228,9 @@ SUREFOOT_ONCE std::vector<FoundFault> find_reading_faults(const LogFit& fit, con
     std::vector<double> missed(count), longest(count);
     for (std::size_t r = 0; r < count; ++r) {
       const std::vector<double> lengths = lengths_of_repeats(fit.bound.recordings[r], output);
+      const double equal = chance_of_repeats(fit.bound.recordings, r, output, criteria);
       for (const ConstantStretch& one : constant_stretches(fit, r, output, resolution, criteria)) {
         const auto others = lengths_of_repeats(fit.bound.recordings[r], output, one.value);
-        const double equal = chance_of_repeats(fit.bound.recordings, r, output, criteria);
         const double by_chance = expected_repeats(others, static_cast<double>(one.readings), equal, criteria);
         if (by_chance * static_cast<double>(count) < criteria.significance) stretches[r].push_back(one);
       }
