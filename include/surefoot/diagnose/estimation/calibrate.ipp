@@ -19,6 +19,7 @@
 #include "surefoot/diagnose/estimation/guided_fit.hpp"
 #include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/sort_items.hpp"
+#include "surefoot/diagnose/estimation/trimmed_fit.hpp"
 #include "surefoot/diagnose/estimation/typical_sizes.hpp"
 #include "surefoot/optimize/linear_algebra.hpp"
 
@@ -58,7 +59,8 @@ SUREFOOT_ONCE Fit scattered_fit(const BoundSimulator& bound, Fit best, const Hyp
   const auto lower = [&](std::size_t a, std::size_t b) { return losses[a] < losses[b]; };
   const std::vector<std::size_t> order = sorted_places(starts.size(), lower);
   std::vector<Fit> fits(std::min<std::size_t>(fitted, order.size()));
-  parallel(fits.size(), [&](std::size_t k) { fits[k] = fit(bound, starts[order[k]], problem, serially()); });
+  for (std::size_t k = 0; k < fits.size(); ++k) fits[k].hypothesis = starts[order[k]];
+  fit_each(bound, fits, problem, parallel);
   for (const Fit& other : fits) {
     if (other.ok && other.loss < clearly_less * best.loss) best = other;
   }
@@ -83,7 +85,7 @@ SUREFOOT_ONCE std::vector<double> recording_scales(const BoundSimulator& bound, 
 SUREFOOT_ONCE Fit calibrate(const BoundSimulator& bound, const Hypothesis& nominal, FitProblem& problem,
                             std::size_t points, std::uint64_t seed, const Parallel& parallel) {
   constexpr double least_sigma = 1e-6;  // of the output's standard deviation, where no noise is stated
-  constexpr int search_iterations = 30, reweightings = 2;
+  constexpr int search_iterations = 30, reweightings = 2, most_reweightings = 5;
   problem.weighting.sigma = output_deviations(bound, problem.recordings);
   Eigen::VectorXd floor = surefoot::detail::times(least_sigma, problem.weighting.sigma);
   for (Eigen::Index k = 0; k < floor.size(); ++k) {
@@ -103,14 +105,17 @@ SUREFOOT_ONCE Fit calibrate(const BoundSimulator& bound, const Hypothesis& nomin
         "the model cannot be simulated over the recordings with any parameters that were tried: check "
         "its equations, initial values and bounds");
   }
-  for (int round = 0; round < reweightings; ++round) {
+  bool led_out = false;  // of a valley: what is left there asks for other weights
+  for (int round = 0; round < reweightings || (led_out && round < most_reweightings); ++round) {
     const auto trajectories = simulate_all(bound, best.hypothesis, problem.recordings, problem.integration, parallel);
     problem.weighting.sigma = residual_sizes(bound, problem.recordings, trajectories);
     for (Eigen::Index k = 0; k < floor.size(); ++k) {
       problem.weighting.sigma[k] = std::max(problem.weighting.sigma[k], floor[k]);
     }
     problem.weighting.scale = recording_scales(bound, problem, trajectories);
-    best = fit(bound, best.hypothesis, problem, parallel);
+    const Fit fitted = fit(bound, best.hypothesis, problem, parallel);
+    best = trimmed_fit(bound, fitted, problem, parallel);
+    led_out = best.loss < fitted.loss;
   }
   return best;
 }

@@ -10,6 +10,7 @@
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
 #include "surefoot/diagnose/estimation/fit.hpp"
+#include "surefoot/diagnose/estimation/growing_horizon.hpp"
 #include "surefoot/diagnose/estimation/items.hpp"
 
 namespace surefoot::diagnosis {
@@ -104,8 +105,8 @@ SUREFOOT_ONCE std::vector<Hypothesis> fits_to_other_folds(const BoundSimulator& 
   for (const std::vector<std::size_t>& fold : folds) {
     FitProblem others = problem;
     drop_items(others.recordings, [&](std::size_t r) { return std::find(fold.begin(), fold.end(), r) != fold.end(); });
-    result.push_back(with_estimated_initial_states(bound, fit(bound, start, others, parallel).hypothesis, fold, problem,
-                                                   parallel));
+    result.push_back(
+        with_grown_initial_states(bound, fit(bound, start, others, parallel).hypothesis, fold, problem, parallel));
   }
   return result;
 }

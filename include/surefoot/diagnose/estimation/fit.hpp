@@ -114,6 +114,9 @@ double loss_of(const BoundSimulator& bound, const Hypothesis& hypothesis, const 
 /// Where an effect may begin unsettled and was left settled, its beginning is sought all over its range, by recording.
 Fit fit(const BoundSimulator& bound, const Hypothesis& start, const FitProblem& problem, const Parallel& parallel);
 
+/// The same for each hypothesis, one beside the other. Those that come after the problem is stopped stay as they are.
+void fit_each(const BoundSimulator& bound, std::vector<Fit>& fits, const FitProblem& problem, const Parallel& parallel);
+
 /// A hypothesis with the unknown initial states of some recordings estimated, and all else as it is.
 Hypothesis with_estimated_initial_states(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                          const std::vector<std::size_t>& recordings, FitProblem problem,

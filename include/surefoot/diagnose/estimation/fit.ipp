@@ -291,6 +291,13 @@ SUREFOOT_ONCE Fit fit(const BoundSimulator& bound, const Hypothesis& start, cons
   return again.ok && again.loss < first.fit.loss ? again : first.fit;
 }
 
+SUREFOOT_ONCE void fit_each(const BoundSimulator& bound, std::vector<Fit>& fits, const FitProblem& problem,
+                            const Parallel& parallel) {
+  parallel(fits.size(), [&](std::size_t i) {
+    if (!problem.stopped()) fits[i] = fit(bound, fits[i].hypothesis, problem, serially());
+  });
+}
+
 SUREFOOT_ONCE Hypothesis with_estimated_initial_states(const BoundSimulator& bound, const Hypothesis& hypothesis,
                                                        const std::vector<std::size_t>& recordings, FitProblem problem,
                                                        const Parallel& parallel) {

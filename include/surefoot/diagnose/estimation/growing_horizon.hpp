@@ -10,13 +10,24 @@
 
 namespace surefoot::diagnosis {
 
-/// The same simulator over the first `share` (0 to 1) of the rows of each recording, two at least.
-BoundSimulator beginnings(const BoundSimulator& bound, double share);
+/// The same simulator over the first `share` (0 to 1) of the rows of these recordings, two at least.
+BoundSimulator beginnings(const BoundSimulator& bound, const std::vector<std::size_t>& recordings, double share);
 
-/// `best`, or a clearly better fit that is reached from `start` on with a growing horizon. The problem's prior, if it
-/// has one, holds on the way alone: first rows tell little of most parameters. Costs less than two fits.
+/// `best`, or a clearly better fit that is reached from `start` on with a growing horizon, that of these `recordings`.
+/// The problem's prior, if it has one, holds on the way alone: first rows tell little of most parameters. Costs less
+/// than two fits where all horizons grow, at most five.
+Fit grown_fit_of(const BoundSimulator& bound, Fit best, const Hypothesis& start, const FitProblem& problem,
+                 const std::vector<std::size_t>& recordings, const Parallel& parallel);
+
+/// The same with all horizons growing.
 Fit grown_fit(const BoundSimulator& bound, Fit best, const Hypothesis& start, const FitProblem& problem,
               const Parallel& parallel);
+
+/// A hypothesis with the unknown initial states of some recordings estimated, those of each with a growing horizon
+/// where that fits it clearly better, and all else as it is.
+Hypothesis with_grown_initial_states(const BoundSimulator& bound, const Hypothesis& hypothesis,
+                                     const std::vector<std::size_t>& recordings, FitProblem problem,
+                                     const Parallel& parallel);
 
 }  // namespace surefoot::diagnosis
 

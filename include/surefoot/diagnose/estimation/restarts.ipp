@@ -40,11 +40,9 @@ SUREFOOT_ONCE std::vector<Hypothesis> moved_around(const BoundSimulator& bound, 
 SUREFOOT_ONCE Fit restarted_fit(const BoundSimulator& bound, const Fit& fitted, const FitProblem& problem,
                                 const FitProblem& quick, std::size_t points, std::uint64_t seed,
                                 const Parallel& parallel) {
-  const std::vector<Hypothesis> places = moved_around(bound, fitted.hypothesis, points, seed);
-  std::vector<Fit> fits(places.size());
-  parallel(places.size(), [&](std::size_t k) {
-    if (!quick.stopped()) fits[k] = fit(bound, places[k], quick, serially());
-  });
+  std::vector<Fit> fits;
+  for (Hypothesis& place : moved_around(bound, fitted.hypothesis, points, seed)) fits.push_back({std::move(place)});
+  fit_each(bound, fits, quick, parallel);
   double least = clearly_less * loss_of(bound, fitted.hypothesis, quick, serially());
   const Fit* best = nullptr;
   for (const Fit& one : fits) {

@@ -148,14 +148,10 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> finished(const Search& search, st
   if (fits.size() > problem.effort.second_look * keep) {
     keep_best(problem.effort.second_look * keep);
     const FitProblem quick = screening_fit(problem, problem.effort.second_iterations);
-    parallel(fits.size(), [&](std::size_t i) {
-      if (!problem.stopped()) fits[i] = fit(bound, fits[i].hypothesis, quick, serially());
-    });
+    fit_each(bound, fits, quick, parallel);
   }
   keep_best(keep);
-  parallel(fits.size(), [&](std::size_t i) {
-    if (!problem.stopped()) fits[i] = fit(bound, fits[i].hypothesis, problem.fit, serially());
-  });
+  fit_each(bound, fits, problem.fit, parallel);
   std::vector<EvaluatedHypothesis> evaluated(fits.size());
   parallel(fits.size(), [&](std::size_t i) {
     if (!problem.stopped()) evaluated[i] = evaluate_fit(bound, fits[i], problem, serially());
@@ -168,9 +164,7 @@ SUREFOOT_ONCE std::vector<EvaluatedHypothesis> finished_from(const Search& searc
                                                              std::size_t keep) {
   const SearchProblem& problem = search.problem;
   const FitProblem quick = screening_fit(problem, problem.effort.first_iterations);
-  search.parallel(starts.size(), [&](std::size_t i) {
-    if (!problem.stopped()) starts[i] = fit(search.bound, starts[i].hypothesis, quick, serially());
-  });
+  fit_each(search.bound, starts, quick, search.parallel);
   return finished(search, std::move(starts), keep);
 }
 

@@ -16,6 +16,7 @@
 #include "surefoot/diagnose/estimation/items.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
 #include "surefoot/diagnose/estimation/restarts.hpp"
+#include "surefoot/diagnose/estimation/trimmed_fit.hpp"
 #include "surefoot/diagnose/selection/choose_holds.hpp"
 #include "surefoot/diagnose/selection/criterion.hpp"
 #include "surefoot/diagnose/selection/extend.hpp"
@@ -121,6 +122,7 @@ SUREFOOT_ONCE void try_around(const Search& search, std::vector<EvaluatedHypothe
         restarted_fit(search.bound, fitted, problem.fit, quick, problem.effort.restarts, restart_seed, search.parallel);
     again = grown_fit(search.bound, again, again.hypothesis, problem.fit, search.parallel);
     again = guided_fit(search.bound, again, again.hypothesis, problem.fit, search.parallel);
+    again = trimmed_fit(search.bound, again, problem.fit, search.parallel);
     if (!(again.loss < fitted.loss)) continue;
     keep_best_form(pool, evaluate_fit(search.bound, again, problem, search.parallel), problem.criteria);
   }

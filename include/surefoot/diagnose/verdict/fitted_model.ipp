@@ -7,7 +7,7 @@
 
 #include "surefoot/core/compiled.hpp"
 #include "surefoot/diagnose/estimation/cross_validation.hpp"
-#include "surefoot/diagnose/estimation/fit.hpp"
+#include "surefoot/diagnose/estimation/growing_horizon.hpp"
 #include "surefoot/diagnose/verdict/fitted_model.hpp"
 
 namespace surefoot::diagnosis {
@@ -37,7 +37,7 @@ SUREFOOT_ONCE FittedModel simulate_model(const EstimationSetup& setup, const Hyp
   if (setup.split.cross_fitted) {
     unseen = cross_fitted(setup, hypothesis, refit, parallel);
   } else {
-    model.hypothesis = with_estimated_initial_states(bound, hypothesis, held_out, setup.problem, parallel);
+    model.hypothesis = with_grown_initial_states(bound, hypothesis, held_out, setup.problem, parallel);
     unseen = std::vector<Hypothesis>(held_out.size(), model.hypothesis);
   }
   const auto of_training = [&](const Integration& integration) {
