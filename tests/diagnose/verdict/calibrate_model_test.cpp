@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "surefoot/diagnose/verdict/pipeline.hpp"
+#include "surefoot/diagnose/verdict/recording_stage.hpp"
 #include "tests/diagnose/verdict/tank_setup.hpp"
 
 namespace surefoot::diagnosis {

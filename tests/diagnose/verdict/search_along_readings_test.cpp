@@ -14,7 +14,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/vec.hpp"
 #include "surefoot/diagnose/diagnose.hpp"
-#include "surefoot/diagnose/verdict/pipeline.hpp"
+#include "surefoot/diagnose/verdict/recording_stage.hpp"
 
 namespace surefoot::diagnosis {
 namespace {

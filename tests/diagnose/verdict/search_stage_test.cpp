@@ -10,7 +10,7 @@
 
 #include "surefoot/diagnose/diagnose.hpp"
 #include "surefoot/diagnose/estimation/recording_error.hpp"
-#include "surefoot/diagnose/verdict/pipeline.hpp"
+#include "surefoot/diagnose/verdict/recording_stage.hpp"
 #include "tests/diagnose/verdict/tank_setup.hpp"
 
 namespace surefoot::diagnosis {
