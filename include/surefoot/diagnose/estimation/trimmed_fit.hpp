@@ -8,9 +8,9 @@
 
 namespace surefoot::diagnosis {
 
-/// `best`, or a clearly better fit that is reached from one to the half of the recordings that `best` fits best: with
-/// the initial states of the others estimated from there, or, where that does not do, with the others from their first
-/// rows on. As it is for fewer than three recordings. Costs two fits, or up to seven.
+/// `best`, or a clearly better fit that begins where a fit to half of the recordings ends, those that `best` fits best.
+/// The others join it with initial states estimated there; if that is not clearly better, with a growing horizon.
+/// `best` for fewer than three recordings. Costs two fits, or up to seven.
 Fit trimmed_fit(const BoundSimulator& bound, Fit best, FitProblem problem, const Parallel& parallel);
 
 }  // namespace surefoot::diagnosis
