@@ -96,6 +96,29 @@ TEST_SUITE("log_doctor") {
     CHECK(beats_other_start(inputs, fast, 2, cured));
   }
 
+  TEST_CASE("a clock that explains a recording is not a fault of its columns, which would make it too small to miss") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    auto log = toys::servo_log();
+    const FoundFault in_degrees{{{.kind = LogFaultKind::degrees, .amount = 0.0175}}, 2};
+    CHECK_FALSE(clock_explains_more(inputs, fit_log(inputs, log), in_degrees));  // its clock is right
+    log[2].time *= 1.02;
+    const LogFit fit = fit_log(inputs, log);
+    CHECK(clock_explains_more(inputs, fit, in_degrees));
+    CHECK_FALSE(clock_explains_more(inputs, fit, {in_degrees.repairs, 3}));  // that of another recording
+  }
+
+  TEST_CASE("offsets that differ between all recordings are no fault of one") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    auto log = toys::servo_log(toys::dry_friction());
+    const double late[] = {0.0, 0.08, 0.03, 0.1, 0.01, 0.06};
+    for (std::size_t r = 0; r < log.size(); ++r) toys::delay_outputs(log[r], late[r]);
+    const LogFit fit = fit_log(inputs, log);
+    CHECK(find_clock_fault(inputs, fit));
+    CHECK_FALSE(find_clock_fault(inputs, fit, true));
+  }
+
   TEST_CASE("clocks of a map or of too few recordings are not compared") {
     const Parallel parallel = serially();
     const LogDoctorInputs inputs = toys::servo_doctor(parallel);

@@ -91,6 +91,39 @@ TEST_SUITE("log_doctor") {
     CHECK(found[0].repairs[0].rows.size() == 2);  // both visits are left empty
   }
 
+  TEST_CASE("equal readings in slow motion are as rare as other recordings have them there") {
+    const Parallel parallel = serially();
+    const LogDoctorInputs inputs = toys::servo_doctor(parallel);
+    LogFit fit = fit_log(inputs, toys::servo_log());
+    for (std::size_t r = 0; r < fit.runs.size(); ++r) {  // a ramp, read in steps of 0.01, with as much noise
+      surefoot::Rng rng(5, r);
+      for (Eigen::Index row = 0; row < 300; ++row) {
+        const double position = 0.002 * static_cast<double>(row);
+        fit.runs[r].outputs(0, row) = position;
+        fit.bound.recordings[r].outputs(0, row) = 0.01 * std::round((position + 0.01 * rng.normal()) / 0.01);
+      }
+    }
+    auto readings = fit.bound.recordings[0].outputs.row(0);
+    const auto expected = [&](Eigen::Index first, Eigen::Index next) {
+      return expected_by_chance(fit, 0, 0, {.rows = {first, next}, .readings = next - first}, 0.02);
+    };
+    for (Eigen::Index row = 100; row < 104; ++row) readings[row] = readings[99];
+    readings[104] = readings[99] + 0.02;
+    CHECK(expected(99, 104) > 1);
+    for (Eigen::Index row = 100; row < 120; ++row) readings[row] = readings[99];
+    readings[120] = readings[99] + 0.05;  // where the model has gone meanwhile
+    CHECK(expected(99, 120) < inputs.criteria.significance);
+    readings[120] = readings[99];  // a machine that rests
+    CHECK(std::isinf(expected(99, 120)));
+    readings[120] = readings[99] + 0.05;
+    for (std::size_t r = 1; r < fit.runs.size(); ++r) {  // a machine that sticks does so in other recordings as well
+      for (Eigen::Index row = 50; row < 250; ++row) {
+        if (row % 20 != 0) fit.bound.recordings[r].outputs(0, row) = fit.bound.recordings[r].outputs(0, row - 1);
+      }
+    }
+    CHECK(expected(99, 120) > inputs.criteria.significance);
+  }
+
   TEST_CASE("as many equal readings as a coarse sensor has by chance are no stretch that says anything") {
     const LogDoctorCriteria criteria;
     std::vector<double> lengths(400, 1);

@@ -238,6 +238,24 @@ TEST_SUITE("log_doctor") {
     CHECK(kept.repaired.size() == log.size());
   }
 
+  TEST_CASE("that a recording of another experiment jumps says nothing, for the model does not hold for it") {
+    Log log = toys::servo_log(toys::dry_friction());
+    const Log other = toys::servo_log({}, 7);
+    log[2].outputs = -0.6 * other[6].outputs.rowwise().reverse();
+    log[2].outputs.col(0).setZero();
+    for (Eigen::Index row = 140; row < 300; ++row) log[2].outputs.col(row) -= Eigen::Vector2d(1.8, 18);
+    for (const bool may_leave_out : {true, false}) {
+      const surefoot::diagnosis::Parallel parallel = surefoot::diagnosis::serially();
+      surefoot::diagnosis::LogDoctorInputs inputs = toys::servo_doctor(parallel);
+      inputs.may_leave_out = may_leave_out;
+      const auto examined = surefoot::diagnosis::examine_log(inputs, log);
+      REQUIRE(examined.faults.size() == 1);
+      CHECK(examined.faults[0].kind == "odd_recording");
+      CHECK(examined.faults[0].recording == "rec_03.csv");
+      if (!may_leave_out) CHECK(examined.repaired[2].rows() == 300);  // as it was logged
+    }
+  }
+
   TEST_CASE("a unit of time that leads the calibration astray is named beside one without that recording") {
     Log log;
     for (int r = 0; r < 6; ++r) log.push_back(drained(r));

@@ -83,7 +83,7 @@ void insert_item(std::vector<Item>& items, std::size_t place, Item item) {
 /// Adds copies of other items at the end (std::vector::insert).
 template <class Item>
 void append_items(std::vector<Item>& items, const std::vector<Item>& others) {
-  for (const Item& other : others) items.push_back(other);
+  for (const Item& other : others) items.push_back(Item(other));
 }
 
 }  // namespace surefoot::diagnosis

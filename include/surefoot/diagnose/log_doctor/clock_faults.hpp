@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "surefoot/diagnose/log_doctor/clock_estimates.hpp"
+#include "surefoot/diagnose/log_doctor/column_faults.hpp"
 
 namespace surefoot::diagnosis {
 
@@ -35,7 +36,12 @@ bool is_like_others(const std::vector<ClockEstimate>& estimates, std::size_t r, 
 /// Whether a clock of this rate is off by less than a row at the end of its recording: it passes for no other clock.
 bool stays_within_a_row(const Recording& one, double rate);
 
-std::optional<ClockFault> find_clock_fault(const LogDoctorInputs& inputs, const LogFit& fit);
+/// The fault that is most likely; `of_one`: of a single recording, and not offsets that differ between all.
+std::optional<ClockFault> find_clock_fault(const LogDoctorInputs& inputs, const LogFit& fit, bool of_one = false);
+
+/// Whether its clock explains a recording better than a fault of its columns: in degrees it would be so small that
+/// little can be missed in it.
+bool clock_explains_more(const LogDoctorInputs& inputs, const LogFit& fit, const FoundFault& columns);
 
 /// Whether a recording's rate still explains it better if both begin anywhere within the noise of the reading that they
 /// begin with: what floats or rolls keeps that error for good, and a rate may make up for some of it.

@@ -267,7 +267,8 @@ SUREFOOT_ONCE std::optional<ClockFault> differing_offsets(const LogDoctorInputs&
   return fault;
 }
 
-SUREFOOT_ONCE std::optional<ClockFault> find_clock_fault(const LogDoctorInputs& inputs, const LogFit& fit) {
+SUREFOOT_ONCE std::optional<ClockFault> find_clock_fault(const LogDoctorInputs& inputs, const LogFit& fit,
+                                                         bool of_one) {
   if (!has_clocks(fit, inputs.criteria)) return std::nullopt;
   std::optional<SingleClock> single;
   const Clocks offsets = measure_clocks(fit, LogFaultKind::offset, inputs);
@@ -276,7 +277,19 @@ SUREFOOT_ONCE std::optional<ClockFault> find_clock_fault(const LogDoctorInputs& 
     compare_single(fit, measure_clocks(fit, kind, inputs), kind, inputs.criteria, single);
   }
   if (single && beats_own_parameters(inputs, fit, *single)) return single_fault(*single, fit.error.size());
+  if (of_one) return std::nullopt;
   return differing_offsets(inputs, fit, offsets);
+}
+
+SUREFOOT_ONCE bool clock_explains_more(const LogDoctorInputs& inputs, const LogFit& fit, const FoundFault& columns) {
+  const auto clock = find_clock_fault(inputs, fit, true);
+  const std::size_t r = *columns.recording;
+  if (!clock || clock->amounts[r] == 0) return false;
+  const auto left = [&](const Repairs& repairs) {
+    const Recording version = repaired(fit.bound, fit.bound.recordings[r], repairs);
+    return mean_square(resimulate(fit, r, version).residuals, fit.size);
+  };
+  return left({{.kind = clock->kind, .amount = clock->amounts[r]}}) < left(columns.repairs);
 }
 
 }  // namespace surefoot::diagnosis

@@ -348,7 +348,7 @@ SUREFOOT_ONCE std::vector<Repairs> common_repairs(const LogDoctorInputs& inputs,
   if (fit.bound.info.kind == SimulatorKind::ode) {
     for (const double unit : time_units) tried.push_back({{.kind = LogFaultKind::time_unit, .amount = unit}});
   }
-  const bool in_doubt = worst_output_error(fit) > inputs.criteria.poor_fit || ends_at_a_bound(fit);
+  const bool in_doubt = worst_output_error(fit) > inputs.criteria.in_doubt || ends_at_a_bound(fit);
   if (!in_doubt) drop_items(tried, [&](const Repairs& one) { return !were_named(inputs, fit.bound.info, one); });
   return tried;
 }

@@ -32,6 +32,13 @@ std::vector<ConstantStretch> constant_stretches(const LogFit& fit, std::size_t r
 double expected_repeats(const std::vector<double>& lengths, double readings, double equal_to_the_last,
                         const LogDoctorCriteria& criteria);
 
+/// How many stretches like this one chance makes in a log: each reading that repeats the one before, with the chance of
+/// that in other recordings where the model moves no more, and then one that by chance is where the model has gone
+/// meanwhile, if steps differ from its by `off`. Infinite if it is not, for a machine that rests goes on from where it
+/// was, and at the end of the range, where machines rest.
+double expected_by_chance(const LogFit& fit, std::size_t r, Eigen::Index output, const ConstantStretch& stretch,
+                          double off);
+
 /// Motion that is missed in all stretches: their squares, summed.
 double total_missed(const std::vector<ConstantStretch>& stretches);
 
@@ -53,7 +60,8 @@ double high_value(std::vector<double> values);
 /// off moves on where the machine turns, or where it rests; but of more than `natural` equal readings the noise of the
 /// sensor would show in some.
 std::optional<FoundFault> constant_fault(const LogFit& fit, std::size_t r, Eigen::Index output,
-                                         const std::vector<ConstantStretch>& stretches, double natural);
+                                         const std::vector<ConstantStretch>& stretches, double natural,
+                                         const LogDoctorCriteria& criteria);
 
 }  // namespace surefoot::diagnosis
 

@@ -138,6 +138,42 @@ SUREFOOT_ONCE bool moved_on_meanwhile(const LogFit& fit, std::size_t r, Eigen::I
          std::abs(step - whole) < std::min(std::abs(step), std::abs(step - last));
 }
 
+/// Share of the rows of recordings other than r, where the model moves by no more than a step, that repeat the reading
+/// before, with one more that does; `again`: of those where that one did so as well.
+SUREFOOT_ONCE double chance_in_step(const LogFit& fit, std::size_t r, Eigen::Index output, double step, bool again) {
+  double rows = 1, equal = 1;
+  for (std::size_t o = 0; o < fit.runs.size(); ++o) {
+    const Eigen::MatrixXd& read = fit.bound.recordings[o].outputs;
+    for (Eigen::Index row = again ? 2 : 1; o != r && fit.runs[o].finite && row < read.cols(); ++row) {
+      const double before = read(output, row - 1);
+      if (!(std::abs(step_of_model(fit, o, output, row)) <= step) || (again && before != read(output, row - 2)))
+        continue;
+      ++rows;
+      if (read(output, row) == before) ++equal;
+    }
+  }
+  return equal / rows;
+}
+
+SUREFOOT_ONCE double expected_by_chance(const LogFit& fit, std::size_t r, Eigen::Index output,
+                                        const ConstantStretch& stretch, double off) {
+  double expected = 0, whole = 0;
+  for (const Recording& recording : fit.bound.recordings) expected += static_cast<double>(recording.rows());
+  const auto [first, next] = stretch.rows;
+  for (Eigen::Index row = first + 1; row < next; ++row) {
+    const double step = step_of_model(fit, r, output, row);
+    expected *= chance_in_step(fit, r, output, std::abs(step), row > first + 1);
+    whole += step;
+  }
+  const Eigen::MatrixXd& read = fit.bound.recordings[r].outputs;
+  const bool goes_on = next < read.cols() && !stretch.extreme;
+  const double last = goes_on ? step_of_model(fit, r, output, next) : 0;
+  const double beside = goes_on ? (read(output, next) - read(output, next - 1) - last) / off : 0;
+  const double caught_up = beside - whole / off;
+  if (!(std::abs(caught_up) < std::abs(beside))) return std::numeric_limits<double>::infinity();
+  return expected * std::exp((caught_up * caught_up - beside * beside) / 2);
+}
+
 /// Whether a stretch at the end of the range, of the machine or its sensor, is left again: what sticks does so
 /// anywhere.
 SUREFOOT_ONCE bool leaves_a_limit(const Recording& recording, const ConstantStretch& stretch) {
@@ -243,7 +279,8 @@ SUREFOOT_ONCE void add_rows_at(const Recording& recording, Eigen::Index output, 
 }
 
 SUREFOOT_ONCE std::optional<FoundFault> constant_fault(const LogFit& fit, std::size_t r, Eigen::Index output,
-                                                       const std::vector<ConstantStretch>& stretches, double natural) {
+                                                       const std::vector<ConstantStretch>& stretches, double natural,
+                                                       const LogDoctorCriteria& criteria) {
   LogRepair clipped{.kind = LogFaultKind::clipped, .channel = {false, output}};
   LogRepair stuck{.kind = LogFaultKind::stuck, .channel = {false, output}};
   double clipped_rows = 0, stuck_rows = 0;
@@ -251,7 +288,8 @@ SUREFOOT_ONCE std::optional<FoundFault> constant_fault(const LogFit& fit, std::s
   const double off = std::max(fit.typical[output], error_elsewhere(fit, r, output, stretches));
   for (const ConstantStretch& one : stretches) {
     if (machine_rests(fit, r, output, one.rows)) continue;
-    const bool noiseless = static_cast<double>(one.readings) > natural;
+    const bool noiseless = static_cast<double>(one.readings) > natural ||
+                           expected_by_chance(fit, r, output, one, off) < criteria.significance;
     const bool jump = ends_in_jump(fit, r, output, one.rows) || moved_on_meanwhile(fit, r, output, one.rows, off);
     if (one.extreme && !jump && (noiseless || one.beyond || steps)) {
       add_rows_at(fit.bound.recordings[r], output, one.value, clipped.rows);  // short visits as well

@@ -12,6 +12,8 @@ struct LogDoctorCriteria {
   double fault_odds = 100;      // that a column is at fault, times all columns asked for: one log in ten has such a
                                 // fault, and named is what is ten times as probable as none
   double decisive = 4;          // least mean square error as logged over that after the repair
+  double in_doubt = 0.1;  // of an output's variance unexplained in the median recording: columns of all recordings
+                          // are tried, of which a decisive gain is asked
   double poor_fit = 0.25;       // of an output's variance unexplained in the median recording: the log is in doubt
   double most_of = 0.8;         // share of the recordings that a fault of the whole log must be seen in
   double deviations = 3;         // standard deviations beyond half of them, where recordings are many and short

@@ -26,6 +26,7 @@ struct LogUnderExamination {
   std::vector<LogFault> faults;
   std::vector<LogFault> suspected = {};
   std::vector<Recording> without_suspected = {};
+  std::vector<Recording> before_jumps = {};  // those that were cut at one
 
   void add(std::vector<LogFault> more, bool repaired) {
     for (LogFault& fault : more) {
@@ -44,27 +45,6 @@ SUREFOOT_ONCE LogFit first_fit(const LogDoctorInputs& inputs, const std::vector<
   if (worst_output_error(fit) < inputs.criteria.poor_fit) return fit;
   LogFit other = fit_log(inputs, recordings, {}, inputs.criteria.search_points);
   return median_of(other.error) < median_of(fit.error) ? other : fit;
-}
-
-SUREFOOT_ONCE void examine_columns(LogUnderExamination& log) {
-  constexpr int most_of_all = 3;  // faults of the whole log, one after the other
-  for (int round = 0; round < most_of_all && !log.inputs.stopped(); ++round) {
-    const auto found = find_fault_of_all(log.inputs, log.fit);
-    if (!found || log.inputs.stopped()) break;  // what a comparison that was cut short says does not count
-    log.add(describe_fault(log.fit.bound, *found), true);
-    std::vector<Recording> recordings = log.fit.bound.recordings;
-    for (Recording& recording : recordings) recording = repaired(log.fit.bound, recording, found->repairs);
-    log.fit = first_fit(log.inputs, recordings);
-  }
-  for (std::size_t round = 0; 2 * round < log.fit.bound.recordings.size() && !log.inputs.stopped(); ++round) {
-    const auto found = find_fault_of_one(log.inputs, log.fit);
-    if (!found || log.inputs.stopped()) break;
-    log.add(describe_fault(log.fit.bound, *found), true);
-    std::vector<Recording> recordings = log.fit.bound.recordings;
-    Recording& one = recordings[*found->recording];
-    one = repaired(log.fit.bound, one, found->repairs);
-    log.calibrate_again(std::move(recordings));
-  }
 }
 
 /// The longest piece of a recording between gaps. Where it does not begin with the first row it starts from the
@@ -108,6 +88,7 @@ SUREFOOT_ONCE void examine_readings(LogUnderExamination& log) {
     const std::size_t r = *cut.recording;
     const Recording before = std::exchange(log.fit.bound.recordings[r], recordings[r]);
     recordings[r] = longest_piece(log.fit, r, cut.repairs.front());
+    if (cut.repairs.front().kind == LogFaultKind::jump) log.before_jumps.push_back(before);
     log.add(describe_fault(log.fit.bound, cut), recordings[r].rows() < before.rows());
   }
   if (!log.faults.empty()) log.calibrate_again(std::move(recordings));
@@ -156,6 +137,42 @@ SUREFOOT_ONCE void examine_clocks(LogUnderExamination& log) {
   }
 }
 
+SUREFOOT_ONCE void examine_columns(LogUnderExamination& log) {
+  constexpr int most_of_all = 3;  // faults of the whole log, one after the other
+  for (int round = 0; round < most_of_all && !log.inputs.stopped(); ++round) {
+    const auto found = find_fault_of_all(log.inputs, log.fit);
+    if (!found || log.inputs.stopped()) break;  // what a comparison that was cut short says does not count
+    log.add(describe_fault(log.fit.bound, *found), true);
+    std::vector<Recording> recordings = log.fit.bound.recordings;
+    for (Recording& recording : recordings) recording = repaired(log.fit.bound, recording, found->repairs);
+    log.fit = first_fit(log.inputs, recordings);
+  }
+  for (std::size_t round = 0; 2 * round < log.fit.bound.recordings.size() && !log.inputs.stopped(); ++round) {
+    auto found = find_fault_of_one(log.inputs, log.fit);
+    if (found && clock_explains_more(log.inputs, log.fit, *found)) {
+      examine_clocks(log);
+      found = find_fault_of_one(log.inputs, log.fit);
+    }
+    if (!found || log.inputs.stopped()) break;
+    log.add(describe_fault(log.fit.bound, *found), true);
+    std::vector<Recording> recordings = log.fit.bound.recordings;
+    Recording& one = recordings[*found->recording];
+    one = repaired(log.fit.bound, one, found->repairs);
+    log.calibrate_again(std::move(recordings));
+  }
+}
+
+/// That a recording jumps says a model that does not hold for it: not named, and its rows are there again.
+SUREFOOT_ONCE void withdraw_jump(LogUnderExamination& log, Recording& odd) {
+  for (const Recording& whole : log.before_jumps) {
+    if (whole.name != odd.name) continue;
+    odd = whole;
+    drop_items(log.faults, [&](const LogFault& fault) {
+      return fault.recording == odd.name && fault.kind == name_of(LogFaultKind::jump) && fault.channel.empty();
+    });
+  }
+}
+
 /// A recording unlike the others. Columns or a unit of time that are at fault may have led the calibration astray, so
 /// that they show only beside one without that recording. With nothing to repair it is left out.
 SUREFOOT_ONCE void examine_odd_recording(LogUnderExamination& log) {
@@ -170,8 +187,9 @@ SUREFOOT_ONCE void examine_odd_recording(LogUnderExamination& log) {
     odd = find_odd_recording(log.inputs, log.fit);
   }
   if (!odd || log.inputs.stopped()) return;
-  log.add({describe_fault(log.fit.bound, *odd)}, log.inputs.may_leave_out);
   std::vector<Recording>& recordings = log.fit.bound.recordings;
+  withdraw_jump(log, recordings[odd->recording]);
+  log.add({describe_fault(log.fit.bound, *odd)}, log.inputs.may_leave_out);
   if (log.inputs.may_leave_out) recordings.erase(recordings.begin() + static_cast<std::ptrdiff_t>(odd->recording));
 }
 

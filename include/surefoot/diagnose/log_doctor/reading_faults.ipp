@@ -219,9 +219,9 @@ SUREFOOT_ONCE std::vector<FoundFault> find_reading_faults(const LogFit& fit, con
     const double resolution = resolution_of(fit.bound.recordings, output);
     std::vector<std::size_t> repeats(count, 0);
     if (fit.bound.info.kind == SimulatorKind::ode) {
-      for (const FoundFault& fault : repeated_row_faults(fit, output, resolution, criteria)) {
+      for (FoundFault& fault : repeated_row_faults(fit, output, resolution, criteria)) {
         repeats[*fault.recording] = fault.repairs.front().rows.size();
-        found.push_back(fault);
+        found.push_back(std::move(fault));
       }
     }
     std::vector<std::vector<ConstantStretch>> stretches(count);
@@ -245,7 +245,8 @@ SUREFOOT_ONCE std::vector<FoundFault> find_reading_faults(const LogFit& fit, con
       Eigen::Index readings = 0;
       for (const ConstantStretch& one : stretches[r]) readings += one.readings;
       if (static_cast<std::size_t>(readings) < repeats[r]) continue;  // some of these in a row
-      if (const auto fault = constant_fault(fit, r, output, stretches[r], natural)) found.push_back(*fault);
+      if (auto fault = constant_fault(fit, r, output, stretches[r], natural, criteria))
+        found.push_back(std::move(*fault));
     }
   }
   take_for_repeated_where_all_stick(fit.bound, found);

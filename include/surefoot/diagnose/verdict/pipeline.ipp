@@ -254,7 +254,7 @@ SUREFOOT_ONCE void examine_parts_as_well(const BindSimulator& bind, const RunCon
   if (!of_parts.faults.empty() || !of_parts.suspected.empty()) return;
   log = std::move(of_parts);
   recordings = std::move(parts);
-  for (const Remark& cut : cuts) remarks.push_back(cut);
+  append_items(remarks, cuts);
 }
 
 /// As many steps a row as a simulator needs to run over these recordings, which are followed where they must be, with
