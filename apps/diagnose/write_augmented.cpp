@@ -74,13 +74,19 @@ void write_parameter(std::ostream& out, const surefoot::ParameterInfo& parameter
       << (parameter.fixed ? ", fixed = true }" : " }");
 }
 
-// Bounds: thrice the interval to either side, wide enough to be fitted again, but of the same sign.
+// Bounds: thrice the interval to either side, wide enough to be fitted again, but of the same sign and within those of
+// the search.
 surefoot::ParameterInfo effect_parameter(const surefoot::FittedValue& fit) {
   const double interval = std::max(fit.value - fit.low, fit.high - fit.value);
   const double reach = std::max({std::isfinite(interval) ? 3 * interval : 0.0, 0.1 * std::abs(fit.value), 1e-12});
   const double low = fit.value >= 0 ? std::max(0.0, fit.value - reach) : fit.value - reach;
   const double high = fit.value <= 0 ? std::min(0.0, fit.value + reach) : fit.value + reach;
-  return {fit.name, fit.unit.empty() ? "1" : fit.unit, fit.value, low, fit.value == 0 ? reach : high, false};
+  return {fit.name,
+          fit.unit.empty() ? "1" : fit.unit,
+          fit.value,
+          std::max(low, std::min(fit.least, fit.value)),
+          std::min(fit.value == 0 ? reach : high, std::max(fit.most, fit.value)),
+          false};
 }
 
 void write_effects(std::ostream& out, const ModelFile& model) {

@@ -94,6 +94,19 @@ TEST_CASE("an augmented model holds the calibrated parameters and the effects, a
   CHECK(back.effects[0].parameters[0].value == 0.12);
 }
 
+TEST_CASE("the bounds of an effect that is read back reach no further than those of the search") {
+  surefoot::Diagnosis diagnosis;
+  surefoot::FittedValue exponent{"exponent", "", 1, 0.1, 1.9};
+  exponent.least = 0.4;
+  exponent.most = 2;
+  diagnosis.effects.push_back({"stribeck_friction", "omega", "", {exponent}, {}, "tailed", ""});
+  diagnosis.effects.back().parameters.push_back({"level", "N m", 0.12, 0.11, 0.13});
+  const auto model = augmented_model(parse_model_file(servo_model, "servo.toml"), diagnosis);
+  CHECK(model.effects[0].parameters[0].low == 0.4);
+  CHECK(model.effects[0].parameters[0].high == 2);
+  CHECK(model.effects[0].parameters[1].high == doctest::Approx(0.15));  // thrice the interval
+}
+
 TEST_CASE("effects of a model file are found in the library") {
   const std::string friction =
       "[[effects]]\nname = \"coulomb_friction\"\nattached_to = \"omega\"\n[effects.parameters]\nlevel = 0.1\n";

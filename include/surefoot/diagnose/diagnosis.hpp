@@ -26,6 +26,7 @@ struct FittedValue {
   std::string name, unit;
   double value = 0, low = 0, high = 0;
   bool at_bound = false;  // of the search, other than 0: it may be larger still
+  double least = -std::numeric_limits<double>::infinity(), most = -least;  // bounds of the search
 };
 
 struct CalibratedParameter {

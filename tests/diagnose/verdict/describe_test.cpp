@@ -61,6 +61,8 @@ TEST_CASE("an effect is described with its values, its units and its place") {
   REQUIRE(found.parameters.size() == 1);
   CHECK(found.parameters[0].unit == "m/s");
   CHECK(found.parameters[0].high == doctest::Approx(0.2 + 0.0196));
+  CHECK(found.parameters[0].least == -1);
+  CHECK(found.parameters[0].most == 1);
   CHECK(found.sentence.find("0.2 m/s") != std::string::npos);
   CHECK(describe(setup.bound, hypothesis, 0, nullptr).parameters[0].high == 0.2);
 }

@@ -86,6 +86,8 @@ SUREFOOT_ONCE FoundEffect describe(const BoundSimulator& bound, const Hypothesis
       const double from = to_search(variable, variable.low), to = to_search(variable, variable.high);
       const double share = (to_search(variable, value) - from) / (to - from), near = DescriptionCriteria{}.bound_share;
       one.at_bound = (share < near && variable.low != 0) || share > 1 - near;
+      one.least = variable.low;
+      one.most = variable.high;
     }
     found.parameters.push_back(std::move(one));
   }
