@@ -80,7 +80,8 @@ void insert_item(std::vector<Item>& items, std::size_t place, Item item) {
   for (std::size_t i = items.size() - 1; i > place; --i) std::swap(items[i], items[i - 1]);
 }
 
-/// Adds copies of other items at the end (std::vector::insert).
+/// Adds copies of other items at the end (std::vector::insert); moved there, as most vectors are filled, so that each
+/// is compiled for that alone.
 template <class Item>
 void append_items(std::vector<Item>& items, const std::vector<Item>& others) {
   for (const Item& other : others) items.push_back(Item(other));

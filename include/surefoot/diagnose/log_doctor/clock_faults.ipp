@@ -282,7 +282,7 @@ SUREFOOT_ONCE std::optional<ClockFault> find_clock_fault(const LogDoctorInputs& 
 }
 
 SUREFOOT_ONCE bool clock_explains_more(const LogDoctorInputs& inputs, const LogFit& fit, const FoundFault& columns) {
-  const auto clock = find_clock_fault(inputs, fit, true);
+  const auto clock = find_clock_fault(inputs, fit, /*of_one=*/true);
   const std::size_t r = *columns.recording;
   if (!clock || clock->amounts[r] == 0) return false;
   const auto left = [&](const Repairs& repairs) {

@@ -35,7 +35,7 @@ double expected_repeats(const std::vector<double>& lengths, double readings, dou
 /// How many stretches like this one chance makes in a log: each reading that repeats the one before, with the chance of
 /// that in other recordings where the model moves no more, and then one that by chance is where the model has gone
 /// meanwhile, if steps differ from its by `off`. Infinite if it is not, for a machine that rests goes on from where it
-/// was, and at the end of the range, where machines rest.
+/// was, and at the end of the range, where machines rest. Takes time in proportion to its rows times those of the log.
 double expected_by_chance(const LogFit& fit, std::size_t r, Eigen::Index output, const ConstantStretch& stretch,
                           double off);
 

@@ -157,21 +157,22 @@ SUREFOOT_ONCE double chance_in_step(const LogFit& fit, std::size_t r, Eigen::Ind
 
 SUREFOOT_ONCE double expected_by_chance(const LogFit& fit, std::size_t r, Eigen::Index output,
                                         const ConstantStretch& stretch, double off) {
-  double expected = 0, whole = 0;
-  for (const Recording& recording : fit.bound.recordings) expected += static_cast<double>(recording.rows());
-  const auto [first, next] = stretch.rows;
-  for (Eigen::Index row = first + 1; row < next; ++row) {
-    const double step = step_of_model(fit, r, output, row);
-    expected *= chance_in_step(fit, r, output, std::abs(step), row > first + 1);
-    whole += step;
-  }
   const Eigen::MatrixXd& read = fit.bound.recordings[r].outputs;
-  const bool goes_on = next < read.cols() && !stretch.extreme;
-  const double last = goes_on ? step_of_model(fit, r, output, next) : 0;
-  const double beside = goes_on ? (read(output, next) - read(output, next - 1) - last) / off : 0;
-  const double caught_up = beside - whole / off;
-  if (!(std::abs(caught_up) < std::abs(beside))) return std::numeric_limits<double>::infinity();
-  return expected * std::exp((caught_up * caught_up - beside * beside) / 2);
+  const auto [first, next] = stretch.rows;
+  constexpr double no_sign = std::numeric_limits<double>::infinity();
+  if (stretch.extreme || next >= read.cols()) return no_sign;
+  double whole = 0;
+  for (Eigen::Index row = first + 1; row < next; ++row) whole += step_of_model(fit, r, output, row);
+  const double step = read(output, next) - read(output, next - 1);
+  const double beside = (step - step_of_model(fit, r, output, next)) / off, caught_up = beside - whole / off;
+  if (!(std::abs(caught_up) < std::abs(beside))) return no_sign;
+  double expected = std::exp((caught_up * caught_up - beside * beside) / 2), rows = 0;
+  for (const Recording& recording : fit.bound.recordings) rows += static_cast<double>(recording.rows());
+  for (Eigen::Index row = first + 1; row < next; ++row) {
+    const double moved = std::abs(step_of_model(fit, r, output, row));
+    expected *= chance_in_step(fit, r, output, moved, row > first + 1);
+  }
+  return rows * expected;
 }
 
 /// Whether a stretch at the end of the range, of the machine or its sensor, is left again: what sticks does so

@@ -14,10 +14,10 @@ struct LogDoctorCriteria {
   double decisive = 4;          // least mean square error as logged over that after the repair
   double in_doubt = 0.1;  // of an output's variance unexplained in the median recording: columns of all recordings
                           // are tried, of which a decisive gain is asked
-  double poor_fit = 0.25;       // of an output's variance unexplained in the median recording: the log is in doubt
+  double poor_fit = 0.25;  // of it unexplained: other parameters are searched for, and a recording may be unrelated
   double most_of = 0.8;         // share of the recordings that a fault of the whole log must be seen in
   double deviations = 3;         // standard deviations beyond half of them, where recordings are many and short
-  std::size_t search_points = 8;  // of the search for parameters where the log is in doubt
+  std::size_t search_points = 8;  // of the search for parameters where the fit is poor
   std::size_t fewest_rows = 40;  // of a recording, for what concerns its clock or its sensors
   std::size_t fit_rows = 10000;  // of the light calibration, over as many recordings as that gives
   std::size_t few_fitted = 6;    // recordings at least
